@@ -1,0 +1,31 @@
+# `make study` and `make test` are all a new user needs; each sets up .venv first.
+PYTHON ?= python3.11
+VENV := .venv
+BIN := $(VENV)/bin
+SHELL := /bin/bash
+
+.PHONY: study test test-all check lint clean benchmark
+
+$(VENV)/.ready: pyproject.toml constraints.txt
+	@command -v $(PYTHON) >/dev/null || { echo "Python 3.11 not found; set PYTHON=/path/to/python3.11"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	@touch $@
+
+study: $(VENV)/.ready  ## Analyse the paper's biped and its ablations, sweep, and write results/study/index.html
+	$(BIN)/hyperleg study --out results/study
+
+test: $(VENV)/.ready  ## All tests but the slow ones, style and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m pytest -m "not slow" -n 2
+
+test-all: $(VENV)/.ready  ## The slow ones too
+	$(BIN)/python -m pytest -n 2
+
+benchmark: $(VENV)/.ready  ## Speed, as ratios in one run
+	$(BIN)/python benchmarks/run.py
+
+clean:
+	rm -rf $(VENV) results .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,0 +1,63 @@
+"""Where the content folders are: beside the package in a checkout, inside it when installed from a wheel.
+
+This is the only place in the package that knows; `HYPERLEG_HOME` overrides it.
+"""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from pathlib import Path
+
+from hyperleg_design.errors import InputError
+
+CONTENT = ("descriptions", "motors", "sweeps", "sim")
+
+
+def home() -> Path:
+    """Folder that holds the content folders of `CONTENT`."""
+    chosen = os.environ.get("HYPERLEG_HOME")
+    if chosen:
+        if not (Path(chosen) / "descriptions").is_dir():
+            raise InputError("HYPERLEG_HOME", "", chosen, "is not a folder with descriptions/, motors/, sweeps/")
+        return Path(chosen)
+    return _own_home()
+
+
+@cache
+def _own_home() -> Path:
+    package = Path(__file__).resolve().parent
+    inside = package / "content"
+    return inside if inside.is_dir() else package.parent
+
+
+def content_folder(kind: str) -> Path:
+    """Content folder of a kind named in `CONTENT`."""
+    if kind not in CONTENT:
+        raise ValueError(f"no content folder {kind!r}; there are {', '.join(CONTENT)}")
+    return home() / kind
+
+
+def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path:
+    """Path of a content file given by a user: a path as it stands, or the bare name of a shipped file.
+
+    Args:
+        kind: content folder, one of `CONTENT`.
+        name: path to a file, or a name such as `hyperleg`.
+        suffix: ending of shipped files.
+
+    Raises:
+        InputError: neither exists; the message lists what is shipped.
+    """
+    path = Path(name)
+    if path.suffix and path.is_file():
+        return path
+    shipped = content_folder(kind) / f"{name}{suffix}"
+    if path.name == str(name) and shipped.is_file():
+        return shipped
+    raise InputError(kind, "", str(name), f"no such file; shipped: {', '.join(names(kind, suffix)) or 'none'}")
+
+
+def names(kind: str, suffix: str = ".yaml") -> list[str]:
+    """Names of the shipped files of a kind, sorted."""
+    return sorted(p.name[: -len(suffix)] for p in content_folder(kind).glob(f"*{suffix}"))

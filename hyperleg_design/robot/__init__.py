@@ -1,0 +1,1 @@
+"""Robots: designs, motors, masses, cooperative actuation, URDF and models."""

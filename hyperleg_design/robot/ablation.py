@@ -1,0 +1,77 @@
+"""Ablations of the active toe, made from any design, and what each takes away besides the toe."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import masses, transmission
+from hyperleg_design.robot.names import JOINTS, VARIANTS
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+DESCRIPTION = {
+    "toe": "active toe",
+    "toe_locked": "toe joint locked, its motor kept: the motor still helps knee and ankle",
+    "toe_removed_matched": "toe joint and motor gone; total mass, sole and foot length kept by ballast at the motor's place",
+    "toe_removed": "toe joint and motor gone with their mass; the sole keeps its length",
+}
+
+
+def ablate(design: Design, variant: str) -> Design:
+    """The design with one ablation.
+
+    Args:
+        design: a robot or batch with an active toe.
+        variant: one of `VARIANTS`.
+
+    Raises:
+        InputError: no such variant, or the toe is gone already.
+    """
+    if variant not in VARIANTS:
+        raise InputError("variant", "", variant, f"expects one of {', '.join(VARIANTS)}")
+    if variant == design.variant:
+        return design
+    if design.variant != "toe":
+        raise InputError(design.name, "variant", design.variant, f"has no active toe to make {variant} of; start from the toe variant")
+    values: dict[str, Any] = {"toe.joint": "locked"}
+    if variant != "toe_locked":
+        values["actuators.toe_installed"] = False
+    if variant == "toe_removed_matched":
+        values["masses.thigh_ballast"] = design.masses.thigh_ballast + masses.built_mass(design, design.actuators.toe)
+    if variant == "toe_removed":
+        values["toe.mass"] = 0.0
+    made = design.with_values(values, f"variant {variant}", label="derived")
+    return dataclasses.replace(made, variant=variant)
+
+
+def variants(design: Design) -> dict[str, Design]:
+    """All ablations of a design, by name."""
+    return {name: ablate(design, name) for name in VARIANTS}
+
+
+def confound(design: Design, posture: str = "standing") -> dict[str, Any]:
+    """What each ablation takes away besides the toe.
+
+    Returns:
+        By variant: `removes` (text), `motors` and `joints` a leg, `total_mass` [kg], `leg_mass` [kg], and
+        `max_joint_torque` [Nm] by joint, derated as in Table I, with `lost` [Nm] against the active toe.
+    """
+    full = dict(zip(JOINTS, transmission.max_joint_torque(design, posture).tolist(), strict=False))
+    found: dict[str, Any] = {}
+    for name, variant in variants(design).items():
+        table = masses.mass_table(variant)
+        joints = transmission.joint_names(variant)
+        torque = dict(zip(joints, transmission.max_joint_torque(variant, posture).tolist(), strict=True))
+        found[name] = {
+            "removes": DESCRIPTION[name],
+            "joints": len(joints),
+            "motors": len(transmission.motor_names(variant)),
+            "total_mass": float(table.total),
+            "leg_mass": float(table.leg),
+            "max_joint_torque": torque,
+            "lost": {j: full[j] - torque[j] for j in torque},
+        }
+    return found

@@ -1,0 +1,75 @@
+"""Whether the numbers of a design fit together: geometry, ranges, masses, transmission."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.names import JOINTS
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+
+def check_design(design: Design) -> None:
+    """Raise the first misfit found.
+
+    Raises:
+        InputError: names the field, its value and what would be right.
+    """
+    where = design.source or design.name
+
+    def require(good: Any, field: str, remedy: str) -> None:
+        if np.all(good):
+            return
+        value = design[field]
+        if np.ndim(good) == 1 and isinstance(value, np.ndarray) and value.shape[:1] == np.shape(good):
+            value = value[np.argmin(good)]
+        raise InputError(where, field, value.tolist() if isinstance(value, np.ndarray) else value, remedy)
+
+    for name in JOINTS:
+        joint = getattr(design.joints, name)
+        require(joint.lower_deg < joint.upper_deg, f"joints.{name}.lower_deg", "must lie below upper_deg; the range is reversed or empty")
+        inside = (joint.lower_deg <= joint.default_deg) & (joint.default_deg <= joint.upper_deg)
+        require(inside, f"joints.{name}.default_deg", "must lie within lower_deg .. upper_deg")
+
+    leg = leg_length(design)
+    foot = design.foot.heel_length + design.foot.ball_length + design.toe.length
+    require(foot < leg, "foot.ball_length", "makes the foot longer than the leg; lengths are metres")
+    require(design.foot.ankle_height < design.shank.length, "foot.ankle_height", "must be below the shank's length")
+    require(design.toe.axis_height <= design.foot.ankle_height, "toe.axis_height", "must not lie above the ankle axis (foot.ankle_height)")
+    require(design.foot.width < 2 * design.hip.spacing, "foot.width", "makes the feet overlap; it must be below twice hip.spacing")
+    require(design.contact.pad_radius <= design.toe.axis_height + design.foot.width, "contact.pad_radius", "is larger than the foot")
+    carriers = design.hip.yaw_carrier_mass + design.hip.roll_carrier_mass
+    require(carriers < design.thigh.mass, "thigh.mass", "must exceed the hip carriers counted in it (hip.yaw_carrier_mass + hip.roll_carrier_mass)")
+    require(design.foot.cross_mass < design.foot.mass, "foot.cross_mass", "must be below foot.mass, in which it is counted")
+    if design.toe.joint == "active":
+        require(np.asarray(design.toe.mass) > 1e-6, "toe.mass", "must be positive where the toe moves; a toe without mass needs toe.joint: locked")
+    if design.toe.joint == "active" and not design.actuators.toe_installed:
+        raise InputError(where, "actuators.toe_installed", False, "an active toe needs its motor; set toe.joint: locked")
+
+    _check_inertia(design, where)
+
+    from hyperleg_design.robot import masses, motors, transmission
+
+    motors.check_names(design, where)
+    masses.check_masses(design, where)
+    transmission.check_invertible(design, where)
+
+
+def leg_length(design: Design) -> Any:
+    """Hip-pitch axis to sole, standing straight [m]."""
+    return design.thigh.length + design.shank.length + design.foot.ankle_height
+
+
+def _check_inertia(design: Design, where: str) -> None:
+    """Radii of gyration obey the triangle inequality, as those of any body do."""
+    for field in ("pelvis.gyration", "thigh.gyration_fraction", "shank.gyration_fraction", "foot.gyration", "toe.gyration"):
+        squared = np.sort(np.asarray(design[field]) ** 2, axis=-1)
+        good = squared[..., 2] <= squared[..., 0] + squared[..., 1] + 1e-12
+        if not np.all(good):
+            value = np.asarray(design[field])
+            shown = value if value.ndim == 1 else value[np.argmin(good)]
+            raise InputError(where, field, shown.tolist(), "no body has these: the largest squared radius must not exceed the sum of the other two")

@@ -1,0 +1,248 @@
+"""A robot design: typed parameters, read from YAML, overridden, batched.
+
+A design is the paper's kind of biped: a pelvis and two mirrored legs of seven joints, with motors coupled below the hip.
+Axes: x forward, y left, z up. Pitch axes point left, so hip flexion is negative, knee flexion, plantar flexion and toe
+flexion are positive; yaw and roll axes of the right leg mirror the left's, so equal angles are mirrored postures.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters
+from hyperleg_design.robot.names import VARIANTS
+from hyperleg_design.robot.parameters import Origin
+from hyperleg_design.robot.sections import (
+    Actuators,
+    Contact,
+    Electrical,
+    Foot,
+    Hip,
+    Joints,
+    MassModel,
+    Pelvis,
+    ReferenceBuild,
+    Segment,
+    Toe,
+    Transmission,
+)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Design:
+    """A robot, or a batch of robots that differ in numbers and motors only."""
+
+    name: str
+    pelvis: Pelvis
+    hip: Hip
+    thigh: Segment
+    shank: Segment
+    foot: Foot
+    toe: Toe
+    joints: Joints
+    actuators: Actuators
+    transmission: Transmission
+    electrical: Electrical
+    reference: ReferenceBuild
+    masses: MassModel
+    contact: Contact
+    variant: str = "toe"
+    """Ablation that made it; informative."""
+    origins: Mapping[str, Origin] = field(default_factory=dict, repr=False)
+    """Origin of each leaf, by dotted path."""
+    source: str = ""
+    """File it was read from."""
+
+    def __post_init__(self) -> None:
+        from hyperleg_design.robot.consistency import check_design
+
+        check_design(self)
+
+    @property
+    def batch_shape(self) -> tuple[int, ...]:
+        """`()` for one robot, `(n,)` for a batch."""
+        found: tuple[int, ...] = ()
+        for path, rule in parameters.rules(Design).items():
+            value = self[path]
+            if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0):
+                found = np.broadcast_shapes(found, value.shape[:1])
+        return found
+
+    def __getitem__(self, path: str) -> Any:
+        """Value of a leaf by dotted path, `design["toe.mass"]`."""
+        value: Any = self
+        for part in path.split("."):
+            try:
+                value = getattr(value, part)
+            except AttributeError:
+                raise InputError(self.name, path, None, parameters.unknown(path, sorted(parameters.rules(Design)))) from None
+        return value
+
+    def with_values(self, values: Mapping[str, Any], where: str = "override", label: str = "user") -> Design:
+        """A copy with leaves replaced by dotted path.
+
+        Args:
+            values: numbers, texts, or arrays of either with the batch in front.
+            where: what to name in errors.
+            label: origin of the new values.
+
+        Raises:
+            InputError: unknown path, or a value or combination that makes no sense.
+        """
+        origins = {**self.origins, **{p: Origin(label, where) for p in values}}
+        try:
+            made = parameters.with_values(self, values, where)
+            return dataclasses.replace(made, origins=origins)
+        except InputError as error:
+            if error.where == where:
+                raise
+            raise InputError(f"{self.source or self.name} with {where}", error.field, error.value, error.remedy) from None
+
+    def take(self, index: int) -> Design:
+        """One robot of a batch."""
+        values = {}
+        for path, rule in parameters.rules(Design).items():
+            value = self[path]
+            if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0):
+                picked = value[index]
+                values[path] = str(picked) if rule.kind == "text" else picked
+        return self.with_values(values, f"{self.name}[{index}]") if values else self
+
+    def to_mapping(self) -> dict[str, Any]:
+        """All leaves as nested plain mappings, each with value, label and source where known."""
+        result: dict[str, Any] = {"name": self.name, "variant": self.variant}
+        for path, value in parameters.leaves(self).items():
+            place = result
+            *sections, last = path.split(".")
+            for section in sections:
+                place = place.setdefault(section, {})
+            origin = self.origins.get(path)
+            plain = value.tolist() if isinstance(value, np.ndarray) else value
+            place[last] = plain if origin is None else {"value": plain, "label": origin.label, "source": origin.source}
+        return result
+
+
+def load_design(
+    name: str | Path = "hyperleg",
+    *,
+    overrides: Mapping[str, Any] | Iterable[str] = (),
+    overlays: Iterable[str | Path] = (),
+    variant: str | None = None,
+) -> Design:
+    """Read a design.
+
+    Args:
+        name: a shipped name (`hyperleg`, or an ablation of it such as `toe_removed`) or a YAML file. A file may hold a
+            whole design, or `base: NAME` with `variant:` and the leaves that differ.
+        overrides: mapping of dotted paths to values, or texts `path=value`.
+        overlays: YAML files with nested leaves, applied in order before `overrides`.
+        variant: ablation to make of it, one of `VARIANTS`.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    from hyperleg_design.robot.ablation import ablate
+
+    design, own_variant = _read(resources.find("descriptions", name))
+    for overlay in overlays:
+        overlay_path = resources.find("descriptions", overlay)
+        design = _overlaid(design, read_yaml(overlay_path), short_name(overlay_path))
+    chosen = parse_overrides(overrides)
+    if chosen:
+        design = design.with_values(chosen, "--set")
+    if own_variant and variant and own_variant != variant:
+        raise InputError("variant", "", variant, f"{design.name} is already the variant {own_variant}; start from its base")
+    made = ablate(design, variant or own_variant or "toe")
+    for path, value in chosen.items():
+        if made[path] is not design[path]:
+            raise InputError("--set", path, value, f"the variant {made.variant} sets this itself; use another variant or leave it out")
+    return made
+
+
+def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
+    """Design of a file before ablation, and the variant that the file asks for."""
+    from hyperleg_design.robot.masses import check_printed
+
+    data = read_yaml(path)
+    where = short_name(path)
+    if path.resolve() in seen:
+        raise InputError(where, "base", data.get("base"), "leads back to itself")
+    variant = data.get("variant")
+    if variant is not None and variant not in VARIANTS:
+        raise InputError(where, "variant", variant, f"expects one of {', '.join(VARIANTS)}")
+    name = str(data.get("name", path.stem))
+    rest = {k: v for k, v in data.items() if k not in ("base", "variant", "name")}
+    if "base" not in data:
+        origins: dict[str, Origin] = {}
+        design = _build(rest, name, where, origins)
+        check_printed(design, where)
+        return design, variant
+    beside = path.with_name(f"{data['base']}.yaml")
+    base, base_variant = _read(beside if beside.is_file() else resources.find("descriptions", str(data["base"])), (*seen, path.resolve()))
+    return dataclasses.replace(_overlaid(base, rest, where), name=name, source=where), variant or base_variant
+
+
+def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, Any]:
+    """Overrides as a mapping; texts are `path=value` with the value in YAML.
+
+    Raises:
+        InputError: a text without `=`, or a value that is not YAML.
+    """
+    if isinstance(overrides, Mapping):
+        return dict(overrides)
+    found: dict[str, Any] = {}
+    for item in overrides:
+        path, equals, raw = item.partition("=")
+        if not equals or not path.strip():
+            raise InputError("--set", "", item, "expects path=value, such as toe.mass=0.3")
+        try:
+            found[path.strip()] = yaml.safe_load(raw)
+        except yaml.YAMLError:
+            raise InputError("--set", path, raw, "is not a value; quote it, or see YAML") from None
+    return found
+
+
+def _build(data: dict[str, Any], name: str, where: str, origins: dict[str, Origin]) -> Design:
+    sections = parameters.section_types(Design)
+    for key in data:
+        if key not in sections:
+            raise InputError(where, str(key), data[key], parameters.unknown(str(key), sorted(sections)))
+    parts: dict[str, Any] = {}
+    for key, cls in sections.items():
+        if key not in data:
+            raise InputError(where, key, None, "is missing")
+        parts[key] = parameters.from_mapping(cls, data[key], where, key, origins)
+    try:
+        return Design(name=name, origins=origins, source=where, **parts)
+    except InputError as error:
+        raise InputError(where, error.field, error.value, error.remedy) from None
+
+
+def _overlaid(design: Design, data: Mapping[str, Any], where: str) -> Design:
+    values: dict[str, Any] = {}
+    origins: dict[str, Origin] = {}
+    known = parameters.rules(Design)
+
+    def walk(part: Mapping[str, Any], prefix: str) -> None:
+        for key, value in part.items():
+            path = f"{prefix}{key}"
+            if isinstance(value, Mapping) and path not in known:
+                walk(value, f"{path}.")
+            else:
+                values[path], origins[path] = parameters.labelled(value, where, path)
+
+    walk(data, "")
+    if not values:
+        return design
+    made = design.with_values(values, where)
+    return dataclasses.replace(made, origins={**made.origins, **origins})

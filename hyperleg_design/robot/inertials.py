@@ -1,0 +1,114 @@
+"""Mass, centre of mass and inertia of every link, batched over designs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import masses
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+LEG_LINKS = ("hip_yaw_carrier", "hip_roll_carrier", "thigh", "shank", "ankle_cross", "foot", "toe_plate")
+"""Links of a leg, one behind each joint of `names.JOINTS`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Inertial:
+    """Inertial of a link in its own frame (at its joint, axes of the pelvis in the zero posture)."""
+
+    mass: np.ndarray
+    """[kg] `(...)`"""
+    com: np.ndarray
+    """Centre of mass [m] `(..., 3)`."""
+    inertia: np.ndarray
+    """About the centre of mass [kg m^2] `(..., 3, 3)`."""
+
+
+def inertials(design: Design, side: float = 1.0) -> dict[str, Inertial]:
+    """Inertials of the pelvis and of the links of one leg.
+
+    Args:
+        design: a robot or batch.
+        side: 1 for the left leg, -1 for the right, which mirrors y.
+
+    Returns:
+        `pelvis` and each of `LEG_LINKS`. A locked toe is still its own link, fixed to the foot.
+
+    Raises:
+        InputError: the housed actuators leave a link with an inertia that no body has.
+    """
+    table = masses.mass_table(design)
+    carrier = design.hip.carrier_gyration * np.ones(3)
+    foot_link = table.foot - design.foot.cross_mass
+    zero = np.zeros(3)
+    found = {
+        "pelvis": _with_housed(
+            design, "pelvis", table, _declared(table.pelvis - _change(table, "pelvis", 2), design.pelvis.com, design.pelvis.gyration), 1.0
+        ),
+        "hip_yaw_carrier": _declared(design.hip.yaw_carrier_mass, zero, carrier),
+        "hip_roll_carrier": _declared(design.hip.roll_carrier_mass, zero, carrier),
+    }
+    carriers = design.hip.yaw_carrier_mass + design.hip.roll_carrier_mass
+    for name, kept in (("thigh", carriers), ("shank", 0.0)):
+        part = getattr(design, name)
+        com = _vector(part.com_forward, side * part.com_outward, -part.com_fraction * part.length)
+        gyration = np.asarray(part.gyration_fraction) * np.asarray(part.length, float)[..., None]
+        body = _declared(getattr(table, name) - _change(table, name, 1) - kept, com, gyration)
+        found[name] = _with_housed(design, name, table, body, side)
+    mirror = np.array([1.0, side, 1.0])
+    found["ankle_cross"] = _declared(design.foot.cross_mass, zero, design.foot.cross_gyration * np.ones(3))
+    found["foot"] = _declared(foot_link, design.foot.com * mirror, design.foot.gyration)
+    found["toe_plate"] = _declared(table.toe, design.toe.com * mirror, design.toe.gyration)
+    return found
+
+
+def _vector(*parts: Any) -> np.ndarray:
+    return np.stack(np.broadcast_arrays(*(np.asarray(p, float) for p in parts)), -1)
+
+
+def _declared(mass: Any, com: Any, gyration: Any) -> Inertial:
+    mass = np.asarray(mass, float)
+    diagonal = mass[..., None] * np.asarray(gyration, float) ** 2
+    return Inertial(mass, np.broadcast_to(np.asarray(com, float), diagonal.shape), diagonal[..., None] * np.eye(3))
+
+
+def _change(table: masses.MassTable, segment: str, legs: int) -> Any:
+    return sum((h.change * legs for h in table.housed if h.segment == segment), start=np.zeros(()))
+
+
+def _with_housed(design: Design, segment: str, table: masses.MassTable, body: Inertial, side: float) -> Inertial:
+    """The body with the changes of housed actuators added as points; the same body where nothing changed."""
+    points: list[tuple[Any, np.ndarray]] = []
+    for housed in table.housed:
+        if housed.segment != segment or not np.any(housed.change):
+            continue
+        if segment == "pelvis":
+            half = np.asarray(design.hip.spacing, float) / 2
+            points += [(housed.change, _vector(0 * half, sign * half, 0 * half)) for sign in (1, -1)]
+        else:
+            depth = getattr(design.actuators, housed.actuator).position_fraction * getattr(design, segment).length
+            points.append((housed.change, _vector(0.0 * depth, 0.0 * depth, -depth)))
+    if not points:
+        return body
+    mass = body.mass + sum(np.asarray(m) for m, _ in points)
+    moment = body.mass[..., None] * body.com + sum(np.asarray(m)[..., None] * p for m, p in points)
+    com = moment / mass[..., None]
+    inertia = body.inertia + _shifted(body.mass, body.com - com) + sum(_shifted(np.asarray(m), p - com) for m, p in points)
+    principal = np.linalg.eigvalsh(inertia)
+    if np.any(principal[..., 0] <= 0) or np.any(principal[..., 2] > principal[..., 0] + principal[..., 1] + 1e-12):
+        field = f"{segment}.gyration_fraction" if segment != "pelvis" else "pelvis.gyration"
+        raise InputError(
+            design.source or design.name, field, None, "is too small for the actuators that leave this segment: its inertia would be no body's"
+        )
+    return Inertial(mass, com, inertia)
+
+
+def _shifted(mass: Any, offset: np.ndarray) -> np.ndarray:
+    """Inertia of a point mass about a point `offset` away, `(..., 3, 3)`."""
+    squared = np.sum(offset**2, -1)[..., None, None] * np.eye(3)
+    return np.asarray(mass)[..., None, None] * (squared - offset[..., :, None] * offset[..., None, :])

@@ -1,0 +1,147 @@
+"""Rigid-body dynamics of one robot in Pinocchio, rotor inertia included, and how its states read in MuJoCo.
+
+Pinocchio's own armature is diagonal; coupled motors reflect a full matrix M diag(J) M^T, which is added here. It does not
+depend on posture, because M is that of a printed posture, so it adds no velocity-dependent term.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.robot import description, transmission
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.tree import Tree, build_tree
+
+if TYPE_CHECKING:
+    import pinocchio
+
+    from hyperleg_design.robot.design import Design
+
+
+@dataclass(frozen=True, eq=False)
+class RigidBodyModel:
+    """A floating (or fixed) robot in Pinocchio's coordinates.
+
+    `q` is base position, base quaternion x y z w, then joints left leg first; `v` is base velocity in the base's own
+    frame (linear, angular), then joint velocities. A fixed base has the joints only.
+    """
+
+    design: Design
+    tree: Tree
+    model: pinocchio.Model
+    data: pinocchio.Data
+    floating: bool
+    reflected: np.ndarray
+    """Rotor inertia at the velocities, `(nv, nv)` [kg m^2]."""
+
+    @property
+    def base_dof(self) -> int:
+        """Velocities of the base: 6, or 0 when fixed."""
+        return 6 if self.floating else 0
+
+    def mass_matrix(self, q: np.ndarray) -> np.ndarray:
+        """Joint-space inertia with rotors, `(nv, nv)` (CRBA)."""
+        import pinocchio as pin
+
+        matrix = np.array(pin.crba(self.model, self.data, q))
+        upper = np.triu(matrix)
+        return upper + np.triu(matrix, 1).T + self.reflected
+
+    def inverse_dynamics(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """Generalised forces with rotors, without contacts or friction, `(nv,)` (RNEA)."""
+        import pinocchio as pin
+
+        return np.array(pin.rnea(self.model, self.data, q, v, a)) + self.reflected @ a
+
+    def center_of_mass(self, q: np.ndarray) -> np.ndarray:
+        """In the world [m], `(3,)`."""
+        import pinocchio as pin
+
+        return np.array(pin.centerOfMass(self.model, self.data, q))
+
+    def frame_position(self, q: np.ndarray, link: str) -> np.ndarray:
+        """Origin of a link in the world [m], `(3,)`."""
+        import pinocchio as pin
+
+        pin.framesForwardKinematics(self.model, self.data, q)
+        return np.array(self.data.oMf[self.model.getFrameId(link)].translation)
+
+    def frame_jacobian(self, q: np.ndarray, link: str) -> np.ndarray:
+        """Velocity of a link's origin (linear, then angular, world axes) over `v`, `(6, nv)`."""
+        import pinocchio as pin
+
+        return np.array(pin.computeFrameJacobian(self.model, self.data, q, self.model.getFrameId(link), pin.LOCAL_WORLD_ALIGNED))
+
+    def neutral(self) -> np.ndarray:
+        """Zero posture, base at the height at which straight legs touch the floor."""
+        import pinocchio as pin
+
+        from hyperleg_design.robot.consistency import leg_length
+
+        q = np.array(pin.neutral(self.model))
+        if self.floating:
+            q[2] = leg_length(self.design)
+        return q
+
+    def to_mujoco(self, q: np.ndarray, v: np.ndarray | None = None, a: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
+        """The same state in MuJoCo's coordinates: quaternion w first, linear velocity and acceleration of the base in the world."""
+        state = [q.copy()]
+        if self.floating:
+            state[0][3:7] = q[[6, 3, 4, 5]]
+        rotation = quaternion_matrix(q[3:7]) if self.floating else np.eye(3)
+        if v is not None:
+            state.append(v.copy())
+            if self.floating:
+                state[-1][:3] = rotation @ v[:3]
+        if a is not None:
+            assert v is not None
+            state.append(a.copy())
+            if self.floating:
+                state[-1][:3] = rotation @ (a[:3] + np.cross(v[3:6], v[:3]))
+        return tuple(state)
+
+
+def quaternion_matrix(xyzw: np.ndarray) -> np.ndarray:
+    """Rotation matrix of a unit quaternion x y z w, `(3, 3)`."""
+    x, y, z, w = xyzw
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def leg_reflected_inertia(design: Design, posture: str | None = None) -> np.ndarray:
+    """M diag(J) M^T of one leg, `(..., joints, joints)` [kg m^2]."""
+    rotors = motor_arrays(design).rotor_inertia[..., : len(transmission.motor_names(design))]
+    return transmission.reflected_inertia(transmission.joint_from_motor(design, posture), rotors)
+
+
+def rigid_body_model(design: Design, *, floating: bool = True) -> RigidBodyModel:
+    """Pinocchio model of one robot.
+
+    Raises:
+        InputError: a batch of designs.
+    """
+    import pinocchio as pin
+
+    tree = build_tree(design)
+    text = description.urdf(design, tree)
+    model: Any = pin.buildModelFromXML(text, pin.JointModelFreeFlyer()) if floating else pin.buildModelFromXML(text)
+    names = [j.name for j in tree.moving]
+    own = list(model.names)[2:] if floating else list(model.names)[1:]
+    if own != names:
+        raise RuntimeError(f"joint order of Pinocchio, {own}, is not the tree's, {names}")
+    base = 6 if floating else 0
+    reflected = np.zeros((model.nv, model.nv))
+    block = leg_reflected_inertia(design)
+    count = block.shape[0]
+    for leg in range(2):
+        place = slice(base + leg * count, base + (leg + 1) * count)
+        reflected[place, place] = block
+    return RigidBodyModel(design, tree, model, model.createData(), floating, reflected)

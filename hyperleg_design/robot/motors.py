@@ -1,0 +1,322 @@
+"""The motor catalogue: constants as published, with convention, source and confidence; the rest is computed.
+
+Power constant: Joule heat over squared torque, `Cp = f R / Kt^2` with R line to line and f by the current that Kt divides
+by: 1 for direct current through two phases, 3/4 for the amplitude of a sinusoidal phase current, 3/2 for its rms.
+Stall torque: the DC-motor line `tau = tau_stall (1 - omega / omega_0)`, with `tau_stall = omega_0 / Cp`, because
+`V = R i + Ke omega` and `Ke = Kt` give `R V / (R Ke) = omega_0 Kt^2 / R`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, MOTORS
+from hyperleg_design.robot.parameters import LABELS, Rule
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+CONFIDENCES = ("high", "medium", "low")
+RPM = 2 * math.pi / 60
+
+_RULES = {
+    "nominal_voltage": Rule("number", "V", 1, 1000),
+    "no_load_speed_rpm": Rule("number", "rpm", 10, 100_000),
+    "peak_torque": Rule("number", "Nm", 1e-3, 200),
+    "rated_torque": Rule("number", "Nm", 1e-3, 100),
+    "torque_constant": Rule("number", "Nm/A", 1e-4, 10),
+    "resistance": Rule("number", "ohm", 1e-4, 100),
+    "rotor_inertia_g_cm2": Rule("number", "g cm^2", 0.1, 1e6),
+    "mass_g": Rule("number", "g", 1, 20_000),
+    "pole_pairs": Rule("number", "", 1, 100),
+}
+_OPTIONAL = {
+    "back_emf_V_krpm": Rule("number", "V/krpm", 1e-3, 1000),
+    "inductance_uH": Rule("number", "uH", 0.1, 1e6),
+    "peak_current": Rule("number", "A", 0.1, 2000),
+    "max_winding_temperature_degC": Rule("number", "degC", 40, 300),
+    "thermal_resistance": Rule("number", "K/W", 1e-3, 100),
+}
+_PRESET = {
+    "no_load_speed": Rule("number", "rad/s", 1, 10_000),
+    "peak_torque": Rule("number", "Nm", 1e-3, 200),
+    "power_constant": Rule("number", "W/Nm^2", 1e-4, 1e5),
+}
+_HEAT_FACTOR = {"dc": 1.0, "phase_peak": 0.75, "phase_rms": 1.5}
+
+
+@dataclass(frozen=True)
+class Constant:
+    """One published or estimated number."""
+
+    value: float
+    """In the unit that its field name states."""
+    label: str
+    """One of `parameters.LABELS`."""
+    source: str
+    """Document, page or reason."""
+    confidence: str
+    """`high`, `medium` or `low`."""
+
+
+@dataclass(frozen=True)
+class Motor:
+    """One motor, without a gear."""
+
+    name: str
+    vendor: str
+    product: str
+    kind: str
+    """`inrunner`, `outrunner` or `flat`."""
+    description: str
+    constants: Mapping[str, Constant]
+    """Published numbers by field name."""
+    resistance_convention: str
+    """`line_line` or `phase`."""
+    current_convention: str
+    """Current that the torque constant divides by: `dc`, `phase_peak` or `phase_rms`."""
+    presets: Mapping[str, Mapping[str, Constant]] = field(default_factory=dict)
+    """Named other sets of no-load speed, peak torque and power constant."""
+
+    def _value(self, name: str) -> float:
+        return self.constants[name].value
+
+    @property
+    def mass(self) -> float:
+        """[kg]"""
+        return self._value("mass_g") * 1e-3
+
+    @property
+    def rotor_inertia(self) -> float:
+        """[kg m^2]"""
+        return self._value("rotor_inertia_g_cm2") * 1e-7
+
+    @property
+    def rated_torque(self) -> float:
+        """Continuous torque [Nm]."""
+        return self._value("rated_torque")
+
+    @property
+    def torque_constant(self) -> float:
+        """As published, see `current_convention` [Nm/A]."""
+        return self._value("torque_constant")
+
+    @property
+    def nominal_voltage(self) -> float:
+        """[V]"""
+        return self._value("nominal_voltage")
+
+    @property
+    def line_resistance(self) -> float:
+        """Line to line [ohm]."""
+        return self._value("resistance") * (2.0 if self.resistance_convention == "phase" else 1.0)
+
+    def power_constant(self, constants: str = "paper") -> float:
+        """Joule heat over squared torque, Cp [W/Nm^2]; a preset's value where the motor has that preset."""
+        preset = self.presets.get(constants)
+        if preset is not None:
+            return preset["power_constant"].value
+        return _HEAT_FACTOR[self.current_convention] * self.line_resistance / self.torque_constant**2
+
+    def no_load_speed(self, constants: str = "paper") -> float:
+        """At nominal voltage [rad/s]."""
+        preset = self.presets.get(constants)
+        return preset["no_load_speed"].value if preset is not None else self._value("no_load_speed_rpm") * RPM
+
+    def peak_torque(self, constants: str = "paper") -> float:
+        """[Nm]"""
+        preset = self.presets.get(constants)
+        return preset["peak_torque"].value if preset is not None else self._value("peak_torque")
+
+    def stall_torque(self, constants: str = "paper") -> float:
+        """Where the DC-motor line meets zero speed, omega_0 / Cp [Nm]."""
+        return self.no_load_speed(constants) / self.power_constant(constants)
+
+    def corner_speed(self, constants: str = "paper") -> float:
+        """Speed up to which the peak torque is there [rad/s]; 0 where the line never reaches it."""
+        return max(0.0, self.no_load_speed(constants) * (1 - self.peak_torque(constants) / self.stall_torque(constants)))
+
+    def motor_constant(self, constants: str = "paper") -> float:
+        """Torque over the root of the heat, Km = Cp^-1/2 [Nm/W^1/2]."""
+        return self.power_constant(constants) ** -0.5
+
+    def rated_heat(self, constants: str = "paper") -> float:
+        """Joule heat that the motor carries for ever, Cp tau_rated^2 [W]."""
+        return self.power_constant(constants) * self.rated_torque**2
+
+    def peak_duty(self) -> float:
+        """Fraction of the time that peak torque may last on average, (rated / peak)^2 [-]."""
+        return min(1.0, (self.rated_torque / self._value("peak_torque")) ** 2)
+
+    def peak_power(self, constants: str = "paper") -> float:
+        """Largest mechanical power inside the envelope [W]."""
+        speed = max(self.corner_speed(constants), self.no_load_speed(constants) / 2)
+        return speed * min(self.peak_torque(constants), self.stall_torque(constants) * (1 - speed / self.no_load_speed(constants)))
+
+
+@dataclass(frozen=True, eq=False)
+class MotorArrays:
+    """Constants of the seven motors of one leg, batched; every array is `(..., 7)` in the order of `MOTORS`."""
+
+    no_load_speed: np.ndarray
+    """At the design's bus voltage [rad/s]."""
+    stall_torque: np.ndarray
+    """At the design's bus voltage [Nm]."""
+    peak_torque: np.ndarray
+    """[Nm]"""
+    rated_torque: np.ndarray
+    """[Nm]"""
+    power_constant: np.ndarray
+    """[W/Nm^2]"""
+    rotor_inertia: np.ndarray
+    """[kg m^2]"""
+    mass: np.ndarray
+    """[kg]"""
+
+
+def load_motor(path: Path) -> Motor:
+    """Read one catalogue file.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    data = read_yaml(path)
+    where = short_name(path)
+    known = {"name", "vendor", "product", "kind", "description", "constants", "convention", "presets"}
+    for key in data:
+        if key not in known:
+            raise InputError(where, str(key), data[key], parameters.unknown(str(key), sorted(known)))
+    for key in ("name", "vendor", "product", "kind", "constants", "convention"):
+        if key not in data:
+            raise InputError(where, key, None, "is missing")
+    if data["name"] != path.stem:
+        raise InputError(where, "name", data["name"], f"must equal the file's name, {path.stem}")
+    convention = data["convention"] if isinstance(data["convention"], dict) else {}
+    _one_of(convention.get("resistance"), ("line_line", "phase"), where, "convention.resistance")
+    _one_of(convention.get("current"), tuple(_HEAT_FACTOR), where, "convention.current")
+    _one_of(data["kind"], ("inrunner", "outrunner", "flat"), where, "kind")
+    presets = {}
+    for name, preset in (data.get("presets") or {}).items():
+        presets[str(name)] = _constants(preset, _PRESET, {}, where, f"presets.{name}")
+    motor = Motor(
+        name=str(data["name"]),
+        vendor=str(data["vendor"]),
+        product=str(data["product"]),
+        kind=str(data["kind"]),
+        description=str(data.get("description", "")),
+        constants=_constants(data["constants"], _RULES, _OPTIONAL, where, "constants"),
+        resistance_convention=convention["resistance"],
+        current_convention=convention["current"],
+        presets=presets,
+    )
+    if motor.rated_torque > motor._value("peak_torque"):
+        raise InputError(where, "constants.rated_torque", motor.rated_torque, "must not exceed peak_torque")
+    return motor
+
+
+def _one_of(value: Any, choices: tuple[str, ...], where: str, field: str) -> None:
+    if value not in choices:
+        raise InputError(where, field, value, f"expects one of {', '.join(choices)}")
+
+
+def _constants(data: Any, required: Mapping[str, Rule], optional: Mapping[str, Rule], where: str, path: str) -> dict[str, Constant]:
+    if not isinstance(data, Mapping):
+        raise InputError(where, path, data, f"expects a mapping with {', '.join(required)}")
+    rules = {**required, **optional}
+    for key in data:
+        if key not in rules:
+            raise InputError(where, f"{path}.{key}", data[key], parameters.unknown(str(key), sorted(rules)))
+    found = {}
+    for key, rule in rules.items():
+        if key not in data:
+            if key in required:
+                raise InputError(where, f"{path}.{key}", None, f"is missing [{rule.unit}]")
+            continue
+        entry = data[key]
+        if not isinstance(entry, Mapping) or "value" not in entry:
+            raise InputError(where, f"{path}.{key}", entry, "expects value, label, source and confidence")
+        _one_of(entry.get("label"), LABELS, where, f"{path}.{key}.label")
+        _one_of(entry.get("confidence"), CONFIDENCES, where, f"{path}.{key}.confidence")
+        value = parameters.checked(entry["value"], rule, where, f"{path}.{key}")
+        found[key] = Constant(value, entry["label"], str(entry.get("source", "")), entry["confidence"])
+    return found
+
+
+@cache
+def _catalogue_at(folder: Path) -> dict[str, Motor]:
+    return {path.stem: load_motor(path) for path in sorted(folder.glob("*.yaml"))}
+
+
+def catalogue() -> dict[str, Motor]:
+    """All motors of the catalogue by name."""
+    return _catalogue_at(resources.content_folder("motors"))
+
+
+def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
+    """A motor by name.
+
+    Raises:
+        InputError: there is none; names the nearest.
+    """
+    motors = catalogue()
+    if name not in motors:
+        raise InputError(where, field, name, parameters.unknown(name, sorted(motors)).replace("such field", "such motor"))
+    return motors[name]
+
+
+def check_names(design: Design, where: str) -> None:
+    """Whether all motors that a design names are in the catalogue.
+
+    Raises:
+        InputError: one is not.
+    """
+    for actuator in dict.fromkeys(ACTUATOR_OF_MOTOR):
+        for name in np.unique(getattr(design.actuators, actuator).motor):
+            find_motor(str(name), where, f"actuators.{actuator}.motor")
+    for part in ("hip", "knee", "ankle", "toe"):
+        find_motor(str(getattr(design.reference, f"{part}_motor")), where, f"reference.{part}_motor")
+
+
+def gather(names: Any, value: Any) -> np.ndarray:
+    """`value(motor)` for one name or an array of names, in the array's shape."""
+    if isinstance(names, str):
+        return np.asarray(value(find_motor(names)), float)
+    unique, inverse = np.unique(np.asarray(names), return_inverse=True)
+    return np.array([value(find_motor(str(n))) for n in unique], float)[inverse].reshape(np.shape(names))
+
+
+def motor_arrays(design: Design) -> MotorArrays:
+    """Constants of the seven motors of one leg of a design or batch, each `(..., 7)`."""
+    kind = design.electrical.constants
+    if isinstance(kind, np.ndarray):
+        raise InputError(design.name, "electrical.constants", kind.tolist(), "cannot differ within a batch")
+    batch = design.batch_shape
+    motors_of = [getattr(design.actuators, a).motor for a in ACTUATOR_OF_MOTOR]
+    voltage = np.broadcast_to(np.asarray(design.electrical.voltage_ratio, float), batch)[..., None]
+
+    def stacked(value: Any) -> np.ndarray:
+        return np.stack([np.broadcast_to(gather(n, value), batch) for n in motors_of], -1)
+
+    return MotorArrays(
+        no_load_speed=stacked(lambda m: m.no_load_speed(kind)) * voltage,
+        stall_torque=stacked(lambda m: m.stall_torque(kind)) * voltage,
+        peak_torque=stacked(lambda m: m.peak_torque(kind)),
+        rated_torque=stacked(lambda m: m.rated_torque),
+        power_constant=stacked(lambda m: m.power_constant(kind)),
+        rotor_inertia=stacked(lambda m: m.rotor_inertia),
+        mass=stacked(lambda m: m.mass),
+    )
+
+
+__all__ = ["MOTORS", "Constant", "Motor", "MotorArrays", "catalogue", "find_motor", "gather", "load_motor", "motor_arrays"]

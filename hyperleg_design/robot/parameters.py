@@ -1,0 +1,274 @@
+"""Typed parameters: from YAML to frozen, validated dataclasses, with units, bounds and the origin of each value.
+
+A leaf stands in a file as a plain value, or as a mapping `{value, label, source}` where the label says how far to trust
+it: `paper` (printed there), `vendor` (a data sheet), `derived` (follows from those), `assumed` (an engineer's choice).
+A leaf holds one value, or, in a batch of designs, an array of them with the batch in front: `(n,)`, `(n, 3)`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import math
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+
+LABELS = ("paper", "vendor", "derived", "assumed", "user")
+"""Origins of a value; `user` marks one that a user set."""
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a value comes from."""
+
+    label: str
+    """One of `LABELS`."""
+    source: str = ""
+    """Table, page or reason."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a leaf may hold."""
+
+    kind: str
+    """`number`, `text` or `flag`."""
+    unit: str = ""
+    """SI unit, or the unit that the field's name ends in."""
+    low: float = -math.inf
+    """Smallest value that makes sense; outside it the value is taken for a mistake of unit or sign."""
+    high: float = math.inf
+    """Largest value that makes sense."""
+    size: int = 0
+    """Length of a vector; 0 for a scalar."""
+    choices: tuple[str, ...] = ()
+    """Allowed texts; empty for any."""
+
+
+def number(unit: str, low: float = -math.inf, high: float = math.inf, *, size: int = 0, default: Any = dataclasses.MISSING) -> Any:
+    """A dataclass field for a number, or a vector of `size` numbers, inside `[low, high]`."""
+    return _field(Rule("number", unit, low, high, size), default)
+
+
+def text(*choices: str, default: Any = dataclasses.MISSING) -> Any:
+    """A dataclass field for a text, one of `choices` where given."""
+    return _field(Rule("text", choices=choices), default)
+
+
+def flag(default: Any = dataclasses.MISSING) -> Any:
+    """A dataclass field for true or false."""
+    return _field(Rule("flag"), default)
+
+
+def _field(rule: Rule, default: Any) -> Any:
+    metadata = {"rule": rule}
+    if default is dataclasses.MISSING:
+        return dataclasses.field(metadata=metadata)
+    if isinstance(default, tuple):
+        default = np.asarray(default, float)
+        return dataclasses.field(default_factory=lambda: default, metadata=metadata)
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+def rule_of(field: dataclasses.Field[Any]) -> Rule:
+    """Rule of a leaf made by `number`, `text` or `flag`."""
+    rule: Rule = field.metadata["rule"]
+    return rule
+
+
+def is_leaf(field: dataclasses.Field[Any]) -> bool:
+    """Whether a dataclass field is a leaf (a section otherwise)."""
+    return "rule" in field.metadata
+
+
+def section_types(cls: type) -> dict[str, type]:
+    """Dataclass of each section field of a dataclass."""
+    hints = typing.get_type_hints(cls)
+    return {f.name: hints[f.name] for f in dataclasses.fields(cls) if dataclasses.is_dataclass(hints[f.name])}
+
+
+def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
+    """A value brought into the form of its rule.
+
+    Returns:
+        A float, text or bool; a read-only array for vectors and batches.
+
+    Raises:
+        InputError: wrong type, shape, unit (by magnitude), sign, or not finite.
+    """
+    if rule.kind == "flag":
+        if isinstance(value, bool | np.bool_):
+            return bool(value)
+        raise InputError(where, path, value, "expects true or false")
+    if rule.kind == "text":
+        if isinstance(value, np.ndarray) and value.dtype.kind in "US":
+            bad = [v for v in np.unique(value) if rule.choices and v not in rule.choices]
+            if not bad:
+                return value
+            value = bad[0]
+        elif isinstance(value, str) and (not rule.choices or value in rule.choices):
+            return value
+        raise InputError(where, path, value, f"expects {'one of ' + ', '.join(rule.choices) if rule.choices else 'a text'}")
+    return _checked_number(value, rule, where, path)
+
+
+def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
+    unit = f" in {rule.unit}" if rule.unit else ""
+    what = f"a vector of {rule.size} numbers{unit}" if rule.size else f"a number{unit}"
+    if isinstance(value, str):  # YAML reads 1e-3 as text
+        try:
+            value = float(value)
+        except ValueError:
+            raise InputError(where, path, value, f"expects {what}, without a unit after it") from None
+    try:
+        if isinstance(value, bool) or (isinstance(value, list | tuple) and any(isinstance(v, bool) for v in value)):
+            raise TypeError
+        if isinstance(value, list | tuple):
+            value = [float(v) if isinstance(v, str) else v for v in value]
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(where, path, value, f"expects {what}") from None
+    if (rule.size and (array.ndim == 0 or array.shape[-1] != rule.size)) or array.ndim > (2 if rule.size else 1):
+        raise InputError(where, path, value, f"expects {what}")
+    if not rule.size and isinstance(value, list | tuple):
+        raise InputError(where, path, value, f"expects {what}")
+    if not np.all(np.isfinite(array)):
+        raise InputError(where, path, value, f"expects {what}, finite")
+    outside = (array < rule.low) | (array > rule.high)
+    if np.any(outside):
+        worst = float(array[outside].flat[0]) if array.ndim else float(array)
+        raise InputError(where, path, worst, f"expects {what} within {rule.low:g} .. {rule.high:g}; check unit and sign")
+    if array.ndim == 0:
+        return float(array)
+    array.setflags(write=False)
+    return array
+
+
+def check_all(instance: Any, where: str, path: str = "") -> None:
+    """Check and normalise every leaf of a dataclass in place; meant for `__post_init__`."""
+    for field in dataclasses.fields(instance):
+        if is_leaf(field):
+            name = f"{path}.{field.name}" if path else field.name
+            object.__setattr__(instance, field.name, checked(getattr(instance, field.name), rule_of(field), where, name))
+
+
+def from_mapping(cls: type[T], data: Any, where: str, path: str = "", origins: dict[str, Origin] | None = None) -> T:
+    """Build a dataclass of leaves and sections from nested mappings.
+
+    Args:
+        cls: the dataclass.
+        data: mapping as YAML gives it.
+        where: file or option, for messages.
+        path: dotted path of `data` in that file.
+        origins: filled with the origin of each leaf, by dotted path.
+
+    Raises:
+        InputError: unknown or missing field, or a leaf that breaks its rule.
+    """
+    if not isinstance(data, Mapping):
+        raise InputError(where, path, data, f"expects a mapping with {', '.join(f.name for f in dataclasses.fields(cls))}")  # type: ignore[arg-type]
+    fields = {f.name: f for f in dataclasses.fields(cls)}  # type: ignore[arg-type]
+    sections = section_types(cls)
+    known = {n for n, f in fields.items() if n in sections or is_leaf(f)}
+    dot = f"{path}." if path else ""
+    for name in data:
+        if name not in known:
+            raise InputError(where, f"{dot}{name}", data[name], unknown(str(name), sorted(known)))
+    values: dict[str, Any] = {}
+    for name, field in fields.items():
+        if name not in known:
+            continue
+        if name in sections:
+            if name in data:
+                values[name] = from_mapping(sections[name], data[name], where, dot + name, origins)
+            elif field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
+                raise InputError(where, dot + name, None, "is missing")
+            continue
+        if name not in data:
+            if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
+                unit = f" [{rule_of(field).unit}]" if rule_of(field).unit else ""
+                raise InputError(where, dot + name, None, f"is missing{unit}")
+            continue
+        value, origin = labelled(data[name], where, dot + name)
+        values[name] = checked(value, rule_of(field), where, dot + name)
+        if origins is not None:
+            origins[dot + name] = origin
+    return cls(**values)
+
+
+def labelled(data: Any, where: str, path: str) -> tuple[Any, Origin]:
+    """Value and origin of a leaf, plain or `{value, label, source}`."""
+    if not isinstance(data, Mapping):
+        return data, Origin("user")
+    extra = [k for k in data if k not in ("value", "label", "source", "confidence")]
+    if extra or "value" not in data:
+        raise InputError(where, path, dict(data), "expects a value, or a mapping with value, label, source")
+    label = data.get("label", "user")
+    if label not in LABELS:
+        raise InputError(where, f"{path}.label", label, f"expects one of {', '.join(LABELS)}")
+    return data["value"], Origin(label, str(data.get("source", "")))
+
+
+def unknown(name: str, known: list[str]) -> str:
+    """Remedy for a name that does not exist: the nearest one, or all."""
+    near = difflib.get_close_matches(name, known, n=1)
+    return f"no such field; did you mean {near[0]}?" if near else f"no such field; there are {', '.join(known)}"
+
+
+def leaves(instance: Any, path: str = "") -> dict[str, Any]:
+    """All leaves of a dataclass by dotted path, in order of declaration."""
+    found: dict[str, Any] = {}
+    for field in dataclasses.fields(instance):
+        name = f"{path}.{field.name}" if path else field.name
+        value = getattr(instance, field.name)
+        if is_leaf(field):
+            found[name] = value
+        elif dataclasses.is_dataclass(value):
+            found.update(leaves(value, name))
+    return found
+
+
+def rules(cls: type, path: str = "") -> dict[str, Rule]:
+    """Rules of all leaves of a dataclass by dotted path."""
+    found: dict[str, Rule] = {}
+    sections = section_types(cls)
+    for field in dataclasses.fields(cls):
+        name = f"{path}.{field.name}" if path else field.name
+        if field.name in sections:
+            found.update(rules(sections[field.name], name))
+        elif is_leaf(field):
+            found[name] = rule_of(field)
+    return found
+
+
+def with_values(instance: T, values: Mapping[str, Any], where: str, prefix: str = "") -> T:
+    """A copy with leaves replaced by dotted path; values may be batches.
+
+    Raises:
+        InputError: a path that names no leaf, or a value that breaks its rule.
+    """
+    own: dict[str, Any] = {}
+    inner: dict[str, dict[str, Any]] = {}
+    sections = section_types(type(instance))
+    fields = {f.name: f for f in dataclasses.fields(instance)}  # type: ignore[arg-type]
+    for path, value in values.items():
+        head, _, rest = path.partition(".")
+        if head in sections and rest:
+            inner.setdefault(head, {})[rest] = value
+        elif head in fields and not rest and is_leaf(fields[head]):
+            own[head] = checked(value, rule_of(fields[head]), where, prefix + head)
+        elif head in sections:
+            raise InputError(where, prefix + path, value, f"is a section; name one of {', '.join(rules(sections[head], prefix + head))}")
+        else:
+            raise InputError(where, prefix + path, value, unknown(prefix + path, sorted(rules(type(instance), prefix[:-1]))))
+    for head, part in inner.items():
+        own[head] = with_values(getattr(instance, head), part, where, f"{prefix}{head}.")
+    return dataclasses.replace(instance, **own)  # type: ignore[type-var]

@@ -1,0 +1,147 @@
+"""Cooperative actuation: how the motors of a leg share its joints.
+
+`joint_from_motor` M has a row a joint and a column a motor, in the order of `names`. Then
+
+    joint_torque = M motor_torque          motor_velocity = M^T joint_velocity
+
+so power is the same on both sides, and rotors of inertia J appear at the joints as `M diag(J) M^T`. The paper's J_m is
+M^-T, and its Eq. (3) prints M where it means the inverse. Any leading batch dimensions pass through.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+HIP = slice(0, 3)
+KNEE, ANKLE_PITCH, ANKLE_ROLL, TOE = 3, 4, 5, 6
+"""Rows of M below the hip."""
+M_KNEE, M_ANKLE_LEFT, M_ANKLE_RIGHT, M_TOE = 3, 4, 5, 6
+"""Columns of M below the hip."""
+
+
+def gear_ratios(design: Design) -> np.ndarray:
+    """Gears over those of the reference build, below the hip; the gears themselves at the hip [-], `(..., 7)`."""
+    reference = {"knee": "knee_gear", "ankle": "ankle_gear", "toe": "toe_gear"}
+    parts = []
+    for name in ACTUATOR_OF_MOTOR:
+        gear = getattr(design.actuators, name).gear
+        parts.append(gear / getattr(design.reference, reference[name]) if name in reference else gear)
+    return np.stack(np.broadcast_arrays(*parts), -1).astype(float)
+
+
+def full_joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
+    """M of the leg with all joints and motors, `(..., 7, 7)` [-].
+
+    Args:
+        design: a robot or batch.
+        posture: `walking` or `standing`; the design's own by default.
+    """
+    posture = posture or str(np.unique(design.transmission.posture)[0])
+    printed, scale = getattr(design.transmission, posture), design.transmission.scale
+    entries = {
+        (KNEE, M_KNEE): -printed.knee * scale.knee,
+        (KNEE, M_ANKLE_LEFT): -printed.knee * scale.knee,
+        (KNEE, M_ANKLE_RIGHT): -printed.knee * scale.knee,
+        (KNEE, M_TOE): -printed.knee * scale.knee,
+        (ANKLE_PITCH, M_ANKLE_LEFT): printed.ankle_pitch * scale.ankle_pitch,
+        (ANKLE_PITCH, M_ANKLE_RIGHT): printed.ankle_pitch * scale.ankle_pitch,
+        (ANKLE_PITCH, M_TOE): printed.toe_ankle_pitch * scale.toe_ankle_pitch,
+        (ANKLE_ROLL, M_ANKLE_LEFT): printed.ankle_roll * scale.ankle_roll,
+        (ANKLE_ROLL, M_ANKLE_RIGHT): -printed.ankle_roll * scale.ankle_roll,
+        (TOE, M_TOE): printed.toe * scale.toe,
+    }
+    gears = gear_ratios(design)
+    batch = np.broadcast_shapes(gears.shape[:-1], *(np.shape(v) for v in entries.values()))
+    matrix = np.zeros((*batch, 7, 7))
+    matrix[..., range(3), range(3)] = 1.0
+    for (row, column), value in entries.items():
+        matrix[..., row, column] = value
+    return matrix * gears[..., None, :]
+
+
+def joint_names(design: Design) -> tuple[str, ...]:
+    """Joints that move: all of `JOINTS`, or without the toe where that is locked."""
+    return JOINTS if design.toe.joint == "active" else JOINTS[:-1]
+
+
+def motor_names(design: Design) -> tuple[str, ...]:
+    """Motors that are there: all of `MOTORS`, or without the toe's where that is not installed."""
+    return MOTORS if design.actuators.toe_installed else MOTORS[:-1]
+
+
+def joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
+    """M over the joints that move and the motors that are there, `(..., joints, motors)` [-].
+
+    A locked toe whose motor stays gives a 6 x 7 matrix: that motor still helps knee and ankle.
+    """
+    return full_joint_from_motor(design, posture)[..., : len(joint_names(design)), : len(motor_names(design))]
+
+
+def joint_torque(matrix: np.ndarray, motor_torque: np.ndarray) -> np.ndarray:
+    """M tau_motor, `(..., motors)` -> `(..., joints)` [Nm]."""
+    return np.einsum("...jm,...m->...j", matrix, motor_torque)
+
+
+def motor_velocity(matrix: np.ndarray, joint_velocity: np.ndarray) -> np.ndarray:
+    """M^T q_dot, `(..., joints)` -> `(..., motors)` [rad/s]."""
+    return np.einsum("...jm,...j->...m", matrix, joint_velocity)
+
+
+def motor_torque(matrix: np.ndarray, torque: np.ndarray, power_constant: np.ndarray | None = None) -> np.ndarray:
+    """Motor torques that give the joint torques, `(..., joints)` -> `(..., motors)` [Nm].
+
+    Where motors outnumber joints, those of least Joule heat, given `power_constant` [W/Nm^2] `(..., motors)` (equal ones
+    by default): tau = C^-1 M^T (M C^-1 M^T)^-1 tau_joint.
+    """
+    if matrix.shape[-1] == matrix.shape[-2]:
+        return np.linalg.solve(matrix, torque[..., None])[..., 0]
+    ease = 1.0 / (np.ones(matrix.shape[-1]) if power_constant is None else np.asarray(power_constant))
+    weighted = matrix * ease[..., None, :]
+    return np.einsum("...jm,...j->...m", weighted, np.linalg.solve(weighted @ np.swapaxes(matrix, -1, -2), torque[..., None])[..., 0])
+
+
+def reflected_inertia(matrix: np.ndarray, rotor_inertia: np.ndarray) -> np.ndarray:
+    """M diag(J) M^T, `(..., joints, joints)` [kg m^2], from rotor inertias `(..., motors)`."""
+    return (matrix * np.asarray(rotor_inertia)[..., None, :]) @ np.swapaxes(matrix, -1, -2)
+
+
+def derate(design: Design) -> np.ndarray:
+    """Fraction of the summed peak torque counted on at each joint that moves, `(..., joints)` [-]."""
+    of_joint = {"ankle_pitch": "ankle", "ankle_roll": "ankle"}
+    parts = [getattr(design.actuators, of_joint.get(j, j)).derate for j in joint_names(design)]
+    return np.stack(np.broadcast_arrays(*parts), -1).astype(float)
+
+
+def max_joint_torque(design: Design, posture: str = "standing") -> np.ndarray:
+    """Largest torque of each joint alone, derated as in Table I, `(..., joints)` [Nm]: derate * sum |M| tau_peak."""
+    peak = motor_arrays(design).peak_torque[..., : len(motor_names(design))]
+    return derate(design) * joint_torque(np.abs(joint_from_motor(design, posture)), peak)
+
+
+def single_joint_speed(design: Design, posture: str = "walking") -> np.ndarray:
+    """No-load speed of each joint while the others stand still, `(..., joints)` [rad/s]: min over motors of omega_0 / |M|."""
+    free = motor_arrays(design).no_load_speed[..., : len(motor_names(design))]
+    matrix = np.abs(joint_from_motor(design, posture))
+    with np.errstate(divide="ignore"):
+        return np.min(np.where(matrix > 0, free[..., None, :] / matrix, np.inf), -1)
+
+
+def check_invertible(design: Design, where: str) -> None:
+    """Whether motors reach every joint.
+
+    Raises:
+        InputError: M is singular, or a conditioning no gearbox has.
+    """
+    for posture in ("walking", "standing"):
+        condition: Any = np.linalg.cond(joint_from_motor(design, posture))
+        if np.any(~(condition < 1e6)):
+            raise InputError(where, f"transmission.{posture}", None, "makes joint_from_motor singular: some joint is driven by no motor")

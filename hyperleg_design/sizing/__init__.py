@@ -1,0 +1,1 @@
+"""What a design can do and what it must: envelopes, energy, capability, demand."""

@@ -1,0 +1,100 @@
+"""Files and folders are written whole or not at all, and never over somebody else's."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hyperleg_design.errors import OutputError
+
+MARKER = ".hyperleg"
+"""File that says a folder was made by this package and may be replaced by it."""
+
+
+def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
+    """Write a file atomically: a temporary file beside it, flushed, then renamed over it.
+
+    Raises:
+        OutputError: the disk is full or the place cannot be written; the old file, if any, is untouched.
+    """
+    path = Path(path)
+    temporary: Path | None = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        temporary = Path(name)
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.chmod(0o644)
+        temporary.replace(path)
+    except OSError as error:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+        raise OutputError(f"{path}: cannot be written ({error.strerror}); free some space or choose another folder") from error
+    return path
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> Path:
+    """`write_bytes` of UTF-8 text."""
+    return write_bytes(path, text.encode())
+
+
+def write_json(path: str | os.PathLike[str], content: object) -> Path:
+    """`write_text` of indented JSON; non-finite numbers are refused."""
+    return write_text(path, json.dumps(content, indent=2, allow_nan=False) + "\n")
+
+
+def check_output_folder(folder: str | os.PathLike[str]) -> Path:
+    """A folder that may be written: missing, empty, or one of ours (it holds `MARKER`).
+
+    Raises:
+        OutputError: it is a file, or a folder with somebody else's content.
+    """
+    folder = Path(folder)
+    if folder.exists() and not folder.is_dir():
+        raise OutputError(f"{folder}: is a file, not a folder; choose another --out")
+    try:
+        foreign = folder.is_dir() and not (folder / MARKER).exists() and any(folder.iterdir())
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be read ({error.strerror}); choose another --out") from error
+    if foreign:
+        raise OutputError(f"{folder}: holds files that hyperleg did not write; choose an empty or new folder")
+    return folder
+
+
+@contextmanager
+def output_folder(folder: str | os.PathLike[str]) -> Iterator[Path]:
+    """Build a folder aside and put it in place when the block ends well.
+
+    A folder of ours is replaced; on an error nothing changes.
+
+    Raises:
+        OutputError: the target is not ours, or cannot be written.
+    """
+    folder = check_output_folder(folder)
+    temporary: Path | None = None
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+        temporary.chmod(0o755)
+        yield temporary
+        (temporary / MARKER).write_text("made by hyperleg; replaced as a whole when written again\n")
+        if folder.exists():
+            old = Path(tempfile.mkdtemp(prefix=f".{folder.name}.old.", dir=folder.parent))
+            folder.replace(old / "old")
+            temporary.replace(folder)
+            shutil.rmtree(old, ignore_errors=True)
+        else:
+            temporary.replace(folder)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be written ({error.strerror}); free some space or choose another folder") from error
+    finally:
+        if temporary is not None and temporary.exists():
+            shutil.rmtree(temporary, ignore_errors=True)
