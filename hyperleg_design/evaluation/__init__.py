@@ -1,0 +1,1 @@
+"""Tests of a robot and what they are compared with."""

@@ -1,0 +1,54 @@
+"""Where the links of a robot are in a posture; enough for pictures, without a dynamics library."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from hyperleg_design.robot.tree import Tree
+
+Pose = tuple[np.ndarray, np.ndarray]
+"""Rotation `(3, 3)` and position `(3,)` [m] in the pelvis's frame."""
+
+
+def axis_rotation(axis: np.ndarray, angle: float) -> np.ndarray:
+    """Rotation by an angle [rad] about a unit axis, `(3, 3)` (Rodrigues)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def link_poses(tree: Tree, angles: Mapping[str, float] | None = None) -> dict[str, Pose]:
+    """Pose of every link in the pelvis's frame.
+
+    Args:
+        tree: the robot.
+        angles: joint angles [rad] by joint name; zero where not named.
+
+    Raises:
+        KeyError: an angle for a joint that the tree does not move.
+    """
+    angles = dict(angles or {})
+    unknown = set(angles) - {j.name for j in tree.moving}
+    if unknown:
+        raise KeyError(f"no moving joint {sorted(unknown)[0]!r}")
+    poses: dict[str, Pose] = {"pelvis": (np.eye(3), np.zeros(3))}
+    for joint in tree.joints:
+        rotation, position = poses[joint.parent]
+        turn = axis_rotation(np.array(joint.axis), angles.get(joint.name, 0.0))
+        poses[joint.child] = (rotation @ turn, position + rotation @ np.array(joint.position))
+    return poses
+
+
+def default_angles(tree: Tree) -> dict[str, float]:
+    """The default posture [rad], by joint name."""
+    return {joint.name: joint.default for joint in tree.moving}
+
+
+def lowest_point(tree: Tree, poses: Mapping[str, Pose]) -> float:
+    """Height of the lowest sole pad in the pelvis's frame [m]."""
+    heights = [
+        float((poses[link.name][0] @ np.array(pad.position) + poses[link.name][1])[2]) - pad.size[0] for link in tree.links for pad in link.pads
+    ]
+    return min(heights)
