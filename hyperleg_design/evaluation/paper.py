@@ -62,7 +62,7 @@ class Inconsistency:
 INCONSISTENCIES = (
     Inconsistency(
         "Eq. (3)",
-        "The matrix stands between motor and joint torques the wrong way round: read as printed, a joint torque of 1 Nm would need a motor torque of 31 Nm.",
+        "The matrix stands the wrong way round: read as printed, a joint torque of 1 Nm would need a motor torque of 31 Nm.",
         "joint_torque = M motor_torque with the printed M; motor_velocity = M^T joint_velocity; the paper's J_m is M^-T.",
     ),
     Inconsistency(
@@ -97,7 +97,8 @@ INCONSISTENCIES = (
     ),
     Inconsistency(
         "Section IV, ablation",
-        "Without the toe's motor the knee loses 212 -> 166 Nm and ankle pitch 111.7 -> 76.3 Nm: the comparison of toe and no toe is also one of strong and weak knees.",
+        "Without the toe's motor the knee falls from 212 to 166 Nm and ankle pitch from 111.7 to 76.3 Nm: "
+        "the comparison of toe and no toe is also one of strong and weak knees.",
         "Four variants: active toe, locked toe with its motor, removed at equal mass, removed with its mass.",
     ),
     Inconsistency(

@@ -176,7 +176,12 @@ def dimensions_scene(design: Design) -> Scene:
     knee, ankle = hip - float(design.thigh.length), float(design.foot.ankle_height)
     near = np.array([0.0, -0.35, 0.0])
     front, back = 0.27, -0.17
-    ticks = [(0.0, ankle, f"ankle {ankle * 1e3:.0f}"), (ankle, knee, f"shank {design.shank.length * 1e3:.0f}"), (knee, hip, f"thigh {design.thigh.length * 1e3:.0f}"), (hip, top, f"pelvis {design.pelvis.height * 1e3:.1f}")]  # fmt: skip
+    ticks = [
+        (0.0, ankle, f"ankle {ankle * 1e3:.0f}"),
+        (ankle, knee, f"shank {design.shank.length * 1e3:.0f}"),
+        (knee, hip, f"thigh {design.thigh.length * 1e3:.0f}"),
+        (hip, top, f"pelvis {design.pelvis.height * 1e3:.1f}"),
+    ]
     lines, labels = [], []
     for low, high, text in ticks:
         lines += _dimension(np.array([front, 0, low]) + near, np.array([front, 0, high]) + near, np.array([0.02, 0, 0]))

@@ -1,0 +1,132 @@
+"""Our numbers beside the paper's, a verdict each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from hyperleg_design.evaluation import paper
+from hyperleg_design.report.text import table
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot.masses import mass_table
+from hyperleg_design.robot.motors import find_motor
+from hyperleg_design.robot.names import JOINTS
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+AGREES = 1e-3
+"""Relative difference up to which a number agrees: what rounding to three or four digits leaves."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number of the paper beside ours."""
+
+    place: str
+    """Table or section."""
+    quantity: str
+    unit: str
+    paper: float
+    ours: float
+    note: str = ""
+    """Why they differ, where they do."""
+
+    @property
+    def difference(self) -> float:
+        """Relative, ours over the paper's minus 1 [-]."""
+        return self.ours / self.paper - 1
+
+    @property
+    def verdict(self) -> str:
+        """`agrees` within rounding, else `differs`."""
+        return "agrees" if abs(self.difference) <= AGREES else "differs"
+
+
+def table_one(design: Design) -> list[Row]:
+    """Table I and Section II.A recomputed from a design with an active toe."""
+    masses = mass_table(design)
+    rows = [
+        Row("Table I", "total mass", "kg", paper.TOTAL_MASS, float(masses.total)),
+        Row("Section II.A", "leg mass", "kg", paper.LEG_MASS, float(masses.leg)),
+        Row("Section II.A", "leg length", "m", paper.LEG_LENGTH, float(leg_length(design))),
+        Row("Section II.A", "height", "m", paper.HEIGHT, float(leg_length(design) + design.pelvis.height)),
+    ]
+    standing = transmission.joint_from_motor(design, "standing")
+    torque = transmission.max_joint_torque(design)
+    speed = transmission.single_joint_speed(design, "standing")
+    for index, joint in enumerate(transmission.joint_names(design)):
+        ratio = float(abs(standing[index]).max()) if joint != "ankle_pitch" else float(standing[index][4])
+        rows.append(Row("Table I", f"{joint} reduction, standing", "", paper.REDUCTION[joint], ratio))
+        rows.append(Row("Table I", f"{joint} torque, derated", "Nm", paper.MAX_JOINT_TORQUE[joint], float(torque[index])))
+    for index, joint in enumerate(JOINTS[: len(speed)]):
+        note = "the paper's is the motor's speed; ours is the joint's, the others standing still"
+        rows.append(Row("Table I", f"{joint} speed", "rad/s", paper.PRINTED_JOINT_SPEED[joint], float(speed[index]), note))
+    return rows
+
+
+def motor_rows(names: tuple[str, ...] = ("U10", "RI70", "RI60")) -> list[Row]:
+    """The paper's power constants beside those that follow from the catalogue's resistance and torque constant."""
+    rows = []
+    for name in names:
+        motor = find_motor(name)
+        note = (
+            "the paper's Kt is near the back-EMF constant, not the vendor's Kt"
+            if name.startswith("RI")
+            else "catalogue R is derived from the paper's Cp"
+        )
+        rows.append(Row("Table I", f"{name} Cp", "W/Nm²", motor.power_constant("paper"), motor.power_constant("vendor"), note))
+        rows.append(
+            Row(
+                "Table I",
+                f"{name} no-load speed",
+                "rad/s",
+                motor.no_load_speed("paper"),
+                motor.no_load_speed("vendor"),
+                "vendor's at nominal voltage",
+            )
+        )
+    return rows
+
+
+def compare(designs: list[Design], *, demand: bool = False) -> dict[str, Any]:
+    """Designs beside each other.
+
+    Args:
+        designs: at least one, each a single robot.
+        demand: add what the planned walk asks of each.
+
+    Returns:
+        By design name: mass, reach and torque measures, SI units.
+    """
+    from hyperleg_design.sizing.analysis import analyze
+    from hyperleg_design.sizing.inertia import leg_inertia_measures
+
+    found: dict[str, Any] = {}
+    for design in designs:
+        whole = analyze(design)
+        kept = ("variant", "total_mass", "leg_mass", "leg_length", "height", "max_joint_torque", "single_joint_speed", "torque_alone")
+        entry = {k: whole[k] for k in (*kept, "zonotope_to_box_volume")}
+        entry |= {k: float(v) for k, v in leg_inertia_measures(design).items()}
+        if demand:
+            entry["walk"] = walk_measures(design)
+        name = design.name if design.name not in found else f"{design.name} ({len(found) + 1})"
+        found[name] = entry
+    return found
+
+
+def compare_text(found: dict[str, Any]) -> str:
+    """The same for a terminal: a row a measure, a column a design."""
+    rows: dict[str, list[object]] = {}
+    for name in found:
+        for key, value in _flat(found[name]).items():
+            rows.setdefault(key, [""] * len(found))[list(found).index(name)] = value
+    return table(["measure", *found], [[key, *values] for key, values in rows.items()])
+
+
+def _flat(entry: dict[str, Any], prefix: str = "") -> dict[str, object]:
+    flat: dict[str, object] = {}
+    for key, value in entry.items():
+        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    return flat

@@ -1,0 +1,102 @@
+"""What is shipped, for people and programs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.report.text import table
+from hyperleg_design.robot import parameters
+from hyperleg_design.robot.ablation import DESCRIPTION
+from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.robot.masses import mass_table
+from hyperleg_design.robot.motors import catalogue
+
+KINDS = ("designs", "variants", "motors", "sweeps", "parameters")
+
+
+def listing(kind: str = "all") -> dict[str, Any]:
+    """Shipped things by kind.
+
+    Raises:
+        InputError: no such kind.
+    """
+    if kind != "all" and kind not in KINDS:
+        raise InputError("list", "", kind, f"expects one of all, {', '.join(KINDS)}")
+    makers = {"designs": _designs, "variants": lambda: DESCRIPTION, "motors": _motors, "sweeps": _sweeps, "parameters": _parameters}
+    chosen = KINDS[:-1] if kind == "all" else (kind,)
+    return {k: makers[k]() for k in chosen}
+
+
+def _designs() -> dict[str, Any]:
+    found = {}
+    for name in resources.names("descriptions"):
+        design = load_design(name)
+        found[name] = {"variant": design.variant, "total_mass": float(mass_table(design).total)}
+    return found
+
+
+def _motors() -> dict[str, Any]:
+    return {
+        m.name: {
+            "vendor": m.vendor,
+            "kind": m.kind,
+            "mass": m.mass,
+            "peak_torque": m.peak_torque("vendor"),
+            "rated_torque": m.rated_torque,
+            "no_load_speed": m.no_load_speed("vendor"),
+            "corner_speed": m.corner_speed("vendor"),
+            "stall_torque": m.stall_torque("vendor"),
+            "power_constant": m.power_constant("vendor"),
+            "motor_constant": m.motor_constant("vendor"),
+            "rated_heat": m.rated_heat("vendor"),
+            "presets": sorted(m.presets),
+            "description": m.description,
+        }
+        for m in catalogue().values()
+    }
+
+
+def _sweeps() -> dict[str, Any]:
+    from hyperleg_design.reading import read_yaml
+
+    return {n: {"description": str(read_yaml(resources.find("sweeps", n)).get("description", ""))} for n in resources.names("sweeps")}
+
+
+def _parameters() -> dict[str, Any]:
+    design = load_design("hyperleg")
+    found = {}
+    for path, rule in parameters.rules(Design).items():
+        value = design[path]
+        origin = design.origins.get(path)
+        found[path] = {
+            "value": value.tolist() if hasattr(value, "tolist") else value,
+            "unit": rule.unit,
+            "low": None if rule.low == float("-inf") else rule.low,
+            "high": None if rule.high == float("inf") else rule.high,
+            "label": origin.label if origin else "",
+        }
+    return found
+
+
+def listing_text(found: dict[str, Any]) -> str:
+    """The same for a terminal."""
+    parts = []
+    for kind, entries in found.items():
+        parts.append(kind)
+        if kind == "motors":
+            columns = ["mass", "peak_torque", "rated_torque", "no_load_speed", "corner_speed", "motor_constant"]
+            heads = ["motor", "vendor", "kind", "kg", "peak Nm", "rated Nm", "no load rad/s", "corner rad/s", "Km Nm/W^.5"]
+            parts.append(table(heads, [[n, e["vendor"], e["kind"], *(e[c] for c in columns)] for n, e in entries.items()]))
+        elif kind == "designs":
+            parts.append(table(["design", "variant", "kg"], [[n, e["variant"], e["total_mass"]] for n, e in entries.items()]))
+        elif kind == "parameters":
+            rows = [
+                [n, str(e["value"]), e["unit"], "" if e["low"] is None else f"{e['low']:g} .. {e['high']:g}", e["label"]] for n, e in entries.items()
+            ]
+            parts.append(table(["parameter", "value", "unit", "range", "label"], rows))
+        else:
+            parts.append(table([kind[:-1], "description"], [[n, e if isinstance(e, str) else e["description"]] for n, e in entries.items()]))
+        parts.append("")
+    return "\n".join(parts).rstrip()

@@ -1,0 +1,101 @@
+"""HTML pages: sections of text, tables and figures, in one self-contained folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table; cells are texts or numbers, a cell may be a `Cell` with a class."""
+
+    headers: Sequence[str]
+    rows: Sequence[Sequence[Any]]
+    caption: str = ""
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A table cell with a mark: `good`, `bad` or `note`."""
+
+    value: Any
+    mark: str = ""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure of the page's folder."""
+
+    file: str
+    """Path relative to the page."""
+    caption: str
+    wide: bool = True
+
+
+@dataclass(frozen=True)
+class Missing:
+    """A figure that could not be made, and why."""
+
+    caption: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Details:
+    """Content that opens on a click."""
+
+    summary: str
+    content: Sequence[Any]
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a page."""
+
+    title: str
+    content: Sequence[Any] = ()
+    """Texts (paragraphs), `Table`, `Picture`, `Missing`, `Details`; a list of pictures stands side by side."""
+    anchor: str = ""
+
+
+@dataclass(frozen=True)
+class Page:
+    """A whole page."""
+
+    title: str
+    lead: str
+    sections: Sequence[Section]
+    facts: Sequence[tuple[str, str]] = ()
+    """Headline numbers: value and what it is."""
+    provenance: dict[str, Any] = field(default_factory=dict)
+
+
+def number(value: Any, digits: int = 4) -> str:
+    """A number with a few significant digits, thin enough to read in a table."""
+    if isinstance(value, bool) or value is None or isinstance(value, str):
+        return {True: "yes", False: "no", None: ""}.get(value, str(value))  # type: ignore[arg-type]
+    if isinstance(value, int):
+        return str(value)
+    if value != value:
+        return "–"
+    if value == 0:
+        return "0"
+    if 1e-3 <= abs(value) < 1e5:
+        text = f"{value:.{digits}g}"
+        return f"{float(text):.10g}" if "e" in text else text
+    return f"{value:.{digits - 1}e}"
+
+
+def render(page: Page) -> str:
+    """The page as HTML."""
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )  # fmt: skip
+    environment.filters["number"] = number
+    environment.tests["kind"] = lambda value, name: type(value).__name__ == name
+    return environment.get_template("page.html").render(page=page)

@@ -1,0 +1,96 @@
+"""The analysis of one design in one object: masses, reductions, torques, speeds, inertia, envelope, confound."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import ablation, transmission
+from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot.masses import mass_table
+from hyperleg_design.robot.models import leg_reflected_inertia
+from hyperleg_design.robot.motors import find_motor
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, POSTURES
+from hyperleg_design.sizing import zonotope
+from hyperleg_design.sizing.envelope import motor_envelope
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+SCHEMA = 1
+"""Version of the object that `analyze` returns."""
+
+BELOW_HIP = slice(3, None)
+"""Joints that share motors: knee, ankle pitch, ankle roll and, where it moves, the toe."""
+
+
+def analyze(design: Design) -> dict[str, Any]:
+    """Analyse one design.
+
+    Returns:
+        Plain numbers, lists and mappings, SI units, ready for JSON: `total_mass`, `leg_mass` [kg], `leg_length`, `height`
+        [m], `segment_mass` [kg], `reduction` by posture (joints x motors), `max_joint_torque` [Nm] by joint (standing,
+        derated, as Table I), `single_joint_speed` [rad/s] (walking), `torque_alone` [Nm] by joint (walking, the others
+        at zero, not derated), `reflected_inertia` [kg m^2] in the design's posture, `zonotope_to_box_volume` of the
+        joints below the hip (walking, zero speed), `motors`, `ablation_confound`.
+
+    Raises:
+        InputError: a batch of designs.
+    """
+    if design.batch_shape:
+        raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
+    table = mass_table(design)
+    joints = transmission.joint_names(design)
+    matrix = {posture: transmission.joint_from_motor(design, posture) for posture in POSTURES}
+    envelope = motor_envelope(design)
+    below = matrix["walking"][BELOW_HIP, BELOW_HIP]
+    peak = envelope.peak_torque[BELOW_HIP]
+    full_peak = envelope.peak_torque
+    alone = [float(zonotope.alone(matrix["walking"], -full_peak, full_peak, i)) for i in range(len(joints))]
+    return {
+        "schema": SCHEMA,
+        "design": design.name,
+        "variant": design.variant,
+        "total_mass": float(table.total),
+        "leg_mass": float(table.leg),
+        "leg_length": float(leg_length(design)),
+        "height": float(leg_length(design) + design.pelvis.height),
+        "segment_mass": {s: float(getattr(table, s)) for s in ("pelvis", "thigh", "shank", "foot", "toe")},
+        "joints": list(joints),
+        "motors": _motors(design),
+        "posture": str(design.transmission.posture),
+        "reduction": {posture: m.tolist() for posture, m in matrix.items()},
+        "max_joint_torque": _named(joints, transmission.max_joint_torque(design)),
+        "single_joint_speed": _named(joints, transmission.single_joint_speed(design)),
+        "torque_alone": _named(joints, np.array(alone)),
+        "reflected_inertia": leg_reflected_inertia(design).tolist(),
+        "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(below, -peak, peak)),
+        "ablation_confound": ablation.confound(design) if design.variant == "toe" else None,
+    }
+
+
+def _named(joints: tuple[str, ...], values: np.ndarray) -> dict[str, float]:
+    return dict(zip(joints, values.tolist(), strict=True))
+
+
+def _motors(design: Design) -> dict[str, Any]:
+    kind = str(design.electrical.constants)
+    found = {}
+    for name, actuator in zip(transmission.motor_names(design), ACTUATOR_OF_MOTOR, strict=False):
+        motor = find_motor(str(getattr(design.actuators, actuator).motor))
+        found[name] = {
+            "motor": motor.name,
+            "gear": float(getattr(design.actuators, actuator).gear),
+            "no_load_speed": motor.no_load_speed(kind) * design.electrical.voltage_ratio,
+            "peak_torque": motor.peak_torque(kind),
+            "rated_torque": motor.rated_torque,
+            "stall_torque": motor.stall_torque(kind) * design.electrical.voltage_ratio,
+            "corner_speed": motor.corner_speed(kind),
+            "power_constant": motor.power_constant(kind),
+            "motor_constant": motor.motor_constant(kind),
+            "rotor_inertia": motor.rotor_inertia,
+            "mass": motor.mass,
+        }
+    return found
