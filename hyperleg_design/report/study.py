@@ -1,0 +1,87 @@
+"""The study: the paper's biped and its ablations from parameters to a page a designer reads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import provenance
+from hyperleg_design.errors import HyperlegError
+from hyperleg_design.report import page as pages
+from hyperleg_design.report import study_sections as sections
+from hyperleg_design.report.page import Missing, Page, Picture, Section
+from hyperleg_design.robot.ablation import variants
+from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.writing import output_folder, write_text
+
+FIGURES = "figures"
+
+
+@dataclass(frozen=True)
+class Context:
+    """What every section gets."""
+
+    design: Design
+    variants: dict[str, Design]
+    folder: Path
+    """Folder of the page."""
+
+    def picture(self, name: str, caption: str, make: Callable[[Path], object], *, wide: bool = True) -> Picture | Missing:
+        """A figure made by `make(path)`; a machine that cannot draw it costs this figure only."""
+        file = f"{FIGURES}/{name}.png"
+        try:
+            make(self.folder / file)
+        except HyperlegError as error:
+            return Missing(caption, str(error))
+        return Picture(file, caption, wide)
+
+
+def run_study(out: str | Path, *, design: Design | None = None, progress: bool = True) -> Path:
+    """Run the study and write its page.
+
+    Args:
+        out: folder to write, replaced as a whole.
+        design: robot with an active toe, the paper's by default.
+        progress: show a bar.
+
+    Returns:
+        The page, `out/index.html`.
+
+    Raises:
+        OutputError: the folder is not ours, or cannot be written.
+    """
+    from tqdm import tqdm
+
+    design = design or load_design("hyperleg")
+    steps = sections.STEPS
+    with output_folder(out) as folder:
+        context = Context(design, variants(design), folder)
+        (folder / FIGURES).mkdir()
+        found: list[Section] = []
+        facts: list[tuple[str, str]] = []
+        with tqdm(total=len(steps), disable=not progress, desc="study", unit="part") as bar:
+            for name, step in steps.items():
+                bar.set_postfix_str(name)
+                made = step(context)
+                found.append(made.section)
+                facts += made.facts
+                bar.update()
+        page = Page(
+            title=f"{design.name}: a biped with active toes, described and sized",
+            lead=sections.LEAD,
+            sections=found,
+            facts=facts,
+            provenance=_provenance(),
+        )
+        write_text(folder / "index.html", pages.render(page))
+    return Path(out) / "index.html"
+
+
+def _provenance() -> dict[str, Any]:
+    commit = provenance.git_commit()
+    return {**provenance.versions(), **({"commit": commit} if commit else {}), "made by": "hyperleg study"}
+
+
+__all__: Sequence[str] = ("Context", "run_study")

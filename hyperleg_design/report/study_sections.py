@@ -1,0 +1,156 @@
+"""The parts of the study's page, each a function from a context to a section and its headline numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.evaluation import paper
+from hyperleg_design.report import picture
+from hyperleg_design.report.comparison import Row, motor_rows, table_one
+from hyperleg_design.report.page import Cell, Details, Section, Table
+from hyperleg_design.report.style import save
+from hyperleg_design.robot import ablation, parameters, transmission
+from hyperleg_design.robot.names import JOINTS, POSTURES
+from hyperleg_design.sizing.analysis import analyze
+from hyperleg_design.writing import write_json
+
+if TYPE_CHECKING:
+    from hyperleg_design.report.study import Context
+
+LEAD = (
+    "From one file of parameters: masses, cooperative actuation, torque-speed envelopes, what the motors can do and what "
+    "walking asks of them, for the robot of the paper and for the same robot without its active toe. Every number is "
+    "computed when this page is made; values are labelled paper, derived, vendor or assumed."
+)
+
+
+@dataclass(frozen=True)
+class Made:
+    """A section and the headline numbers it gives."""
+
+    section: Section
+    facts: tuple[tuple[str, str], ...] = ()
+
+
+def robot(context: Context) -> Made:
+    """Pictures and variants."""
+    found = analyze(context.design)
+    write_json(context.folder / "analysis.json", found)
+    design = context.design
+    drawn = [
+        context.picture("dimensions", "Dimensions [mm]; leg length and height are the paper's, the rest is assumed.", lambda p: picture.render(picture.dimensions_scene(design), p)),
+        context.picture("frames", "Joint axes: an arrow points along the axis about which the angle is positive.", lambda p: picture.render(picture.frames_scene(design), p)),
+        context.picture("masses", "Segment masses at their centres of mass; balls have the volume of steel.", lambda p: picture.render(picture.masses_scene(design), p)),
+    ]  # fmt: skip
+    side_by_side = context.picture(
+        "variants", "The four variants; orange: active toe and its motor.", lambda p: picture.render(picture.variants_scene(context.variants), p)
+    )
+    confound = ablation.confound(design)
+    rows = []
+    for name, entry in confound.items():
+        torque = entry["max_joint_torque"]
+        lost = entry["lost"]
+        cells: list[Any] = [name, entry["total_mass"], 2 * entry["motors"]]
+        cells += [Cell(torque[j], "bad" if lost[j] > 1e-9 else "") if j in torque else "–" for j in JOINTS[3:]]
+        rows.append([*cells, entry["removes"]])
+    content = [
+        [*drawn],
+        side_by_side,
+        Table(["variant", "mass [kg]", "motors", *(f"{j.replace('_', ' ')} [Nm]" for j in JOINTS[3:]), "what it is"], rows, "Largest joint torque, standing, derated as in Table I."),
+        "The motors below the hip are shared. Taking the toe's motor away therefore also takes "
+        f"{confound['toe_removed']['lost']['knee']:.1f} Nm from the knee and {confound['toe_removed']['lost']['ankle_pitch']:.1f} Nm from ankle pitch: "
+        "a comparison of “toe” and “no toe” is also one of a strong and a weak knee. The locked toe, whose motor still helps, and the removal at equal mass separate the two.",
+    ]  # fmt: skip
+    facts = (
+        (f"{found['total_mass']:.2f} kg", "total mass, as printed"),
+        (f"{found['leg_mass']:.2f} kg", "one leg, as printed"),
+        (f"{100 * found['zonotope_to_box_volume']:.1f} %", "of the box of maximum torques below the hip can be reached"),
+        (f"{confound['toe']['max_joint_torque']['knee']:.0f} → {confound['toe_removed']['max_joint_torque']['knee']:.0f} Nm", "knee torque lost with the toe's motor"),
+    )  # fmt: skip
+    return Made(Section("The robot and its variants", content), facts)
+
+
+def table_i(context: Context) -> Made:
+    """Table I and the motors beside the paper's values."""
+    rows = table_one(context.design)
+    agreeing = sum(r.verdict == "agrees" for r in rows)
+    content = [
+        "Recomputed from the parameters; a number agrees when it is within 0.1 %, which is what rounding leaves. The speeds differ because the joint block of the paper's table prints the motors'.",
+        _rows_table(rows),
+        "The paper's power constants against those that follow from the catalogue:",
+        _rows_table(motor_rows()),
+    ]
+    return Made(Section("Table I beside the paper", content), ((f"{agreeing} / {len(rows)}", "numbers of Table I agree; the others are explained"),))
+
+
+def _rows_table(rows: list[Row]) -> Table:
+    cells = [
+        [r.place, r.quantity.replace("_", " "), r.paper, r.ours, r.unit, f"{100 * r.difference:+.2f} %", Cell(r.verdict, "good" if r.verdict == "agrees" else "bad"), Cell("" if r.verdict == "agrees" else r.note, "note")]
+        for r in rows
+    ]  # fmt: skip
+    return Table(["place", "quantity", "paper", "ours", "unit", "difference", "verdict", "why"], cells)
+
+
+def inconsistencies(context: Context) -> Made:
+    """What does not fit together in the paper."""
+    rows = [[i.place, i.finding, i.choice] for i in paper.INCONSISTENCIES]
+    return Made(Section("What does not fit together in the paper", [Table(["place", "what was found", "what is done here"], rows)]))
+
+
+def cooperative_actuation(context: Context) -> Made:
+    """The matrix in both postures, and between them."""
+    from hyperleg_design.report.linkage_figures import linkage_figure
+    from hyperleg_design.robot.models import leg_reflected_inertia
+
+    design = context.design
+    joints = [j.replace("_", " ") for j in transmission.joint_names(design)]
+    motors = [m.replace("_", " ") for m in transmission.motor_names(design)]
+    tables = [
+        Table(["joint \\ motor", *motors], [[j, *map(float, row)] for j, row in zip(joints, transmission.joint_from_motor(design, p), strict=True)], f"joint_from_motor, {p}")
+        for p in POSTURES
+    ]  # fmt: skip
+    inertia = leg_reflected_inertia(design)
+    reflected = Table(["", *joints], [[j, *map(float, row)] for j, row in zip(joints, inertia, strict=True)], f"Reflected rotor inertia M diag(J) Mᵀ [kg m²], {design.transmission.posture}")
+    content = [
+        "Motor torques reach the joints by joint_torque = M motor_torque, and motor_velocity = Mᵀ joint_velocity, so power is the same on both sides. The knee's row is negative because knee flexion is positive: positive motor torque extends the knee and pushes the toes down.",
+        *tables,
+        reflected,
+        f"Rotors couple the joints: the knee's {inertia[3, 3]:.3f} kg m² come with {inertia[3, 4]:.3f} kg m² between knee and ankle pitch, which a diagonal armature drops.",
+        "M depends on posture. The paper prints two postures; between them stands a four-bar model of ours, calibrated to both and labelled assumed. It is the exact gradient of a motor-position map, so work around a closed path is zero.",
+        context.picture("linkage", "Reductions over posture. Squares and dots: the printed postures.", lambda p: save(linkage_figure(design), p)),
+    ]  # fmt: skip
+    return Made(Section("Cooperative actuation", content))
+
+
+def made_from(context: Context) -> Made:
+    """Parameters with their labels."""
+    design = context.design
+    labels: dict[str, int] = {}
+    rows = []
+    for path, rule in parameters.rules(type(design)).items():
+        origin = design.origins.get(path)
+        label = origin.label if origin else ""
+        labels[label] = labels.get(label, 0) + 1
+        value = design[path]
+        shown = ", ".join(f"{v:g}" for v in value) if isinstance(value, np.ndarray) else value
+        rows.append([path, shown, rule.unit, label, origin.source if origin else ""])
+    summary = ", ".join(f"{count} {label}" for label, count in sorted(labels.items()))
+    content = [
+        f"The design has {len(rows)} parameters: {summary}. Any of them can be set from the command line, in a file, or in Python, and can be an axis of a sweep.",
+        Details("All parameters", [Table(["parameter", "value", "unit", "label", "source"], rows)]),
+    ]
+    return Made(Section("What this page was made from", content))
+
+
+STEPS: Mapping[str, Callable[[Context], Made]] = {
+    "robot": robot,
+    "table I": table_i,
+    "inconsistencies": inconsistencies,
+    "cooperative actuation": cooperative_actuation,
+    "parameters": made_from,
+}
+"""Parts in the order of the page."""
