@@ -12,6 +12,7 @@ interval shrinks to the point -peak (at w0 (1 + peak / stall)) and never turns i
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -56,8 +57,13 @@ class MotorEnvelope:
 
     def select(self, motors: slice | list[int]) -> MotorEnvelope:
         """Of some of the motors."""
-        picked = (a[..., motors] for a in (self.no_load_speed, self.stall_torque, self.peak_torque, self.power_constant))
-        return MotorEnvelope(*picked, self.efficiency_out, self.efficiency_regen)
+        return dataclasses.replace(
+            self,
+            no_load_speed=self.no_load_speed[..., motors],
+            stall_torque=self.stall_torque[..., motors],
+            peak_torque=self.peak_torque[..., motors],
+            power_constant=self.power_constant[..., motors],
+        )
 
 
 def motor_envelope(design: Design) -> MotorEnvelope:
