@@ -186,16 +186,17 @@ def dimensions_scene(design: Design) -> Scene:
     for low, high, text in ticks:
         lines += _dimension(np.array([front, 0, low]) + near, np.array([front, 0, high]) + near, np.array([0.02, 0, 0]))
         labels.append((np.array([front + 0.02, 0, (low + high) / 2]) + near, text, "#333333"))
-    for low, high, x, text in ((0.0, hip, back, f"leg {hip * 1e3:.0f}"), (0.0, top, back - 0.125, f"height {top * 1e3:.1f}")):
+    for low, high, x, text in ((0.0, hip, back, f"leg {hip * 1e3:.0f}"), (0.0, top, back - 0.155, f"height {top * 1e3:.1f}")):
         lines += _dimension(np.array([x, 0, low]) + near, np.array([x, 0, high]) + near, np.array([0.02, 0, 0]))
-        labels.append((np.array([x - 0.12, 0, low + 0.42 * (high - low)]) + near, text, "#333333"))
+        place = np.array([x - 0.03, 0, high + 0.022])
+        labels.append((place + near, text, "#333333"))
     foot = (-float(design.foot.heel_length), 0.0, float(design.foot.ball_length), float(design.foot.ball_length + design.toe.length))
     for (a, b), text in zip(((foot[0], foot[1]), (foot[1], foot[2]), (foot[2], foot[3])), ("heel", "ball", "toe"), strict=True):
         lines += _dimension(np.array([a, 0, -0.03]) + near, np.array([b, 0, -0.03]) + near, np.array([0, 0, 0.012]))
-        labels.append((np.array([(a + b) / 2 - 0.032, 0, -0.058]) + near, f"{text} {(b - a) * 1e3:.0f}", "#333333"))
+        labels.append((np.array([(a + b) / 2 - 0.04, 0, -0.058 - (0.03 if text == "ball" else 0.0)]) + near, f"{text} {(b - a) * 1e3:.0f}", "#333333"))
     return Scene(
         tuple(robot_solids(design, tree=tree)), tuple(lines), tuple(labels),
-        camera=((0.04, -4.0, 0.46), (0.04, 0.0, 0.46)), height=1.14, size=(820, 1000), font=17,
+        camera=((0.06, -4.0, 0.46), (0.06, 0.0, 0.46)), height=1.16, size=(820, 1000), font=24,
     )  # fmt: skip
 
 
@@ -222,7 +223,7 @@ def frames_scene(design: Design) -> Scene:
             labels.append((start + 0.15 * axis + lift, joint.name.removeprefix("left_").replace("_", " "), colours[kind]))
     return Scene(
         tuple(robot_solids(design, angles=angles, opacity=0.45, motors=False, tree=tree)), (), tuple(labels), tuple(arrows),
-        camera=((2.2, 2.6, 1.25), (0.02, 0.08, 0.46)), height=1.16, size=(820, 1000), font=17,
+        camera=((2.2, 2.6, 1.25), (0.02, 0.08, 0.46)), height=1.16, size=(820, 1000), font=24,
     )  # fmt: skip
 
 
@@ -242,12 +243,12 @@ def masses_scene(design: Design) -> Scene:
         place = base + position + rotation @ link.com
         balls.append(Solid("sphere", (float(np.cbrt(max(mass, 1e-3) / 6500 / 4.19)),), np.eye(3), place, "#d1495b", 0.9))
         lift = {"foot": 0.05, "toe_plate": -0.03}.get(name, 0.0)
-        target = np.array([0.3, 0.27, place[2] + lift])
+        target = np.array([0.3, 0.24, place[2] + lift])
         lines.append((place, target, "#888888", 1.5))
-        labels.append((target + np.array([0.0, 0.012, 0.0]), f"{name.removesuffix('_plate')} {mass:.2f} kg", "#333333"))
+        labels.append((target + np.array([0, 0.012, 0]), f"{name.removesuffix('_plate')} {mass:.2f} kg", "#333333"))
     return Scene(
         (*robot_solids(design, opacity=0.45, tree=tree), *balls), tuple(lines), tuple(labels),
-        camera=((4.0, 0.14, 0.47), (0.0, 0.14, 0.47)), height=1.12, size=(820, 1000), font=17,
+        camera=((4.0, 0.14, 0.47), (0.0, 0.14, 0.47)), height=1.12, size=(820, 1000), font=24,
     )  # fmt: skip
 
 
@@ -266,4 +267,4 @@ def variants_scene(designs: Mapping[str, Design]) -> Scene:
         labels.append((np.array([0.1, y - 0.2, 1.1]), label, "#333333"))
     width = 0.2 + gap * len(designs)
     size = (int(820 * width / 1.25), 820)
-    return Scene(tuple(solids), (), tuple(labels), camera=((4.0, 0.0, 1.1), (0.0, 0.0, 0.53)), height=1.25, size=size, font=18)
+    return Scene(tuple(solids), (), tuple(labels), camera=((4.0, 0.0, 1.1), (0.0, 0.0, 0.53)), height=1.25, size=size, font=24)

@@ -222,6 +222,8 @@ def _build(data: dict[str, Any], name: str, where: str, origins: dict[str, Origi
         if key not in data:
             raise InputError(where, key, None, "is missing")
         parts[key] = parameters.from_mapping(cls, data[key], where, key, origins)
+    for path in parameters.rules(Design):
+        origins.setdefault(path, Origin("assumed", "default of the field"))
     try:
         return Design(name=name, origins=origins, source=where, **parts)
     except InputError as error:

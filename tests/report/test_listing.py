@@ -1,0 +1,29 @@
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.report.listing import KINDS, listing, listing_text
+from hyperleg_design.robot import parameters
+from hyperleg_design.robot.design import Design
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_is_listed_for_people_and_programs(kind):
+    found = listing(kind)
+    assert found[kind]
+    json.dumps(found, allow_nan=False)
+    assert next(iter(found[kind])) in listing_text(found)
+
+
+def test_every_parameter_is_listed_with_a_label():
+    found = listing("parameters")["parameters"]
+    assert set(found) == set(parameters.rules(Design))
+    assert all(entry["label"] in parameters.LABELS for entry in found.values())
+
+
+def test_an_unknown_kind_names_the_known_ones():
+    with pytest.raises(InputError, match="designs"):
+        listing("robots")
