@@ -193,7 +193,8 @@ def dimensions_scene(design: Design) -> Scene:
     foot = (-float(design.foot.heel_length), 0.0, float(design.foot.ball_length), float(design.foot.ball_length + design.toe.length))
     for (a, b), text in zip(((foot[0], foot[1]), (foot[1], foot[2]), (foot[2], foot[3])), ("heel", "ball", "toe"), strict=True):
         lines += _dimension(np.array([a, 0, -0.03]) + near, np.array([b, 0, -0.03]) + near, np.array([0, 0, 0.012]))
-        labels.append((np.array([(a + b) / 2 - 0.04, 0, -0.058 - (0.03 if text == "ball" else 0.0)]) + near, f"{text} {(b - a) * 1e3:.0f}", "#333333"))
+        place = np.array([(a + b) / 2 - 0.04, 0, -0.088 if text == "ball" else -0.058])
+        labels.append((place + near, f"{text} {(b - a) * 1e3:.0f}", "#333333"))
     return Scene(
         tuple(robot_solids(design, tree=tree)), tuple(lines), tuple(labels),
         camera=((0.06, -4.0, 0.46), (0.06, 0.0, 0.46)), height=1.16, size=(820, 1000), font=24,
