@@ -77,7 +77,7 @@ def margin(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, torque: np.
     forced = np.where(lower * upper > 0, np.minimum(np.abs(lower), np.abs(upper)) / np.where(reach > 0, reach, 1.0), 0.0).max(-1)
     critical = np.argmax(ratio, -1)
     slack = np.where(real, bound.sum(-1) - demand, np.inf).min(-1)
-    work = np.abs(bound) + negligible[..., None] * np.abs(weight)
+    work = np.broadcast_to(np.abs(bound) + negligible[..., None] * np.abs(weight), (*ratio.shape, weight.shape[-1]))
     return Margin(
         load=np.maximum(ratio.max(-1), forced),
         slack=np.minimum(slack, (upper - lower).min(-1) / 2),
