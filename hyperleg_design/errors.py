@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import reprlib
+
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 100
+"""Values as messages show them; short however large or nested they are."""
+
 
 class HyperlegError(Exception):
     """Base of every error this package raises on purpose; the command line prints it as one line."""
@@ -19,11 +25,18 @@ class InputError(HyperlegError):
 
     def __init__(self, where: str, field: str, value: object, remedy: str) -> None:
         self.where, self.field, self.value, self.remedy = where, field, value, remedy
-        shown = repr(value)
+        shown = " ".join(_shown(value).split())
         if len(shown) > 120:
             shown = shown[:117] + "..."
         place = f"{where}: {field}" if field else where
         super().__init__(f"{place} = {shown}: {remedy}" if value is not None else f"{place}: {remedy}")
+
+
+def _shown(value: object) -> str:
+    try:
+        return _SHORT.repr(value)
+    except ValueError:  # Python refuses to write integers of thousands of digits
+        return f"{type(value).__name__} too long to show"
 
 
 class OutputError(HyperlegError):

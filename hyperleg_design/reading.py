@@ -9,6 +9,10 @@ import yaml
 
 from hyperleg_design.errors import InputError
 
+MAX_DEPTH = 50
+"""Levels of nesting that a file may have."""
+_BASE: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
 
 def read_yaml(path: Path) -> dict[str, Any]:
     """A YAML mapping.
@@ -17,7 +21,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
         InputError: unreadable, malformed (with line), duplicate keys, or no mapping.
     """
     try:
-        data = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
+        data = parse_yaml(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(short_name(path), "", None, f"cannot be read ({error.strerror})") from None
     except UnicodeDecodeError:
@@ -25,22 +29,47 @@ def read_yaml(path: Path) -> dict[str, Any]:
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}" if mark else ""
-        raise InputError(f"{short_name(path)}{place}", "", None, f"is not YAML: {getattr(error, 'problem', error)}") from None
+        problem = " ".join(str(getattr(error, "problem", None) or error).split())
+        raise InputError(f"{short_name(path)}{place}", "", None, f"is not YAML: {problem}") from None
     if not isinstance(data, dict):
         raise InputError(short_name(path), "", data, "expects a mapping of sections")
     return data
 
 
-class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
+def parse_yaml(text: str) -> Any:
+    """What a YAML text holds.
+
+    Raises:
+        yaml.YAMLError: malformed, a key twice, or a value that its own type forbids (a 13th month).
+    """
+    depth = 0
+    for event in yaml.parse(text, Loader=_BASE):  # PyYAML's C code crashes the process on very deep nesting
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        if depth > MAX_DEPTH:
+            raise yaml.MarkedYAMLError(problem=f"nested more than {MAX_DEPTH} deep", problem_mark=event.start_mark)  # type: ignore[arg-type]
+    return yaml.load(text, Loader=_Loader)
+
+
+class _Loader(_BASE):  # type: ignore[misc]
     """Safe YAML that refuses a key twice."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> Any:
-        seen = set()
-        for key, _ in node.value:
-            if key.value in seen:
-                raise yaml.constructor.ConstructorError(None, None, f"{key.value} stands twice", key.start_mark)
-            seen.add(key.value)
+        if isinstance(node, yaml.MappingNode):
+            seen = set()
+            for key, _ in node.value:
+                if not isinstance(key, yaml.ScalarNode):
+                    raise yaml.constructor.ConstructorError(None, None, "a key must be a plain word", key.start_mark)
+                if key.value in seen:
+                    raise yaml.constructor.ConstructorError(None, None, f"{key.value} stands twice", key.start_mark)
+                seen.add(key.value)
         return super().construct_mapping(node, deep)
+
+    def construct_object(self, node: Any, deep: bool = False) -> Any:
+        try:
+            return super().construct_object(node, deep)
+        except (ValueError, OverflowError, AttributeError, KeyError, TypeError) as error:
+            # PyYAML lets through what Python's own types say: 2020-13-01, !!int x
+            raise yaml.constructor.ConstructorError(None, None, f"{node.value!r:.60} is no value ({error})", node.start_mark) from None
 
 
 def short_name(path: Path) -> str:

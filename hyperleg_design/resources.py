@@ -50,11 +50,14 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path
         InputError: neither exists; the message lists what is shipped.
     """
     path = Path(name)
-    if path.suffix and path.is_file():
-        return path
-    shipped = content_folder(kind) / f"{name}{suffix}"
-    if path.name == str(name) and shipped.is_file():
-        return shipped
+    try:
+        if (path.suffix or len(path.parts) > 1) and path.is_file():
+            return path
+        shipped = content_folder(kind) / f"{name}{suffix}"
+        if path.name == str(name) and shipped.is_file():
+            return shipped
+    except OSError as error:  # a name too long, a folder closed to us
+        raise InputError(kind, "", str(name), f"cannot be read ({error.strerror})") from None
     raise InputError(kind, "", str(name), f"no such file; shipped: {', '.join(names(kind, suffix)) or 'none'}")
 
 

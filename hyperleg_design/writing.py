@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import shutil
@@ -34,10 +35,13 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
             os.fsync(stream.fileno())
         temporary.chmod(0o644)
         temporary.replace(path)
+        temporary = None
     except OSError as error:
+        raise OutputError(f"{path}: cannot be written ({error.strerror or error}); free some space or choose another folder") from error
+    finally:  # also when the user interrupts
         if temporary is not None:
-            temporary.unlink(missing_ok=True)
-        raise OutputError(f"{path}: cannot be written ({error.strerror}); free some space or choose another folder") from error
+            with contextlib.suppress(OSError):
+                temporary.unlink(missing_ok=True)
     return path
 
 
@@ -47,8 +51,16 @@ def write_text(path: str | os.PathLike[str], text: str) -> Path:
 
 
 def write_json(path: str | os.PathLike[str], content: object) -> Path:
-    """`write_text` of indented JSON; non-finite numbers are refused."""
-    return write_text(path, json.dumps(content, indent=2, allow_nan=False) + "\n")
+    """`write_text` of indented JSON.
+
+    Raises:
+        OutputError: as `write_bytes`, or the content holds a number that is not finite, which JSON cannot say.
+    """
+    try:
+        text = json.dumps(content, indent=2, allow_nan=False)
+    except ValueError as error:
+        raise OutputError(f"{path}: a result is not a finite number ({error}); nothing was written") from error
+    return write_text(path, text + "\n")
 
 
 def check_output_folder(folder: str | os.PathLike[str]) -> Path:
@@ -57,13 +69,13 @@ def check_output_folder(folder: str | os.PathLike[str]) -> Path:
     Raises:
         OutputError: it is a file, or a folder with somebody else's content.
     """
-    folder = Path(folder)
-    if folder.exists() and not folder.is_dir():
-        raise OutputError(f"{folder}: is a file, not a folder; choose another --out")
     try:
-        foreign = folder.is_dir() and not (folder / MARKER).exists() and any(folder.iterdir())
-    except OSError as error:
-        raise OutputError(f"{folder}: cannot be read ({error.strerror}); choose another --out") from error
+        folder = Path(folder).resolve()
+        if folder.exists() and not folder.is_dir():
+            raise OutputError(f"{folder}: is a file, not a folder; choose another --out")
+        foreign = folder.is_dir() and not (folder / MARKER).is_file() and any(folder.iterdir())
+    except (OSError, ValueError) as error:
+        raise OutputError(f"{folder}: cannot be read ({getattr(error, 'strerror', None) or error}); choose another --out") from error
     if foreign:
         raise OutputError(f"{folder}: holds files that hyperleg did not write; choose an empty or new folder")
     return folder
@@ -87,14 +99,27 @@ def output_folder(folder: str | os.PathLike[str]) -> Iterator[Path]:
         yield temporary
         (temporary / MARKER).write_text("made by hyperleg; replaced as a whole when written again\n")
         if folder.exists():
-            old = Path(tempfile.mkdtemp(prefix=f".{folder.name}.old.", dir=folder.parent))
-            folder.replace(old / "old")
-            temporary.replace(folder)
-            shutil.rmtree(old, ignore_errors=True)
+            _swap(folder, temporary)
         else:
             temporary.replace(folder)
     except OSError as error:
-        raise OutputError(f"{folder}: cannot be written ({error.strerror}); free some space or choose another folder") from error
+        raise OutputError(f"{folder}: cannot be written ({error.strerror or error}); free some space or choose another folder") from error
+    except OutputError as error:  # of a file inside: name it where it would have stood
+        raise OutputError(str(error).replace(str(temporary), str(folder))) from error
     finally:
         if temporary is not None and temporary.exists():
             shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _swap(folder: Path, new: Path) -> None:
+    """Put `new` in the place of `folder`; the old one comes back if that fails."""
+    old = Path(tempfile.mkdtemp(prefix=f".{folder.name}.old.", dir=folder.parent))
+    try:
+        folder.replace(old / "old")
+        try:
+            new.replace(folder)
+        except OSError:
+            (old / "old").replace(folder)
+            raise
+    finally:
+        shutil.rmtree(old, ignore_errors=True)

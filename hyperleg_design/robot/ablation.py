@@ -40,7 +40,8 @@ def ablate(design: Design, variant: str) -> Design:
     if variant != "toe_locked":
         values["actuators.toe_installed"] = False
     if variant == "toe_removed_matched":
-        values["masses.thigh_ballast"] = design.masses.thigh_ballast + masses.built_mass(design, design.actuators.toe)
+        without = masses.mass_table(design.with_values(values, f"variant {variant}"))
+        values["masses.thigh_ballast"] = design.masses.thigh_ballast + (masses.mass_table(design).total - without.total) / 2
     if variant == "toe_removed":
         values["toe.mass"] = 0.0
     made = design.with_values(values, f"variant {variant}", label="derived")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +20,9 @@ def check_design(design: Design) -> None:
     Raises:
         InputError: names the field, its value and what would be right.
     """
-    where = design.source or design.name
+    where = str(design.source or design.name)
+    _check_name(design, where)
+    _check_batch(design, where)
 
     def require(good: Any, field: str, remedy: str) -> None:
         if np.all(good):
@@ -57,6 +60,19 @@ def check_design(design: Design) -> None:
     motors.check_names(design, where)
     masses.check_masses(design, where)
     transmission.check_invertible(design, where)
+
+
+def _check_name(design: Design, where: str) -> None:
+    """Names become file names, and names in URDF and MJCF."""
+    if not isinstance(design.name, str) or not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}", design.name):
+        raise InputError(where, "name", design.name, "expects a letter or digit, then letters, digits, dots, dashes or underscores, 100 at most")
+
+
+def _check_batch(design: Design, where: str) -> None:
+    sizes = {path: size for path, size in design.batch_sizes().items() if size > 1}
+    if len(set(sizes.values())) > 1:
+        first, last = min(sizes, key=lambda p: sizes[p]), max(sizes, key=lambda p: sizes[p])
+        raise InputError(where, last, sizes[last], f"is the length of its batch, but that of {first} is {sizes[first]}; make them equal")
 
 
 def leg_length(design: Design) -> Any:

@@ -8,6 +8,7 @@ flexion are positive; yaw and roll axes of the right leg mirror the left's, so e
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +19,7 @@ import yaml
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import parse_yaml, read_yaml, short_name
 from hyperleg_design.robot import parameters
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.robot.parameters import Origin
@@ -71,12 +72,13 @@ class Design:
     @property
     def batch_shape(self) -> tuple[int, ...]:
         """`()` for one robot, `(n,)` for a batch."""
-        found: tuple[int, ...] = ()
-        for path, rule in parameters.rules(Design).items():
-            value = self[path]
-            if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0):
-                found = np.broadcast_shapes(found, value.shape[:1])
-        return found
+        sizes = self.batch_sizes().values()
+        return (max(sizes),) if sizes else ()
+
+    def batch_sizes(self) -> dict[str, int]:
+        """Length of the batch of each leaf that holds one, by dotted path."""
+        values = ((path, rule, self[path]) for path, rule in parameters.rules(Design).items())
+        return {path: len(value) for path, rule, value in values if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0)}
 
     def __getitem__(self, path: str) -> Any:
         """Value of a leaf by dotted path, `design["toe.mass"]`."""
@@ -91,6 +93,8 @@ class Design:
     def with_values(self, values: Mapping[str, Any], where: str = "override", label: str = "user") -> Design:
         """A copy with leaves replaced by dotted path.
 
+        A printed sum of masses (`masses.expected_total`, `masses.expected_leg`) lapses where a mass in it is replaced.
+
         Args:
             values: numbers, texts, or arrays of either with the batch in front.
             where: what to name in errors.
@@ -99,24 +103,31 @@ class Design:
         Raises:
             InputError: unknown path, or a value or combination that makes no sense.
         """
-        origins = {**self.origins, **{p: Origin(label, where) for p in values}}
+        from hyperleg_design.robot.masses import check_printed, lapsed
+
+        origins = {**self.origins, **{str(p): Origin(label, where) for p in values}}
+        unprinted = lapsed(self, values)
+        origins.update({p: Origin("derived", f"lapsed: a mass was replaced by {where}") for p in unprinted})
         try:
-            made = parameters.with_values(self, values, where)
-            return dataclasses.replace(made, origins=origins)
+            made = parameters.with_values(self, {**values, **unprinted}, where, origins=origins)
+            check_printed(made, where)
+            return made
         except InputError as error:
             if error.where == where:
                 raise
             raise InputError(f"{self.source or self.name} with {where}", error.field, error.value, error.remedy) from None
 
     def take(self, index: int) -> Design:
-        """One robot of a batch."""
-        values = {}
-        for path, rule in parameters.rules(Design).items():
-            value = self[path]
-            if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0):
-                picked = value[index]
-                values[path] = str(picked) if rule.kind == "text" else picked
-        return self.with_values(values, f"{self.name}[{index}]") if values else self
+        """One robot of a batch; values keep their origins.
+
+        Raises:
+            IndexError: the batch is not that long.
+        """
+        values = {path: self[path][0 if size == 1 else index] for path, size in self.batch_sizes().items()}
+        if not values:
+            return self
+        plain = {path: str(v) if isinstance(v, str) else v for path, v in values.items()}
+        return parameters.with_values(self, plain, f"{self.name}[{index}]")
 
     def to_mapping(self) -> dict[str, Any]:
         """All leaves as nested plain mappings, each with value, label and source where known."""
@@ -142,8 +153,9 @@ def load_design(
     """Read a design.
 
     Args:
-        name: a shipped name (`hyperleg`, or an ablation of it such as `toe_removed`) or a YAML file. A file may hold a
-            whole design, or `base: NAME` with `variant:` and the leaves that differ.
+        name: a shipped name (`hyperleg`, or an ablation of it such as `toe_removed`) or a YAML file. A file holds a
+            whole design, whose `variant:` says what it is, or `base: NAME` with the leaves that differ and the `variant:`
+            to make of it.
         overrides: mapping of dotted paths to values, or texts `path=value`.
         overlays: YAML files with nested leaves, applied in order before `overrides`.
         variant: ablation to make of it, one of `VARIANTS`.
@@ -162,17 +174,15 @@ def load_design(
         design = design.with_values(chosen, "--set")
     if own_variant and variant and own_variant != variant:
         raise InputError("variant", "", variant, f"{design.name} is already the variant {own_variant}; start from its base")
-    made = ablate(design, variant or own_variant or "toe")
+    made = ablate(design, variant or own_variant or design.variant)
     for path, value in chosen.items():
-        if made[path] is not design[path]:
+        if not np.array_equal(made[path], design[path]):
             raise InputError("--set", path, value, f"the variant {made.variant} sets this itself; use another variant or leave it out")
     return made
 
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
     """Design of a file before ablation, and the variant that the file asks for."""
-    from hyperleg_design.robot.masses import check_printed
-
     data = read_yaml(path)
     where = short_name(path)
     if path.resolve() in seen:
@@ -180,13 +190,11 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
     variant = data.get("variant")
     if variant is not None and variant not in VARIANTS:
         raise InputError(where, "variant", variant, f"expects one of {', '.join(VARIANTS)}")
-    name = str(data.get("name", path.stem))
+    name = data.get("name", re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem))
     rest = {k: v for k, v in data.items() if k not in ("base", "variant", "name")}
     if "base" not in data:
         origins: dict[str, Origin] = {}
-        design = _build(rest, name, where, origins)
-        check_printed(design, where)
-        return design, variant
+        return _build(rest, name, where, origins, variant or "toe"), None
     beside = path.with_name(f"{data['base']}.yaml")
     base, base_variant = _read(beside if beside.is_file() else resources.find("descriptions", str(data["base"])), (*seen, path.resolve()))
     return dataclasses.replace(_overlaid(base, rest, where), name=name, source=where), variant or base_variant
@@ -206,13 +214,15 @@ def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, A
         if not equals or not path.strip():
             raise InputError("--set", "", item, "expects path=value, such as toe.mass=0.3")
         try:
-            found[path.strip()] = yaml.safe_load(raw)
+            found[path.strip()] = parse_yaml(raw)
         except yaml.YAMLError:
             raise InputError("--set", path, raw, "is not a value; quote it, or see YAML") from None
     return found
 
 
-def _build(data: dict[str, Any], name: str, where: str, origins: dict[str, Origin]) -> Design:
+def _build(data: dict[str, Any], name: str, where: str, origins: dict[str, Origin], variant: str) -> Design:
+    from hyperleg_design.robot.masses import check_printed
+
     sections = parameters.section_types(Design)
     for key in data:
         if key not in sections:
@@ -225,9 +235,15 @@ def _build(data: dict[str, Any], name: str, where: str, origins: dict[str, Origi
     for path in parameters.rules(Design):
         origins.setdefault(path, Origin("assumed", "default of the field"))
     try:
-        return Design(name=name, origins=origins, source=where, **parts)
+        design = Design(name=name, origins=origins, source=where, variant=variant, **parts)
     except InputError as error:
         raise InputError(where, error.field, error.value, error.remedy) from None
+    check_printed(design, where)
+    stated = (design.toe.joint == "locked", design.actuators.toe_installed)
+    if variant != "toe" and stated != (True, variant == "toe_locked"):
+        remedy = "does not fit toe.joint and actuators.toe_installed; a whole design states the variant that it is, `base:` makes one of another"
+        raise InputError(where, "variant", variant, remedy)
+    return design
 
 
 def _overlaid(design: Design, data: Mapping[str, Any], where: str) -> Design:

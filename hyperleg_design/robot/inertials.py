@@ -91,7 +91,7 @@ def _with_housed(design: Design, segment: str, table: masses.MassTable, body: In
             half = np.asarray(design.hip.spacing, float) / 2
             points += [(housed.change, _vector(0 * half, sign * half, 0 * half)) for sign in (1, -1)]
         else:
-            depth = getattr(design.actuators, housed.actuator).position_fraction * getattr(design, segment).length
+            depth = housed.fraction * getattr(design, segment).length
             points.append((housed.change, _vector(0.0 * depth, 0.0 * depth, -depth)))
     if not points:
         return body

@@ -1,14 +1,14 @@
 """Masses that follow from the choice of motors, gears and lengths.
 
-Law `components`: a segment weighs what the design declares for its reference build, plus the difference between the
-actuators it houses now and then, and its structure (the rest) grows in proportion to the segment's length.
+Law `components`: a segment weighs what the design declares for its reference build, plus the actuators it houses now,
+less those it housed then, and its structure (the rest) grows in proportion to the segment's length.
 An actuator weighs its motor plus a gear in proportion to the gear's peak output torque. Another law is one function,
 registered with `mass_law`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -28,12 +28,13 @@ _REFERENCE_PART = {"hip_yaw": "hip", "hip_roll": "hip", "hip_pitch": "hip", "kne
 
 @dataclass(frozen=True, eq=False)
 class HousedMass:
-    """Change of mass at one actuator's place in a segment, per leg."""
+    """Change of mass at one place in a segment, per leg."""
 
     segment: str
+    fraction: Any
+    """Where along thigh or shank, over the length from the upper joint [-], `(...)`; the pelvis has it at the hip."""
     change: Any
     """Against the reference build [kg], `(...)`."""
-    actuator: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +48,8 @@ class MassTable:
     toe: Any
     housed: tuple[HousedMass, ...]
     """What differs from the reference build, for centres of mass and inertias."""
-    thigh_structure: Any
-    """Thigh without what it houses [kg]."""
+    structure: Mapping[str, Any]
+    """Pelvis, thigh and shank without the actuators they house [kg]."""
 
     @property
     def leg(self) -> Any:
@@ -107,47 +108,57 @@ def reference_mass(design: Design, name: str) -> Any:
 
 @mass_law("components")
 def components(design: Design) -> MassTable:
-    """Declared masses, corrected for other actuators and lengths than the reference build's."""
-    change: dict[str, Any] = dict.fromkeys(SEGMENTS, 0.0)
-    reference_load: dict[str, Any] = dict.fromkeys(SEGMENTS, 0.0)
-    housed = []
+    """Declared masses, corrected for other actuators, places and lengths than the reference build's."""
+    housed: list[HousedMass] = []
+    load: dict[str, Any] = dict.fromkeys(SEGMENTS, 0.0)
     for name in ACTUATOR_OF_MOTOR:  # both ankle motors
-        actuator = getattr(design.actuators, name)
         before = reference_mass(design, name)
-        installed = design.actuators.toe_installed or name != "toe"
-        after = built_mass(design, actuator) if installed else 0.0
+        after = built_mass(design, getattr(design.actuators, name)) if design.actuators.toe_installed or name != "toe" else 0.0
         if name == "toe":
             after = after + design.masses.thigh_ballast
-        legs = 2 if actuator.housed_in == "pelvis" else 1
-        change[actuator.housed_in] = change[actuator.housed_in] + legs * (after - before)
-        reference_load[actuator.housed_in] = reference_load[actuator.housed_in] + legs * before
-        housed.append(HousedMass(actuator.housed_in, after - before, name))
-
-    def segment(name: str) -> tuple[Any, Any]:
-        part = getattr(design, name)
-        structure = part.mass - reference_load[name]
-        grown = structure * (part.length / getattr(design.reference, f"{name}_length"))
-        return grown + (reference_load[name] + change[name]), grown
-
-    thigh, structure = segment("thigh")
-    shank, _ = segment("shank")
-    return MassTable(
-        pelvis=design.pelvis.mass + change["pelvis"],
-        thigh=thigh,
-        shank=shank,
-        foot=np.asarray(design.foot.mass)[()],
-        toe=np.asarray(design.toe.mass)[()],
-        housed=tuple(housed),
-        thigh_structure=structure,
-    )
+        housed += _moved(design, name, before, after)
+        place = getattr(design.reference.places, name).housed_in
+        load[place] = load[place] + _legs(place) * before
+    return _table(design, housed, load)
 
 
 @mass_law("fixed")
 def fixed(design: Design) -> MassTable:
-    """The declared masses, whatever the motors; a missing toe motor still counts, ballast as declared."""
+    """The declared masses, whatever motors and lengths; a missing toe motor still counts, ballast as declared."""
     lost = 0.0 if design.actuators.toe_installed else reference_mass(design, "toe")
-    thigh = design.thigh.mass - lost + design.masses.thigh_ballast
-    return MassTable(design.pelvis.mass, thigh, design.shank.mass, design.foot.mass, design.toe.mass, (), thigh)
+    return _table(design, _moved(design, "toe", lost, design.masses.thigh_ballast), None)
+
+
+def _legs(segment: str) -> int:
+    """Legs whose actuators a segment carries."""
+    return 2 if segment == "pelvis" else 1
+
+
+def _moved(design: Design, name: str, before: Any, after: Any) -> list[HousedMass]:
+    """Changes where an actuator was and where it is; one change where these are the same."""
+    was, now = getattr(design.reference.places, name), getattr(design.actuators, name)
+    if was.housed_in == now.housed_in and np.array_equal(was.position_fraction, now.position_fraction):
+        return [HousedMass(now.housed_in, now.position_fraction, after - before)]
+    return [HousedMass(was.housed_in, was.position_fraction, -before), HousedMass(now.housed_in, now.position_fraction, after)]
+
+
+def _table(design: Design, housed: Iterable[HousedMass], load: Mapping[str, Any] | None) -> MassTable:
+    """Masses from changes and from the actuators in the reference build; no growth with length without the latter."""
+    housed = tuple(housed)
+    change: dict[str, Any] = dict.fromkeys(SEGMENTS, 0.0)
+    for part in housed:
+        change[part.segment] = change[part.segment] + _legs(part.segment) * part.change
+    mass: dict[str, Any] = {}
+    structure: dict[str, Any] = {}
+    for name in ("pelvis", "thigh", "shank"):
+        part = getattr(design, name)
+        carried = load[name] if load is not None else 0.0
+        grown = part.mass - carried
+        if load is not None and name != "pelvis":
+            grown = grown * (part.length / getattr(design.reference, f"{name}_length"))
+        structure[name] = grown
+        mass[name] = grown + (carried + change[name])
+    return MassTable(foot=np.asarray(design.foot.mass)[()], toe=np.asarray(design.toe.mass)[()], housed=housed, structure=structure, **mass)
 
 
 def check_masses(design: Design, where: str) -> None:
@@ -161,9 +172,9 @@ def check_masses(design: Design, where: str) -> None:
         mass = np.asarray(getattr(table, segment))
         if np.any(mass <= 0):
             raise InputError(where, f"{segment}.mass", float(np.min(mass)), "the actuators it houses weigh more than the segment itself")
-    if np.any(np.asarray(table.thigh_structure) <= 0):
-        remedy = "is less than the reference actuators that the thigh houses; raise it or lower masses.gear_mass_per_torque"
-        raise InputError(where, "thigh.mass", float(np.min(design.thigh.mass)), remedy)
+        if np.any(np.asarray(table.structure.get(segment, 1.0)) <= 0):
+            remedy = "is less than the actuators that the reference build houses there; raise it or lower masses.gear_mass_per_torque"
+            raise InputError(where, f"{segment}.mass", float(np.min(design[f"{segment}.mass"])), remedy)
     carriers = design.hip.yaw_carrier_mass + design.hip.roll_carrier_mass
     if np.any(np.asarray(table.thigh) <= carriers):
         raise InputError(where, "thigh.mass", float(np.min(table.thigh)), "leaves nothing for the thigh below the hip carriers")
@@ -178,5 +189,14 @@ def check_printed(design: Design, where: str) -> None:
     leg = design.thigh.mass + design.shank.mass + design.foot.mass + design.toe.mass
     for field, found in (("expected_leg", leg), ("expected_total", design.pelvis.mass + 2 * leg)):
         printed = getattr(design.masses, field)
-        if printed and abs(found - printed) > 1e-6:
-            raise InputError(where, f"masses.{field}", printed, f"the declared segments add up to {found:.6g} kg; correct one or the other")
+        wrong = np.asarray((printed != 0) & (np.abs(found - printed) > 1e-6))
+        if np.any(wrong):
+            printed, found = (np.broadcast_to(v, wrong.shape)[wrong].flat[0] for v in (printed, found))
+            raise InputError(where, f"masses.{field}", float(printed), f"the declared segments add up to {found:.6g} kg; correct one or the other")
+
+
+def lapsed(design: Design, values: Iterable[str]) -> dict[str, float]:
+    """Printed sums that no longer hold when these leaves are replaced, each set to 0, which means no check."""
+    leg = {f"{segment}.mass" for segment in SEGMENTS[1:]}
+    parts = {"masses.expected_leg": leg, "masses.expected_total": leg | {"pelvis.mass"}}
+    return {field: 0.0 for field, masses in parts.items() if masses & set(values) and field not in values and np.any(design[field])}

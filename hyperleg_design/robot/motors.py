@@ -9,7 +9,7 @@ Stall torque: the DC-motor line `tau = tau_stall (1 - omega / omega_0)`, with `t
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -193,21 +193,24 @@ def load_motor(path: Path) -> Motor:
     """
     data = read_yaml(path)
     where = short_name(path)
-    known = {"name", "vendor", "product", "kind", "description", "constants", "convention", "presets"}
-    for key in data:
-        if key not in known:
-            raise InputError(where, str(key), data[key], parameters.unknown(str(key), sorted(known)))
+    _known(data, ("name", "vendor", "product", "kind", "description", "constants", "convention", "presets"), where)
     for key in ("name", "vendor", "product", "kind", "constants", "convention"):
         if key not in data:
             raise InputError(where, key, None, "is missing")
     if data["name"] != path.stem:
         raise InputError(where, "name", data["name"], f"must equal the file's name, {path.stem}")
-    convention = data["convention"] if isinstance(data["convention"], dict) else {}
+    convention = data["convention"]
+    if not isinstance(convention, dict):
+        raise InputError(where, "convention", convention, "expects a mapping with resistance and current")
+    _known(convention, ("resistance", "current", "source", "confidence"), where, "convention.")
     _one_of(convention.get("resistance"), ("line_line", "phase"), where, "convention.resistance")
     _one_of(convention.get("current"), tuple(_HEAT_FACTOR), where, "convention.current")
     _one_of(data["kind"], ("inrunner", "outrunner", "flat"), where, "kind")
     presets = {}
-    for name, preset in (data.get("presets") or {}).items():
+    declared = data.get("presets") or {}
+    if not isinstance(declared, dict):
+        raise InputError(where, "presets", declared, "expects a mapping of names to constants")
+    for name, preset in declared.items():
         presets[str(name)] = _constants(preset, _PRESET, {}, where, f"presets.{name}")
     motor = Motor(
         name=str(data["name"]),
@@ -225,6 +228,13 @@ def load_motor(path: Path) -> Motor:
     return motor
 
 
+def _known(data: Mapping[Any, Any], names: Iterable[str], where: str, path: str = "") -> None:
+    known = sorted(names)
+    for key in data:
+        if key not in known:
+            raise InputError(where, f"{path}{key}", data[key], parameters.unknown(str(key), known))
+
+
 def _one_of(value: Any, choices: tuple[str, ...], where: str, field: str) -> None:
     if value not in choices:
         raise InputError(where, field, value, f"expects one of {', '.join(choices)}")
@@ -234,9 +244,7 @@ def _constants(data: Any, required: Mapping[str, Rule], optional: Mapping[str, R
     if not isinstance(data, Mapping):
         raise InputError(where, path, data, f"expects a mapping with {', '.join(required)}")
     rules = {**required, **optional}
-    for key in data:
-        if key not in rules:
-            raise InputError(where, f"{path}.{key}", data[key], parameters.unknown(str(key), sorted(rules)))
+    _known(data, rules, where, f"{path}.")
     found = {}
     for key, rule in rules.items():
         if key not in data:
@@ -246,6 +254,7 @@ def _constants(data: Any, required: Mapping[str, Rule], optional: Mapping[str, R
         entry = data[key]
         if not isinstance(entry, Mapping) or "value" not in entry:
             raise InputError(where, f"{path}.{key}", entry, "expects value, label, source and confidence")
+        _known(entry, ("value", "label", "source", "confidence"), where, f"{path}.{key}.")
         _one_of(entry.get("label"), LABELS, where, f"{path}.{key}.label")
         _one_of(entry.get("confidence"), CONFIDENCES, where, f"{path}.{key}.confidence")
         value = parameters.checked(entry["value"], rule, where, f"{path}.{key}")

@@ -13,6 +13,8 @@ import math
 import typing
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -51,6 +53,8 @@ class Rule:
     """Length of a vector; 0 for a scalar."""
     choices: tuple[str, ...] = ()
     """Allowed texts; empty for any."""
+    varies: bool = True
+    """Whether the designs of a batch may differ in it."""
 
 
 def number(unit: str, low: float = -math.inf, high: float = math.inf, *, size: int = 0, default: Any = dataclasses.MISSING) -> Any:
@@ -58,14 +62,14 @@ def number(unit: str, low: float = -math.inf, high: float = math.inf, *, size: i
     return _field(Rule("number", unit, low, high, size), default)
 
 
-def text(*choices: str, default: Any = dataclasses.MISSING) -> Any:
-    """A dataclass field for a text, one of `choices` where given."""
-    return _field(Rule("text", choices=choices), default)
+def text(*choices: str, default: Any = dataclasses.MISSING, varies: bool = False) -> Any:
+    """A dataclass field for a text, one of `choices` where given; `varies` lets the designs of a batch differ in it."""
+    return _field(Rule("text", choices=choices, varies=varies), default)
 
 
 def flag(default: Any = dataclasses.MISSING) -> Any:
     """A dataclass field for true or false."""
-    return _field(Rule("flag"), default)
+    return _field(Rule("flag", varies=False), default)
 
 
 def _field(rule: Rule, default: Any) -> Any:
@@ -89,10 +93,15 @@ def is_leaf(field: dataclasses.Field[Any]) -> bool:
     return "rule" in field.metadata
 
 
-def section_types(cls: type) -> dict[str, type]:
+def section_types(cls: type) -> Mapping[str, type]:
     """Dataclass of each section field of a dataclass."""
+    return _section_types(cls)  # typing.get_type_hints is slow
+
+
+@cache
+def _section_types(cls: Any) -> Mapping[str, type]:
     hints = typing.get_type_hints(cls)
-    return {f.name: hints[f.name] for f in dataclasses.fields(cls) if dataclasses.is_dataclass(hints[f.name])}
+    return MappingProxyType({f.name: hints[f.name] for f in dataclasses.fields(cls) if dataclasses.is_dataclass(hints[f.name])})
 
 
 def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
@@ -104,14 +113,18 @@ def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
     Raises:
         InputError: wrong type, shape, unit (by magnitude), sign, or not finite.
     """
+    if isinstance(value, np.ndarray) and value.ndim and not rule.varies:
+        raise InputError(where, path, value.tolist(), "cannot differ within a batch; make one batch for each")
     if rule.kind == "flag":
         if isinstance(value, bool | np.bool_):
             return bool(value)
         raise InputError(where, path, value, "expects true or false")
     if rule.kind == "text":
-        if isinstance(value, np.ndarray) and value.dtype.kind in "US":
-            bad = [v for v in np.unique(value) if rule.choices and v not in rule.choices]
+        if isinstance(value, np.ndarray) and value.ndim == 1 and value.size and all(isinstance(v, str) for v in value.tolist()):
+            bad = [str(v) for v in np.unique(value) if rule.choices and v not in rule.choices]
             if not bad:
+                value = value.astype(str)
+                value.setflags(write=False)
                 return value
             value = bad[0]
         elif isinstance(value, str) and (not rule.choices or value in rule.choices):
@@ -134,12 +147,14 @@ def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
         if isinstance(value, list | tuple):
             value = [float(v) if isinstance(v, str) else v for v in value]
         array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(where, path, value, f"expects {what}") from None
     if (rule.size and (array.ndim == 0 or array.shape[-1] != rule.size)) or array.ndim > (2 if rule.size else 1):
         raise InputError(where, path, value, f"expects {what}")
     if not rule.size and isinstance(value, list | tuple):
         raise InputError(where, path, value, f"expects {what}")
+    if array.ndim and array.shape[0] == 0:
+        raise InputError(where, path, value, "is a batch of no designs")
     if not np.all(np.isfinite(array)):
         raise InputError(where, path, value, f"expects {what}, finite")
     outside = (array < rule.low) | (array > rule.high)
@@ -236,7 +251,8 @@ def leaves(instance: Any, path: str = "") -> dict[str, Any]:
     return found
 
 
-def rules(cls: type, path: str = "") -> dict[str, Rule]:
+@cache
+def rules(cls: type, path: str = "") -> Mapping[str, Rule]:
     """Rules of all leaves of a dataclass by dotted path."""
     found: dict[str, Rule] = {}
     sections = section_types(cls)
@@ -246,11 +262,18 @@ def rules(cls: type, path: str = "") -> dict[str, Rule]:
             found.update(rules(sections[field.name], name))
         elif is_leaf(field):
             found[name] = rule_of(field)
-    return found
+    return MappingProxyType(found)
 
 
-def with_values(instance: T, values: Mapping[str, Any], where: str, prefix: str = "") -> T:
+def with_values(instance: T, values: Mapping[str, Any], where: str, prefix: str = "", **others: Any) -> T:
     """A copy with leaves replaced by dotted path; values may be batches.
+
+    Args:
+        instance: the dataclass.
+        values: by dotted path.
+        where: what to name in errors.
+        prefix: dotted path of `instance`, with a dot behind.
+        others: fields that are neither leaves nor sections.
 
     Raises:
         InputError: a path that names no leaf, or a value that breaks its rule.
@@ -260,15 +283,15 @@ def with_values(instance: T, values: Mapping[str, Any], where: str, prefix: str 
     sections = section_types(type(instance))
     fields = {f.name: f for f in dataclasses.fields(instance)}  # type: ignore[arg-type]
     for path, value in values.items():
-        head, _, rest = path.partition(".")
+        head, _, rest = str(path).partition(".")
         if head in sections and rest:
             inner.setdefault(head, {})[rest] = value
         elif head in fields and not rest and is_leaf(fields[head]):
             own[head] = checked(value, rule_of(fields[head]), where, prefix + head)
         elif head in sections:
-            raise InputError(where, prefix + path, value, f"is a section; name one of {', '.join(rules(sections[head], prefix + head))}")
+            raise InputError(where, f"{prefix}{path}", value, f"is a section; name one of {', '.join(rules(sections[head], prefix + head))}")
         else:
-            raise InputError(where, prefix + path, value, unknown(prefix + path, sorted(rules(type(instance), prefix[:-1]))))
+            raise InputError(where, f"{prefix}{path}", value, unknown(f"{prefix}{path}", sorted(leaves(instance, prefix[:-1]))))
     for head, part in inner.items():
         own[head] = with_values(getattr(instance, head), part, where, f"{prefix}{head}.")
-    return dataclasses.replace(instance, **own)  # type: ignore[type-var]
+    return dataclasses.replace(instance, **own, **others)  # type: ignore[type-var]

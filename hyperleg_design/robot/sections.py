@@ -147,7 +147,7 @@ class Joints:
 class Actuator(_Checked):
     """A motor with its gear; the ankle has two of the same."""
 
-    motor: Any = text()
+    motor: Any = text(varies=True)
     """Name in the motor catalogue."""
     gear: Any = number("", 1, 500)
     """Reduction of the gear at the motor [-]."""
@@ -252,6 +252,28 @@ class Electrical(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class Place(_Checked):
+    """Where the reference build has an actuator."""
+
+    housed_in: Any = text("pelvis", "thigh", "shank")
+    """Segment that carries it."""
+    position_fraction: Any = number("", 0, 1, default=0.0)
+    """Where along thigh or shank it sits, over the length from the upper joint [-]."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Places:
+    """Where the reference build has its actuators."""
+
+    hip_yaw: Place
+    hip_roll: Place
+    hip_pitch: Place
+    knee: Place
+    ankle: Place
+    toe: Place
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ReferenceBuild(_Checked):
     """The build for which segment masses, lengths and reductions are declared."""
 
@@ -271,6 +293,7 @@ class ReferenceBuild(_Checked):
     """[m]"""
     shank_length: Any = number("m", 0.05, 2)
     """[m]"""
+    places: Places
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -16,7 +16,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, POSTURES
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
@@ -44,8 +44,13 @@ def full_joint_from_motor(design: Design, posture: str | None = None) -> np.ndar
     Args:
         design: a robot or batch.
         posture: `walking` or `standing`; the design's own by default.
+
+    Raises:
+        InputError: no such posture.
     """
-    posture = posture or str(np.unique(design.transmission.posture)[0])
+    posture = posture or design.transmission.posture
+    if posture not in POSTURES:
+        raise InputError("posture", "", posture, f"expects one of {', '.join(POSTURES)}")
     printed, scale = getattr(design.transmission, posture), design.transmission.scale
     entries = {
         (KNEE, M_KNEE): -printed.knee * scale.knee,
@@ -144,4 +149,6 @@ def check_invertible(design: Design, where: str) -> None:
     for posture in ("walking", "standing"):
         condition: Any = np.linalg.cond(joint_from_motor(design, posture))
         if np.any(~(condition < 1e6)):
-            raise InputError(where, f"transmission.{posture}", None, "makes joint_from_motor singular: some joint is driven by no motor")
+            worst = float(np.max(condition))
+            remedy = "is the condition number of joint_from_motor, as good as singular: some joint has no drive; check reductions, scale, gears"
+            raise InputError(where, f"transmission.{posture}", worst, remedy)
