@@ -114,6 +114,7 @@ def cooperative_actuation(context: Context) -> Made:
         for p in POSTURES
     ]  # fmt: skip
     inertia = leg_reflected_inertia(design)
+    inertia = np.where(np.abs(inertia) < 1e-12, 0.0, inertia)  # rounding where motors cancel
     reflected = Table(["", *joints], [[j, *map(float, row)] for j, row in zip(joints, inertia, strict=True)], f"Reflected rotor inertia M diag(J) Mᵀ [kg m²], {design.transmission.posture}")
     content = [
         "Motor torques reach the joints by joint_torque = M motor_torque, and motor_velocity = Mᵀ joint_velocity, so power is the same on both sides. The knee's row is negative because knee flexion is positive: positive motor torque extends the knee and pushes the toes down.",
@@ -124,6 +125,50 @@ def cooperative_actuation(context: Context) -> Made:
         context.picture("linkage", "Reductions over posture. Squares and dots: the printed postures.", lambda p: save(linkage_figure(design), p)),
     ]  # fmt: skip
     return Made(Section("Cooperative actuation", content))
+
+
+def envelopes(context: Context) -> Made:
+    """Motor envelopes, and the set of torques that joints can have together."""
+    from hyperleg_design.report.envelope_figures import polyhedron_figure, slice_figure, torque_speed_figure
+    from hyperleg_design.sizing import zonotope
+    from hyperleg_design.sizing.envelope import motor_envelope
+
+    design = context.design
+    matrix, peak = transmission.joint_from_motor(design, "walking"), motor_envelope(design).peak_torque
+    _, high = zonotope.box(matrix, -peak, peak)
+    rows: list[list[Any]] = []
+    for index, joint in enumerate(transmission.joint_names(design)):
+        alone = float(zonotope.alone(matrix, -peak, peak, index))
+        rows.append([joint.replace("_", " "), float(high[index]), alone, f"{100 * alone / high[index]:.0f} %"])
+    share = float(zonotope.zonotope_to_box_volume(matrix[3:, 3:], -peak[3:], peak[3:]))
+    pitch = float(zonotope.alone(matrix[3:, 3:], -peak[3:], peak[3:], 1, held=[0]))
+    content = [
+        "Each motor lives inside four quadrants: peak torque, and the line from stall torque to no-load speed. Projected through M, the ankle's two motors make the pitch and roll envelopes of the paper's Fig. 4.",
+        context.picture("envelopes", "Envelopes of the ankle motors, and of ankle pitch (L+R) and roll (L−R).", lambda p: save(torque_speed_figure(design), p)),
+        f"The printed maxima of the joints are one at a time. Below the hip the reachable torques are a zonotope that fills {100 * share:.1f} % of the box those maxima span. With no knee torque, ankle pitch reaches {pitch:.1f} Nm, not {high[4]:.1f}.",
+        Table(["joint", "largest, whatever the others do [Nm]", "largest, the others at zero [Nm]", "of it"], rows, "Walking posture, zero speed, not derated."),
+        context.picture("slices", "What two joints can have together, the others at zero, against the box (dashed).", lambda p: save(slice_figure(design), p)),
+        context.picture("polyhedron", "Knee, ankle pitch and toe together, inside the box of their maxima.", lambda p: save(polyhedron_figure(design), p)),
+    ]  # fmt: skip
+    return Made(Section("Envelopes, and what a box hides", content))
+
+
+def motors(context: Context) -> Made:
+    """The catalogue."""
+    from hyperleg_design.robot.motors import catalogue
+
+    rows = []
+    for m in catalogue().values():
+        weakest = min((m.constants[k].confidence for k in ("peak_torque", "torque_constant", "resistance")), key=["low", "medium", "high"].index)
+        assumed = [k for k, c in m.constants.items() if c.label == "assumed"]
+        numbers = [m.mass, m.peak_torque("vendor"), m.rated_torque, m.no_load_speed("vendor"), m.stall_torque("vendor"), m.corner_speed("vendor"), m.power_constant("vendor"), m.motor_constant("vendor"), m.rated_heat("vendor")]  # fmt: skip
+        rows.append([m.name, m.vendor, m.kind, *numbers, weakest, Cell(", ".join(a.split("_")[0] for a in assumed) or "–", "note")])
+    heads = ["motor", "vendor", "kind", "kg", "peak Nm", "rated Nm", "no load rad/s", "stall Nm", "corner rad/s", "Cp W/Nm²", "Km Nm/√W", "rated heat W", "confidence", "assumed"]  # fmt: skip
+    content = [
+        "Vendors' constants; stall torque, corner speed, power constant, motor constant and heat are computed from them. Each constant's source stands in the motor's file.",
+        Table(heads, rows),
+    ]
+    return Made(Section("Motors to choose from", content), ((str(len(rows)), "motors in the catalogue"),))
 
 
 def made_from(context: Context) -> Made:
@@ -151,6 +196,8 @@ STEPS: Mapping[str, Callable[[Context], Made]] = {
     "table I": table_i,
     "inconsistencies": inconsistencies,
     "cooperative actuation": cooperative_actuation,
+    "envelopes": envelopes,
+    "motors": motors,
     "parameters": made_from,
 }
 """Parts in the order of the page."""
