@@ -1,0 +1,83 @@
+"""Measures of a stretch of a sweep's samples; samples that make no design are told apart, not dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.sweep import measures
+from hyperleg_design.sweep.space import Sweep
+
+Columns = dict[str, np.ndarray]
+"""Columns of a table by name, equally long."""
+
+
+def evaluate_range(sweep: Sweep, start: int, stop: int, samples: Mapping[str, np.ndarray] | None = None) -> Columns:
+    """Rows of the samples `start .. stop`, each sample once a variant.
+
+    Args:
+        sweep: the definition.
+        start: first sample.
+        stop: one past the last.
+        samples: `sweep.samples()`, where that is at hand.
+
+    Returns:
+        `sample`, `variant`, an axis a column, `rejected` (why a sample makes no design; empty where it does), and the
+        measures (nan where rejected).
+    """
+    samples = sweep.samples() if samples is None else samples
+    part = {name: values[start:stop] for name, values in samples.items()}
+    count, variants = stop - start, len(sweep.variants)
+    names = measures.columns(sweep.measures)
+    values = np.full((len(names), count, variants), np.nan)
+    reasons = np.full((count, variants), "", dtype=object)
+    for column, variant in enumerate(sweep.variants):
+        values[:, :, column], reasons[:, column] = evaluate_samples(sweep, part, variant)
+    found: Columns = {
+        "sample": np.repeat(np.arange(start, stop), variants),
+        "variant": np.tile(np.asarray(sweep.variants, dtype=object), count),
+    }
+    found |= {name: np.repeat(axis, variants) for name, axis in part.items()}
+    found["rejected"] = reasons.ravel()
+    return found | {name: values[i].ravel() for i, name in enumerate(names)}
+
+
+def evaluate_samples(sweep: Sweep, samples: Mapping[str, np.ndarray], variant: str) -> tuple[np.ndarray, np.ndarray]:
+    """Measures of some samples as one variant.
+
+    A batch that holds an impossible design is refused as a whole, so it is halved until those stand alone.
+
+    Returns:
+        Measures `(columns, n)`, and reasons of rejection `(n,)`, empty where there is none.
+    """
+    count = len(next(iter(samples.values())))
+    names = measures.columns(sweep.measures)
+    values = np.full((len(names), count), np.nan)
+    reasons = np.full(count, "", dtype=object)
+    waiting = [(0, count)]
+    while waiting:
+        low, high = waiting.pop()
+        try:
+            design = sweep.design({name: v[low:high] for name, v in samples.items()}, variant)
+            found = measures.evaluate(design, sweep.measures)
+        except InputError as error:
+            if high - low == 1:
+                reasons[low] = _reason(error)
+            else:
+                middle = (low + high) // 2
+                waiting += [(low, middle), (middle, high)]
+            continue
+        values[:, low:high] = [found[name] for name in names]
+    return values, reasons
+
+
+def _reason(error: InputError) -> str:
+    """Why one design is refused, without the name of its file."""
+    value = error.value
+    if isinstance(value, list) and len(value) == 1:
+        value = value[0]
+    if isinstance(value, float):
+        value = float(f"{value:.6g}")
+    return f"{error.field}: {error.remedy}" if value is None else f"{error.field} = {value}: {error.remedy}"

@@ -1,0 +1,317 @@
+"""Sizing measures of a batch of designs; adding one is one function here.
+
+Each function takes a `Batch` and returns `(n,)`, or `(n, parts)` where it has a column a part. Nothing loops over designs.
+A part that a variant does not have (the torque of a toe that is gone) is nan.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from hyperleg_design.robot import masses, transmission
+from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot.design import Design
+from hyperleg_design.robot.inertials import Inertial, inertials
+from hyperleg_design.robot.models import leg_reflected_inertia
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
+from hyperleg_design.sizing import zonotope
+from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
+from hyperleg_design.sweep import reference_loads
+from hyperleg_design.sweep.reference_loads import StaticLoad
+
+BELOW_HIP = JOINTS[3:]
+"""Joints that share motors."""
+
+PUSH_OFF_DIRECTION = {"knee": -1.0, "ankle_pitch": 1.0}
+"""Joint speeds of `push_off_power` over each other: knee extension and plantar flexion alike, the toe held (assumed)."""
+
+
+class Batch:
+    """A batch of designs `(n,)` of one variant, and what several measures need of it, computed once."""
+
+    def __init__(self, design: Design) -> None:
+        self.design = design
+        self.size = (design.batch_shape or (1,))[0]
+
+    @cached_property
+    def masses(self) -> masses.MassTable:
+        """Segment masses."""
+        return masses.mass_table(self.design)
+
+    @cached_property
+    def inertials(self) -> dict[str, Inertial]:
+        """Of the links of the left leg, and the pelvis."""
+        return inertials(self.design)
+
+    @cached_property
+    def walking(self) -> np.ndarray:
+        """`joint_from_motor` in the printed walking posture."""
+        return transmission.joint_from_motor(self.design, "walking")
+
+    @cached_property
+    def envelope(self) -> MotorEnvelope:
+        """Of the motors of one leg."""
+        return motor_envelope(self.design)
+
+    @cached_property
+    def squat(self) -> StaticLoad:
+        """The squat of `reference_loads`."""
+        return reference_loads.squat(self.design, self.inertials)
+
+    @cached_property
+    def push_off(self) -> StaticLoad:
+        """The push-off of `reference_loads`."""
+        return reference_loads.push_off(self.design, self.inertials)
+
+    def below_hip(self) -> tuple[np.ndarray, np.ndarray]:
+        """Matrix and peak torques of what lies below the hip, walking."""
+        return self.walking[..., 3:, 3:], self.envelope.peak_torque[..., 3:]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A column, or one a part, of a sweep's table."""
+
+    name: str
+    unit: str
+    """SI; empty for ratios."""
+    better: str
+    """`low` or `high`: what a designer wants of it."""
+    parts: tuple[str, ...]
+    """Suffixes of its columns; empty for one column named after it."""
+    doc: str
+    compute: Callable[[Batch], np.ndarray]
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of its columns."""
+        return tuple(f"{self.name}.{part}" for part in self.parts) or (self.name,)
+
+
+MEASURES: dict[str, Measure] = {}
+"""All measures by name, in the order of the table."""
+
+
+def measure(unit: str, better: str, parts: tuple[str, ...] = ()) -> Callable[[Callable[[Batch], np.ndarray]], Callable[[Batch], np.ndarray]]:
+    """Register a function as the measure of its name; its docstring is the measure's."""
+
+    def register(function: Callable[[Batch], np.ndarray]) -> Callable[[Batch], np.ndarray]:
+        name = function.__name__
+        if name in MEASURES or better not in ("low", "high") or not function.__doc__:
+            raise ValueError(f"measure {name} is there already, or lacks a docstring or a direction")
+        MEASURES[name] = Measure(name, unit, better, parts, function.__doc__, function)
+        return function
+
+    return register
+
+
+def columns(names: Iterable[str]) -> tuple[str, ...]:
+    """Table columns of some measures."""
+    return tuple(c for name in names for c in MEASURES[name].columns)
+
+
+def measure_of(column: str) -> Measure:
+    """Measure that a column belongs to."""
+    return MEASURES[column.split(".")[0]]
+
+
+def label(column: str) -> str:
+    """A column's name with unit, for figures and tables."""
+    found = measure_of(column)
+    name = column.replace("_", " ").replace(".", ", ")
+    return f"{name} [{found.unit}]" if found.unit else name
+
+
+def evaluate(design: Design, names: Iterable[str] | None = None) -> dict[str, np.ndarray]:
+    """Measures of a design or batch of one variant.
+
+    Args:
+        design: a robot or batch.
+        names: of `MEASURES`; all by default.
+
+    Returns:
+        By column, `(n,)` each (`(1,)` for one robot).
+
+    Raises:
+        InputError: an inertia that no body has (see `inertials`).
+    """
+    batch = Batch(design)
+    found: dict[str, np.ndarray] = {}
+    for name in MEASURES if names is None else names:
+        entry = MEASURES[name]
+        values = np.asarray(entry.compute(batch), float)
+        if not entry.parts:
+            found[name] = np.array(np.broadcast_to(values, (batch.size,)))
+            continue
+        # joints or motors that this variant lacks come last in their order
+        padded = np.full((batch.size, len(entry.parts)), np.nan)
+        padded[:, : values.shape[-1]] = values
+        found |= {column: padded[:, i].copy() for i, column in enumerate(entry.columns)}
+    return found
+
+
+@measure("kg", "low")
+def total_mass(batch: Batch) -> np.ndarray:
+    """Mass of the robot."""
+    return batch.masses.total
+
+
+@measure("kg", "low")
+def leg_mass(batch: Batch) -> np.ndarray:
+    """Mass of one leg."""
+    return batch.masses.leg
+
+
+@measure("m", "high")
+def leg_length_straight(batch: Batch) -> np.ndarray:
+    """From the hip-pitch axis to the sole, straight."""
+    return leg_length(batch.design)
+
+
+@measure("", "low")
+def distal_mass_share(batch: Batch) -> np.ndarray:
+    """Shank, foot and toe over the whole leg."""
+    table = batch.masses
+    return (table.shank + table.foot + table.toe) / table.leg
+
+
+@measure("kg m^2", "low")
+def leg_inertia_hip(batch: Batch) -> np.ndarray:
+    """Inertia of one straight leg about the hip-pitch axis, without rotors."""
+    design = batch.design
+    ankle = np.asarray(design.thigh.length) + np.asarray(design.shank.length)
+    drop = np.asarray(design.foot.ankle_height) - np.asarray(design.toe.axis_height)
+    # origin of each link: ahead of the axis, below it
+    origin = {
+        "thigh": (0.0, 0.0),
+        "shank": (0.0, np.asarray(design.thigh.length)),
+        "ankle_cross": (0.0, ankle),
+        "foot": (0.0, ankle),
+        "toe_plate": (np.asarray(design.foot.ball_length), ankle + drop),
+    }
+    total = np.zeros(())
+    for name, (ahead, below) in origin.items():
+        link = batch.inertials[name]
+        squared = (link.com[..., 0] + ahead) ** 2 + (link.com[..., 2] - below) ** 2
+        total = total + link.inertia[..., 1, 1] + link.mass * squared
+    return total
+
+
+@measure("kg", "low")
+def actuator_mass(batch: Batch) -> np.ndarray:
+    """Motors and gears of one leg."""
+    installed = ACTUATOR_OF_MOTOR[: len(transmission.motor_names(batch.design))]
+    return sum(
+        (np.asarray(masses.built_mass(batch.design, getattr(batch.design.actuators, name))) for name in installed),
+        start=np.zeros(()),
+    )
+
+
+@measure("Nm", "high", JOINTS)
+def max_joint_torque(batch: Batch) -> np.ndarray:
+    """Largest torque of each joint whatever the others do, standing, derated, as Table I of the paper."""
+    return transmission.max_joint_torque(batch.design, "standing")
+
+
+@measure("Nm", "high", BELOW_HIP)
+def torque_alone(batch: Batch) -> np.ndarray:
+    """Largest torque of each joint below the hip while the others there have none, walking, at standstill, not derated."""
+    matrix, peak = batch.below_hip()
+    return np.stack([zonotope.alone(matrix, -peak, peak, joint) for joint in range(matrix.shape[-2])], -1)
+
+
+@measure("rad/s", "high", JOINTS)
+def single_joint_speed(batch: Batch) -> np.ndarray:
+    """No-load speed of each joint while the others stand still, walking."""
+    return transmission.single_joint_speed(batch.design, "walking")
+
+
+@measure("Nm", "high")
+def zonotope_size(batch: Batch) -> np.ndarray:
+    """Edge of the cube whose volume is that of the torques which the joints below the hip can have together, walking."""
+    matrix, peak = batch.below_hip()
+    return zonotope.volume(matrix, -peak, peak) ** (1.0 / matrix.shape[-2])
+
+
+@measure("", "high")
+def zonotope_to_box_volume(batch: Batch) -> np.ndarray:
+    """Share of the box of single-joint maxima that the joints below the hip can reach together, walking."""
+    matrix, peak = batch.below_hip()
+    return zonotope.zonotope_to_box_volume(matrix, -peak, peak)
+
+
+@measure("kg m^2", "low", JOINTS)
+def reflected_inertia(batch: Batch) -> np.ndarray:
+    """Rotor inertia at each joint, the diagonal of M diag(J) M^T, walking."""
+    return np.diagonal(leg_reflected_inertia(batch.design, "walking"), axis1=-2, axis2=-1)
+
+
+@measure("kg m^2", "low")
+def reflected_inertia_norm(batch: Batch) -> np.ndarray:
+    """Spectral norm of M diag(J) M^T, walking: rotor inertia at the joints in its worst direction."""
+    return np.linalg.eigvalsh(leg_reflected_inertia(batch.design, "walking"))[..., -1]
+
+
+def _holding_heat(batch: Batch, load: StaticLoad) -> np.ndarray:
+    tau = transmission.motor_torque(batch.walking, load.torque, batch.envelope.power_constant)
+    return np.sum(batch.envelope.power_constant * tau**2, -1)
+
+
+@measure("W", "low")
+def squat_heat(batch: Batch) -> np.ndarray:
+    """Joule heat of one leg that holds half the robot in a squat (`reference_loads`), least-heat motor torques, walking."""
+    return _holding_heat(batch, batch.squat)
+
+
+@measure("W", "low")
+def push_off_heat(batch: Batch) -> np.ndarray:
+    """Joule heat of one leg that carries the push-off load (`reference_loads`), least-heat motor torques, walking."""
+    return _holding_heat(batch, batch.push_off)
+
+
+@measure("", "low")
+def push_off_use(batch: Batch) -> np.ndarray:
+    """Largest motor torque over its peak in that push-off, at standstill; above 1 the motors cannot hold it that way."""
+    tau = transmission.motor_torque(batch.walking, batch.push_off.torque, batch.envelope.power_constant)
+    return np.max(np.abs(tau) / batch.envelope.peak_torque, -1)
+
+
+@measure("W", "high")
+def push_off_power(batch: Batch) -> np.ndarray:
+    """Largest power of one leg that extends knee and ankle at equal speed with the toe held, walking, inside all envelopes."""
+    names = transmission.joint_names(batch.design)
+    direction = np.array([PUSH_OFF_DIRECTION.get(name, 0.0) for name in names])
+    speed = np.abs(transmission.motor_velocity(batch.walking, direction))
+    return largest_power(batch.envelope, speed)
+
+
+def largest_power(envelope: MotorEnvelope, speed: np.ndarray) -> np.ndarray:
+    """Largest summed power over all rates s at which the motors turn together at `s speed`, `(...)` [W].
+
+    Each motor gives s v min(peak, stall (1 - s v / w0)), concave in s: the derivative of the sum is piecewise linear and
+    falls, with kinks at the motors' corner speeds, so its root is exact in one of the intervals between them.
+
+    Args:
+        envelope: limits, `(..., motors)`.
+        speed: each motor's speed at s = 1, not negative, `(..., motors)` [rad/s].
+    """
+    peak, stall, free = envelope.peak_torque, envelope.stall_torque, envelope.no_load_speed
+    turning = speed > 0
+    safe = np.where(turning, speed, 1.0)
+    corner = np.where(turning, envelope.corner_speed / safe, np.inf)
+    kinks = np.concatenate([np.zeros((*corner.shape[:-1], 1)), np.sort(corner, -1)], -1)
+    # in the interval that starts at a kink: motors past their corner follow the voltage line, the others give peak torque
+    past = (corner[..., None, :] <= kinks[..., :, None]) & turning[..., None, :]
+    constant = np.sum(speed[..., None, :] * np.where(past, stall[..., None, :], peak[..., None, :]), -1)
+    slope = np.sum(np.where(past, (2 * stall * speed**2 / free)[..., None, :], 0.0), -1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = np.where(slope > 0, constant / slope, 0.0)
+    high = np.concatenate([kinks[..., 1:], np.full((*corner.shape[:-1], 1), np.inf)], -1)
+    rate = np.clip(root, np.where(np.isfinite(kinks), kinks, 0.0), np.where(np.isfinite(high), high, np.maximum(root, 0.0)))
+    turned = rate[..., :, None] * speed[..., None, :]
+    torque = np.minimum(peak[..., None, :], stall[..., None, :] * (1 - turned / free[..., None, :]))
+    return np.max(np.sum(turned * torque, -1), -1)

@@ -1,0 +1,294 @@
+"""The space of designs that a sweep covers: read from YAML, sampled from one seed, made into batches.
+
+design: hyperleg                       # a shipped name or a file
+set: {masses.law: components}          # leaves changed for all designs
+variants: [toe, toe_removed_matched]   # each sample is evaluated as each of these
+sampling: grid                         # or random, sobol, latin_hypercube, with count
+count: 4096
+seed: 0
+axes:
+  toe.mass: {low: 0.1, high: 0.5, steps: 9}
+  actuators.knee.motor: {values: [RI60, RI70]}
+  leg length: {paths: [thigh.length, shank.length], scale: {low: 0.8, high: 1.2, steps: 5}}
+measures: [leg_inertia_hip]            # all by default
+objectives: [total_mass, push_off_power]
+maps: [{x: toe.mass, y: leg length, measure: leg_inertia_hip}]
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters
+from hyperleg_design.robot.ablation import ablate
+from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.robot.motors import catalogue
+from hyperleg_design.robot.names import VARIANTS
+from hyperleg_design.sweep import measures
+from hyperleg_design.sweep.axis import Axis, read_axis
+
+SAMPLINGS = ("grid", "random", "sobol", "latin_hypercube")
+MAX_DESIGNS = 10_000_000
+"""Above this a definition is taken for a mistake."""
+
+_KEYS = ("name", "description", "design", "set", "variants", "sampling", "count", "seed", "axes", "measures", "objectives", "maps")
+
+
+@dataclass(frozen=True)
+class Map:
+    """A measure to draw over two axes."""
+
+    x: str
+    y: str
+    measure: str
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A sweep definition, checked against its base design."""
+
+    name: str
+    description: str
+    base: Design
+    """With `set` applied and the active toe; variants are made of it after the axes are set."""
+    variants: tuple[str, ...]
+    sampling: str
+    """One of `SAMPLINGS`."""
+    count: int
+    """Samples; each is evaluated once a variant."""
+    seed: int
+    axes: tuple[Axis, ...]
+    measures: tuple[str, ...]
+    """Of `measures.MEASURES`."""
+    objectives: tuple[str, ...]
+    """Columns that span Pareto fronts."""
+    maps: tuple[Map, ...]
+    source: str
+
+    @property
+    def size(self) -> int:
+        """Rows of the table: samples times variants."""
+        return self.count * len(self.variants)
+
+    def samples(self) -> dict[str, np.ndarray]:
+        """Axis values of all samples by axis name, each `(count,)`; the same for the same seed."""
+        if self.sampling == "grid":
+            index = np.unravel_index(np.arange(self.count), [len(a.levels) for a in self.axes])
+            return {axis.name: np.asarray(axis.levels)[i] for axis, i in zip(self.axes, index, strict=True)}
+        positions = _positions(self.sampling, self.count, len(self.axes), np.random.default_rng(self.seed))
+        return {axis.name: axis.at(positions[:, i]) for i, axis in enumerate(self.axes)}
+
+    def design(self, samples: Mapping[str, np.ndarray], variant: str) -> Design:
+        """The batch of designs of some samples.
+
+        Raises:
+            InputError: one of them makes no design.
+        """
+        values: dict[str, Any] = {}
+        for axis in self.axes:
+            values |= axis.leaf_values(self.base, np.asarray(samples[axis.name]))
+        return ablate(self.base.with_values(values, self.name), variant)
+
+    def to_mapping(self) -> dict[str, Any]:
+        """All that decides the numbers in the table, as plain values."""
+        used = {str(getattr(self.base.actuators, a).motor) for a in ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle", "toe")}
+        used |= {str(getattr(self.base.reference, f"{p}_motor")) for p in ("hip", "knee", "ankle", "toe")}
+        used |= {str(v) for axis in self.axes if not axis.numeric for v in axis.levels}
+        return {
+            "name": self.name,
+            "description": self.description,
+            "design": self.base.to_mapping(),
+            "motors": {name: _motor_mapping(name) for name in sorted(used)},
+            "variants": list(self.variants),
+            "sampling": self.sampling,
+            "count": self.count,
+            "seed": self.seed,
+            "axes": {axis.name: axis.to_mapping() for axis in self.axes},
+            "measures": list(self.measures),
+            "objectives": list(self.objectives),
+            "maps": [{"x": m.x, "y": m.y, "measure": m.measure} for m in self.maps],
+        }
+
+    def digest(self) -> str:
+        """Fingerprint of `to_mapping`."""
+        return hashlib.sha256(json.dumps(self.to_mapping(), sort_keys=True).encode()).hexdigest()
+
+
+def _motor_mapping(name: str) -> dict[str, Any]:
+    motor = catalogue()[name]
+    return {
+        "constants": {k: c.value for k, c in motor.constants.items()},
+        "resistance": motor.resistance_convention,
+        "current": motor.current_convention,
+        "presets": {p: {k: c.value for k, c in constants.items()} for p, constants in motor.presets.items()},
+    }
+
+
+def _positions(sampling: str, count: int, dimensions: int, rng: np.random.Generator) -> np.ndarray:
+    """Points in the unit cube, `(count, dimensions)`, below 1."""
+    if sampling == "random":
+        return rng.random((count, dimensions))
+    if sampling == "latin_hypercube":
+        strata = np.stack([rng.permutation(count) for _ in range(dimensions)], -1)
+        return (strata + rng.random((count, dimensions))) / count
+    from scipy.stats import qmc
+
+    # drawn to the next power of two, for which the sequence is balanced, and cut
+    points: np.ndarray = qmc.Sobol(dimensions, scramble=True, rng=rng).random_base2(max(0, (count - 1).bit_length()))
+    return points[:count]
+
+
+def load_sweep(name: str | Path, *, overrides: Mapping[str, Any] | None = None) -> Sweep:
+    """Read a sweep.
+
+    Args:
+        name: a shipped name such as `reduction_ratios`, or a YAML file.
+        overrides: leaves changed for all designs, on top of the file's `set`.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    path = resources.find("sweeps", name)
+    return sweep_from_mapping(read_yaml(path), short_name(path), path.stem, overrides=overrides)
+
+
+def sweep_from_mapping(data: Mapping[str, Any], where: str = "sweep", name: str = "sweep", *, overrides: Mapping[str, Any] | None = None) -> Sweep:
+    """A sweep from what its file would hold.
+
+    Raises:
+        InputError: names `where`, field, value and remedy.
+    """
+    for key in data:
+        if key not in _KEYS:
+            raise InputError(where, str(key), data[key], parameters.unknown(str(key), sorted(_KEYS)))
+    for key in ("design", "axes"):
+        if key not in data:
+            raise InputError(where, key, None, "is missing")
+    base = _base(data, where, overrides or {})
+    sampling = data.get("sampling", "grid")
+    if sampling not in SAMPLINGS:
+        raise InputError(where, "sampling", sampling, f"expects one of {', '.join(SAMPLINGS)}")
+    variants = _variants(data.get("variants", ["toe"]), where)
+    axes = _axes(data["axes"], base, where, grid=sampling == "grid")
+    chosen = _measures(data.get("measures"), where)
+    columns = measures.columns(chosen)
+    return Sweep(
+        name=str(data.get("name", name)),
+        description=str(data.get("description", "")).strip(),
+        base=base,
+        variants=variants,
+        sampling=sampling,
+        count=_count(data, sampling, axes, len(variants), where),
+        seed=_whole(data.get("seed", 0), 0, 2**63 - 1, where, "seed"),
+        axes=axes,
+        measures=chosen,
+        objectives=_columns(data.get("objectives", []), columns, where, "objectives"),
+        maps=_maps(data.get("maps", []), axes, columns, where),
+        source=where,
+    )
+
+
+def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> Design:
+    changes = data.get("set", {})
+    if not isinstance(changes, Mapping):
+        raise InputError(where, "set", changes, "expects a mapping of leaves such as {toe.mass: 0.3}")
+    if not isinstance(data["design"], str):
+        raise InputError(where, "design", data["design"], "expects the name of a design or its file")
+    base = load_design(data["design"])
+    if base.variant != "toe":
+        raise InputError(where, "design", data["design"], f"is the variant {base.variant}; name its base and list it under variants")
+    if changes:
+        base = base.with_values(changes, f"{where}: set")
+    return base.with_values(overrides, "--set") if overrides else base
+
+
+def _variants(found: Any, where: str) -> tuple[str, ...]:
+    if not isinstance(found, list) or not found or len(set(map(str, found))) < len(found):
+        raise InputError(where, "variants", found, f"expects a list of different ones of {', '.join(VARIANTS)}")
+    for variant in found:
+        if variant not in VARIANTS:
+            raise InputError(where, "variants", variant, parameters.unknown(str(variant), list(VARIANTS)).replace("such field", "such variant"))
+    return tuple(found)
+
+
+def _axes(data: Any, base: Design, where: str, *, grid: bool) -> tuple[Axis, ...]:
+    if not isinstance(data, Mapping) or not data:
+        raise InputError(where, "axes", data, "expects a mapping of at least one axis, such as toe.mass: {low: 0.1, high: 0.5, steps: 9}")
+    axes = tuple(read_axis(str(name), entry, base, where, grid=grid) for name, entry in data.items())
+    owner: dict[str, str] = {}
+    reserved = {"variant", "rejected", *measures.columns(tuple(measures.MEASURES))}
+    for axis in axes:
+        if axis.name in reserved:
+            raise InputError(where, f"axes.{axis.name}", None, "is the name of another column of the table; choose another")
+        for path in axis.paths:
+            if path in owner:
+                raise InputError(where, f"axes.{axis.name}", path, f"is moved by the axis {owner[path]} already")
+            owner[path] = axis.name
+    return axes
+
+
+def _count(data: Mapping[str, Any], sampling: str, axes: tuple[Axis, ...], variants: int, where: str) -> int:
+    if sampling == "grid":
+        if "count" in data:
+            raise InputError(where, "count", data["count"], "has no meaning for a grid; give steps to its axes, or another sampling")
+        count = 1
+        for axis in axes:
+            count *= len(axis.levels)
+        if count * variants > MAX_DESIGNS:
+            raise InputError(where, "axes", count * variants, f"makes more than {MAX_DESIGNS} designs; lower the steps, or sample with sobol")
+        return count
+    if "count" not in data:
+        raise InputError(where, "count", None, f"is missing; {sampling} needs the number of samples")
+    return _whole(data["count"], 1, MAX_DESIGNS // variants, where, "count")
+
+
+def _whole(value: Any, low: int, high: int, where: str, field: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise InputError(where, field, value, f"expects a whole number within {low} .. {high}")
+    return value
+
+
+def _measures(found: Any, where: str) -> tuple[str, ...]:
+    known = list(measures.MEASURES)
+    chosen = known if found is None else found
+    if not isinstance(chosen, list) or not chosen:
+        raise InputError(where, "measures", chosen, f"expects a list of some of {', '.join(known)}")
+    for name in chosen:
+        if name not in measures.MEASURES:
+            raise InputError(where, "measures", name, parameters.unknown(str(name), known).replace("such field", "such measure"))
+    return tuple(name for name in known if name in chosen)
+
+
+def _columns(found: Any, columns: tuple[str, ...], where: str, field: str) -> tuple[str, ...]:
+    if not isinstance(found, list):
+        raise InputError(where, field, found, "expects a list of measures")
+    for name in found:
+        if name not in columns:
+            raise InputError(where, field, name, parameters.unknown(str(name), list(columns)).replace("such field", "such measure"))
+    return tuple(found)
+
+
+def _maps(found: Any, axes: tuple[Axis, ...], columns: tuple[str, ...], where: str) -> tuple[Map, ...]:
+    if not isinstance(found, list):
+        raise InputError(where, "maps", found, "expects a list of {x: axis, y: axis, measure: name}")
+    known = [axis.name for axis in axes if axis.numeric]
+    made = []
+    for entry in found:
+        if not isinstance(entry, Mapping) or set(entry) != {"x", "y", "measure"}:
+            raise InputError(where, "maps", entry, "expects {x: axis, y: axis, measure: name}")
+        for key in ("x", "y"):
+            if entry[key] not in known or entry["x"] == entry["y"]:
+                raise InputError(where, f"maps.{key}", entry[key], f"expects two different ones of the numeric axes {', '.join(known)}")
+        _columns([entry["measure"]], columns, where, "maps.measure")
+        made.append(Map(entry["x"], entry["y"], entry["measure"]))
+    return tuple(made)
