@@ -6,7 +6,6 @@ import reprlib
 
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 100
-"""Values as messages show them; short however large or nested they are."""
 
 
 class HyperlegError(Exception):
@@ -25,18 +24,21 @@ class InputError(HyperlegError):
 
     def __init__(self, where: str, field: str, value: object, remedy: str) -> None:
         self.where, self.field, self.value, self.remedy = where, field, value, remedy
-        shown = " ".join(_shown(value).split())
-        if len(shown) > 120:
-            shown = shown[:117] + "..."
-        place = f"{where}: {field}" if field else where
-        super().__init__(f"{place} = {shown}: {remedy}" if value is not None else f"{place}: {remedy}")
+        super().__init__(f"{self.place} = {shown(value)}: {remedy}" if value is not None else f"{self.place}: {remedy}")
+
+    @property
+    def place(self) -> str:
+        """Where and field."""
+        return f"{self.where}: {self.field}" if self.field else self.where
 
 
-def _shown(value: object) -> str:
+def shown(value: object) -> str:
+    """A value as messages show it: one line, short however large or nested the value is."""
     try:
-        return _SHORT.repr(value)
+        text = " ".join(_SHORT.repr(value).split())
     except ValueError:  # Python refuses to write integers of thousands of digits
         return f"{type(value).__name__} too long to show"
+    return text if len(text) <= 120 else text[:117] + "..."
 
 
 class OutputError(HyperlegError):

@@ -42,7 +42,8 @@ def urdf(design: Design, tree: Tree | None = None) -> str:
     with tempfile.TemporaryDirectory(prefix="hyperleg-") as folder:
         path = Path(folder) / "tree.yaml"
         path.write_text(tree_yaml(tree))
-        document = xacro.process_file(str(resources.content_folder("descriptions") / TEMPLATE), mappings={"tree": str(path), "name": tree.name})
+        document = xacro.process_file(str(resources.content_folder("descriptions") / TEMPLATE), mappings={"tree": str(path)})
+    document.documentElement.setAttribute("name", tree.name)  # xacro reads the root's attributes before any argument
     body: str = document.documentElement.toprettyxml(indent="  ")
     return f'<?xml version="1.0"?>\n{body}'
 

@@ -211,6 +211,8 @@ def from_mapping(cls: type[T], data: Any, where: str, path: str = "", origins: d
             if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
                 unit = f" [{rule_of(field).unit}]" if rule_of(field).unit else ""
                 raise InputError(where, dot + name, None, f"is missing{unit}")
+            if origins is not None:
+                origins[dot + name] = Origin("assumed", "default of this field")
             continue
         value, origin = labelled(data[name], where, dot + name)
         values[name] = checked(value, rule_of(field), where, dot + name)

@@ -1,0 +1,91 @@
+"""Checking the files that describe robots: designs, motors, URDF and MJCF, each by its own rules."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError, shown
+from hyperleg_design.reading import read_yaml
+from hyperleg_design.robot.check_mjcf import check_mjcf
+from hyperleg_design.robot.check_urdf import check_urdf, parse_xml
+from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.finding import Finding
+from hyperleg_design.robot.linkage import LinkageModel
+from hyperleg_design.robot.motors import load_motor
+
+KINDS = ("design", "motor", "urdf", "mjcf")
+XML = (".urdf", ".xml", ".mjcf")
+
+
+def kind_of(path: str | Path) -> str:
+    """What a file holds: one of `KINDS`, or `unknown`; a bare name is a shipped design.
+
+    Raises:
+        InputError: there is no such file, or it cannot be read or parsed.
+    """
+    if Path(path).suffix.lower() in XML:
+        root, _ = parse_xml(path)
+        tag = None if root is None else root.tag
+        if tag not in ("robot", "mujoco"):
+            return "urdf" if Path(path).suffix.lower() == ".urdf" else "mjcf" if root is None else "unknown"
+        return "urdf" if tag == "robot" else "mjcf"
+    if Path(path).suffix.lower() not in ("", ".yaml", ".yml"):
+        return "unknown"
+    data = read_yaml(resources.find("descriptions", path))
+    if "constants" in data and "convention" in data:
+        return "motor"
+    return "design" if "base" in data or "pelvis" in data else "unknown"
+
+
+def check_file(path: str | Path) -> list[Finding]:
+    """Everything wrong with a design, motor, URDF or MJCF file.
+
+    Args:
+        path: a file, or the name of a shipped design.
+
+    Returns:
+        Findings, errors first; empty where nothing is wrong.
+
+    Raises:
+        InputError: there is no such file, or it cannot be read.
+    """
+    if Path(path).suffix.lower() not in XML:
+        path = resources.find("descriptions", path)
+    try:
+        kind = kind_of(path)
+        if kind == "motor":
+            load_motor(Path(path))
+            return []
+        if kind == "design":
+            return _check_design_file(path)
+    except InputError as error:
+        return [finding_of(error)]
+    if kind == "urdf":
+        return check_urdf(Path(path))
+    if kind == "mjcf":
+        return check_mjcf(Path(path))
+    return [Finding("error", str(path), "is of no kind that can be checked", "expects a design or motor (YAML), a URDF, or an MJCF file")]
+
+
+def finding_of(error: InputError, severity: str = "error") -> Finding:
+    """An input error as a finding."""
+    if error.value is None:
+        return Finding(severity, error.place, error.remedy, "correct it there")
+    return Finding(severity, error.place, f"is {shown(error.value)}", error.remedy)
+
+
+def _check_design_file(path: str | Path) -> list[Finding]:
+    """A design that loads must also become a URDF without faults; one without a linkage model gets a warning."""
+    from hyperleg_design.robot.description import urdf
+
+    design = load_design(path)
+    found = check_urdf(urdf(design))
+    try:
+        LinkageModel.of(design)
+    except InputError as error:
+        found.append(finding_of(error, "warning"))
+    return found
+
+
+__all__ = ["KINDS", "Finding", "check_file", "check_mjcf", "check_urdf", "finding_of", "kind_of"]

@@ -1,0 +1,94 @@
+"""Whether an MJCF file is a robot that MuJoCo can simulate."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.robot.check_urdf import parse_xml
+from hyperleg_design.robot.finding import Finding
+
+LARGEST_TIME_STEP = 0.02
+"""Step past which contacts and motors no longer behave [s]."""
+DEEPEST_CONTACT = 0.01
+"""Penetration in a keyframe past which the robot jumps when started there [m]."""
+
+
+def check_mjcf(source: str | Path) -> list[Finding]:
+    """Everything wrong with an MJCF file: syntax, what MuJoCo's compiler refuses, and what it lets pass.
+
+    Args:
+        source: a path, or the text itself.
+
+    Returns:
+        Findings, errors first; empty where nothing is wrong.
+
+    Raises:
+        InputError: the file cannot be read.
+    """
+    import mujoco
+
+    root, found = parse_xml(source)
+    if root is None:
+        return found
+    if root.tag != "mujoco":
+        return [Finding("error", f"line {root.sourceline}", f"the root element is <{root.tag}>", "an MJCF file starts with <mujoco>")]
+    is_text = isinstance(source, str) and source.lstrip().startswith("<")
+    try:
+        spec = mujoco.MjSpec.from_string(source) if is_text else mujoco.MjSpec.from_file(str(source))
+        model = spec.compile()
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:
+        return [Finding("error", "<mujoco>", f"MuJoCo does not compile it: {' '.join(str(error).split())[:300]}", "correct what it names")]
+    found = _model(model) + _starts(model)
+    return sorted(found, key=lambda f: f.severity != "error")
+
+
+def _model(model: Any) -> list[Finding]:
+    import mujoco
+
+    found = []
+    if not model.nv:
+        found.append(Finding("error", "<worldbody>", "nothing moves", "add joints"))
+    if not model.nu:
+        found.append(Finding("warning", "<actuator>", "there are no actuators", "add one a motor"))
+    if model.opt.timestep > LARGEST_TIME_STEP:
+        found.append(Finding("warning", "<option>", f"timestep is {model.opt.timestep:g} s", f"stay below {LARGEST_TIME_STEP:g} s"))
+    for index in range(model.nu):
+        low, high = model.actuator_ctrlrange[index]
+        if model.actuator_ctrllimited[index] and low >= high:
+            found.append(Finding("error", f"actuator {model.actuator(index).name}", f"control range is {low:g} .. {high:g}, empty", "widen it"))
+    for index in range(model.njnt):
+        joint = model.joint(index)
+        if joint.type[0] == mujoco.mjtJoint.mjJNT_HINGE and not model.jnt_limited[index]:
+            found.append(Finding("warning", f"joint {joint.name}", "has no range", "add range= if the joint has stops"))
+    return found
+
+
+def _starts(model: Any) -> list[Finding]:
+    """Whether each keyframe, or the zero posture, is a state to start from."""
+    import mujoco
+
+    found = []
+    data = mujoco.MjData(model)
+    for key in range(model.nkey) if model.nkey else [-1]:
+        place = f"keyframe {model.key(key).name}" if key >= 0 else "zero posture"
+        if key >= 0:
+            mujoco.mj_resetDataKeyframe(model, data, key)
+        mujoco.mj_forward(model, data)
+        if not np.all(np.isfinite(data.qacc)):
+            found.append(Finding("error", place, "accelerations are not finite", "check masses, inertias and contacts"))
+        depth = -float(np.min(data.contact.dist, initial=0.0))
+        if depth > DEEPEST_CONTACT:
+            found.append(Finding("warning", place, f"bodies overlap by {depth:.3g} m", "move them apart, or the robot jumps"))
+        for index in range(model.njnt):
+            if key < 0 or not model.jnt_limited[index] or model.jnt_type[index] not in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
+                continue
+            value, (low, high) = float(data.qpos[model.jnt_qposadr[index]]), model.jnt_range[index]
+            if not low - 1e-9 <= value <= high + 1e-9:
+                name = model.joint(index).name
+                found.append(
+                    Finding("warning", place, f"joint {name} is at {value:.4g}, outside {low:.4g} .. {high:.4g}", "move it inside its range")
+                )
+    return found
