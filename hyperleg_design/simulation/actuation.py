@@ -1,0 +1,173 @@
+"""Cooperative actuation in simulation: from joint targets to what the joints feel, pure and batched.
+
+One simulation step, as in Section III of the paper:
+
+    tau_joint = stiffness (target - q) - damping q_dot             joint controller
+    tau_motor = M^-1 tau_joint                                     least heat where motors outnumber joints
+    tau_motor = clip(tau_motor) at motor_velocity = M^T q_dot      four-quadrant envelope
+    tau_cmd   = M tau_motor - (f_c tanh(q_dot / v_m) + f_v q_dot)  Eq. (4)
+
+Motor torques go to MuJoCo as controls on the tendons whose coefficients are the columns of M, which multiplies by M.
+Friction goes in explicitly as that formula prints it, or implicitly, the default: with `D = f_c tanh(|q_dot| / v_m) /
+|q_dot| + f_v` of the velocity before the step as a damping, `D q_dot` of the velocity after it. Both tend to the same
+friction as the step shrinks. At 200 Hz the explicit one is unstable on the light distal joints: f_c h / (v_m I) is 24 at
+the toe, where 2 is the bound, and foot and toe chatter in the air.
+
+Arrays are `(..., legs, joints)` and `(..., legs, motors)`; those of the model broadcast against them.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope, torque_limits
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+
+@dataclass(frozen=True, eq=False)
+class ActuationModel:
+    """Constants of one leg's actuation; of a batch of designs with `(n, 1)` in front."""
+
+    joint_from_motor: np.ndarray
+    """M, `(..., joints, motors)` [-]."""
+    motor_from_joint: np.ndarray
+    """M^-1, or the map of least Joule heat, `(..., motors, joints)` [-]."""
+    envelope: MotorEnvelope
+    """`(..., motors)` each."""
+    rated_torque: np.ndarray
+    """Continuous torque [Nm], `(..., motors)`."""
+    stiffness: np.ndarray
+    """[Nm/rad], `(..., joints)`."""
+    damping: np.ndarray
+    """[Nms/rad], `(..., joints)`."""
+    coulomb: np.ndarray
+    """[Nm], `(..., joints)`."""
+    viscous: np.ndarray
+    """[Nms/rad], `(..., joints)`."""
+
+
+def actuation_model(design: Design) -> ActuationModel:
+    """Actuation of a robot, or of a batch of them with an axis for the legs behind the batch."""
+    joints, motors = transmission.joint_names(design), transmission.motor_names(design)
+    batched = bool(design.batch_shape)
+    arrays = motor_arrays(design)
+
+    def legs(values: np.ndarray, core: int) -> np.ndarray:
+        return np.expand_dims(np.broadcast_to(values, (*design.batch_shape, *values.shape[values.ndim - core :])), -core - 1) if batched else values
+
+    def of_joints(field: str) -> np.ndarray:
+        values = [getattr(getattr(design.joints, joint), field) for joint in joints]
+        return legs(np.stack(np.broadcast_arrays(*values), -1).astype(float), 1)
+
+    envelope = motor_envelope(design)
+    limits = {n: legs(getattr(envelope, n), 1) for n in ("no_load_speed", "stall_torque", "peak_torque", "power_constant")}
+    matrix = transmission.joint_from_motor(design)
+    return ActuationModel(
+        joint_from_motor=legs(matrix, 2),
+        motor_from_joint=legs(motor_from_joint(matrix, envelope.power_constant), 2),
+        envelope=dataclasses.replace(envelope, **limits),
+        rated_torque=legs(arrays.rated_torque[..., : len(motors)], 1),
+        stiffness=of_joints("stiffness"),
+        damping=of_joints("damping"),
+        coulomb=of_joints("coulomb"),
+        viscous=of_joints("viscous"),
+    )
+
+
+def motor_from_joint(matrix: np.ndarray, power_constant: np.ndarray) -> np.ndarray:
+    """The linear map from joint torques to motor torques, `(..., motors, joints)`: M^-1, or that of least Joule heat.
+
+    C^-1 M^T (M C^-1 M^T)^-1 with C the motors' power constants [W/Nm^2]; where motors outnumber joints it leaves the
+    others at the cheapest.
+    """
+    if matrix.shape[-1] == matrix.shape[-2]:
+        return np.linalg.inv(matrix)
+    weighted = matrix / np.asarray(power_constant)[..., None, :]
+    return np.swapaxes(np.linalg.solve(weighted @ np.swapaxes(matrix, -1, -2), weighted), -1, -2)
+
+
+def smoothed_action(previous: np.ndarray, action: np.ndarray, weight: float) -> np.ndarray:
+    """Exponential moving average, `(..., J)`: weight * action + (1 - weight) * previous, once a policy step."""
+    return previous + weight * (action - previous)
+
+
+def controller_torque(model: ActuationModel, target: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Joint torque that the joint controller wants [Nm], `(..., legs, joints)`."""
+    return model.stiffness * (target - position) - model.damping * velocity
+
+
+def motor_speed(matrix: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """M^T q_dot [rad/s], `(..., legs, joints)` -> `(..., legs, motors)`."""
+    return applied(np.swapaxes(matrix, -1, -2), velocity)
+
+
+def driven_torque(model: ActuationModel, wanted: np.ndarray, speed: np.ndarray, to_motor: np.ndarray | None = None) -> np.ndarray:
+    """Motor torques that the drives give [Nm], `(..., legs, motors)`.
+
+    Args:
+        model: the actuation.
+        wanted: joint torques [Nm], `(..., legs, joints)`.
+        speed: motor velocities [rad/s], `(..., legs, motors)`.
+        to_motor: map from joint to motor torques in place of the model's, `(..., motors, joints)`.
+    """
+    lower, upper = torque_limits(model.envelope, speed)
+    torque = applied(model.motor_from_joint if to_motor is None else to_motor, wanted)
+    return np.minimum(np.maximum(torque, lower), upper)
+
+
+def friction_torque(coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any) -> np.ndarray:
+    """f_c tanh(v / v_m) + f_v v [Nm], the part subtracted in Eq. (4); `(...)`."""
+    return coulomb * np.tanh(velocity / width) + viscous * velocity
+
+
+def friction_damping(coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any) -> np.ndarray:
+    """The damping D with D v = `friction_torque` [Nms/rad], `(...)`; f_c / v_m + f_v at rest."""
+    ratio = np.abs(velocity) / width
+    np.maximum(ratio, 1e-9, out=ratio)
+    return coulomb / width * (np.tanh(ratio) / ratio) + viscous
+
+
+def motor_friction(design: Design) -> tuple[np.ndarray, np.ndarray]:
+    """Friction at the motors that comes nearest to the printed friction at the joints.
+
+    Table I prints friction per joint, measured with motors that move several joints. Non-negative Coulomb torques f and
+    viscous coefficients d at the motors are fitted, in least squares, so that each joint moving alone meets
+    `sum |M| f` and `sum M^2 d`; they cannot meet all of them.
+
+    Returns:
+        Coulomb [Nm] and viscous [Nms/rad], `(motors,)` each, of one robot.
+    """
+    from scipy.optimize import nnls
+
+    matrix, model = transmission.joint_from_motor(design), actuation_model(design)
+    return nnls(np.abs(matrix), model.coulomb)[0], nnls(matrix**2, model.viscous)[0]
+
+
+def motor_friction_width(matrix: np.ndarray, width: float) -> np.ndarray:
+    """Motor speeds that match the joints' v_m: v_m times each motor's largest reduction [rad/s], `(..., motors)`."""
+    return np.asarray(width * np.max(np.abs(matrix), -2))
+
+
+def joule_power(power_constant: np.ndarray, torque: np.ndarray) -> np.ndarray:
+    """Heat in each motor [W], Cp tau^2, `(..., motors)`."""
+    return power_constant * torque**2
+
+
+def mechanical_power(torque: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Signed mechanical power of each motor or joint [W], `(...)`."""
+    return torque * velocity
+
+
+def applied(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """matrix @ vector over the last axes; one product for all rows where the matrix is shared."""
+    if matrix.ndim == 2:
+        return vector @ matrix.T
+    return np.matmul(matrix, vector[..., None])[..., 0]

@@ -1,0 +1,66 @@
+"""Helping forces on the pelvis at the start of training, to be taken away before it ends; never the paper's, never in a test.
+
+Without them no reward tried so far taught this biped its first steps. They act in an environment only while one is given
+its `Assist`, which none is by default.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.simulation.state import Motion, to_world
+
+FORCE = 250.0
+"""Forward force over speed error [N s/m]; assumed."""
+TORQUE = 400.0
+"""Uprighting torque over tilt [Nm/rad]; assumed."""
+DAMPING = 40.0
+"""Uprighting torque over roll and pitch rate [Nms/rad]; assumed."""
+DECAY = 0.93
+"""Factor on the gain at each decay; assumed."""
+OFF_BELOW = 0.01
+"""Gain below which it is zero; assumed."""
+
+
+@dataclass
+class Assist:
+    """A forward force toward the commanded speed and an uprighting torque, scaled by a gain that only decays."""
+
+    gain: float = 1.0
+    """1 full, 0 gone [-]."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.gain <= 1.0:
+            raise InputError("assist", "gain", self.gain, "expects a number within 0 .. 1")
+
+    @property
+    def active(self) -> bool:
+        """Whether it still acts."""
+        return self.gain > 0.0
+
+    def decay(self) -> None:
+        """Less by the factor `DECAY`; zero once below `OFF_BELOW`."""
+        self.gain *= DECAY
+        if self.gain < OFF_BELOW:
+            self.gain = 0.0
+
+    def wrench(self, motion: Motion, direction: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """Force and torque on the pelvis in the world [N, Nm], `(n, 6)`.
+
+        Args:
+            motion: of the robots.
+            direction: unit vector to go, in the yaw frame, `(n, 2)`.
+            speed: wanted that way [m/s], `(n,)`.
+        """
+        ahead = to_world(motion.heading, direction)
+        error = speed - np.einsum("ni,ni->n", ahead, motion.velocity[:, :2])
+        up = motion.rotation[:, :, 2]
+        turning = np.einsum("nij,nj->ni", motion.rotation, motion.angular_velocity)
+        wrench = np.zeros((len(error), 6))
+        wrench[:, :2] = FORCE * error[:, None] * ahead
+        wrench[:, 3] = TORQUE * up[:, 1] - DAMPING * turning[:, 0]
+        wrench[:, 4] = -TORQUE * up[:, 0] - DAMPING * turning[:, 1]
+        return self.gain * wrench

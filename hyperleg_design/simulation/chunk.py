@@ -1,0 +1,342 @@
+"""A few simulations stepped by one thread: physics, rewards, ends, resets and observations.
+
+Everything in a chunk depends on its own simulations and its own random stream only, so a trajectory does not depend on
+how many threads work on the chunks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.simulation import model as models
+from hyperleg_design.simulation import terminations
+from hyperleg_design.simulation.actuation import smoothed_action
+from hyperleg_design.simulation.assist import Assist
+from hyperleg_design.simulation.commands import commander
+from hyperleg_design.simulation.drive import LEGS, Drive
+from hyperleg_design.simulation.layout import Layout
+from hyperleg_design.simulation.observations import observe
+from hyperleg_design.simulation.rewards import TERMS, Robot
+from hyperleg_design.simulation.state import Goal, Motion, State, read_motion
+from hyperleg_design.simulation.tasks import Reward, Task
+from hyperleg_design.simulation.thermal import ThermalState
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.robot.design import Design
+
+FASTEST = 1e4
+"""Speed of a coordinate past which a simulation counts as diverged [m/s or rad/s]."""
+_ROTORS_BEFORE = 6
+_BROKEN = slice(1, 6)
+"""MuJoCo's warnings that mark a step as wrong: contacts or constraints left out, bad position, velocity, acceleration."""
+
+
+@dataclass(frozen=True, eq=False)
+class Divergence:
+    """A simulation that left what can be computed, with the state from which it did within one policy step."""
+
+    simulation: int
+    episode_step: int
+    """Policy steps since the episode began."""
+    reason: str
+    position: np.ndarray
+    """MuJoCo's qpos before, `(7 + J,)`."""
+    velocity: np.ndarray
+    """MuJoCo's qvel before, `(6 + J,)`."""
+    action: np.ndarray
+    """`(J,)`"""
+
+
+@dataclass(eq=False)
+class Step:
+    """What one policy step of n simulations gives back; ended simulations have been started anew already."""
+
+    observations: dict[str, np.ndarray]
+    """By group, `(n, size)`, single precision; of the new episode where one ended."""
+    reward: np.ndarray
+    """`(n,)`; zero for a diverged simulation."""
+    terminated: np.ndarray
+    """Whether the robot fell, `(n,)`."""
+    truncated: np.ndarray
+    """Whether the episode ended otherwise, `(n,)`."""
+    ending: np.ndarray
+    """Index into `ENDINGS`, `(n,)`."""
+    reward_terms: np.ndarray
+    """Each term, weighted, `(n, terms)` in the order of the task's rewards; they sum to the reward."""
+    ended: np.ndarray
+    """Simulations that ended, `(m,)`."""
+    final_observations: dict[str, np.ndarray]
+    """Their last observations before the new start, by group, `(m, size)`."""
+    episode_steps: np.ndarray
+    """Length of the episodes that ended [policy steps], `(m,)`."""
+    divergences: list[Divergence]
+
+
+class Chunk:
+    """Simulations `first .. first + count` of an environment."""
+
+    def __init__(
+        self,
+        design: Design,
+        task: Task,
+        layout: Layout,
+        model: mujoco.MjModel,
+        designs_models: list[mujoco.MjModel] | None,
+        first: int,
+        count: int,
+        rng: np.random.Generator,
+    ) -> None:
+        from mujoco import batch
+
+        self.task, self.layout, self.first, self.count, self.rng = task, layout, first, count, rng
+        self.batch = batch.Batch(model, count, 1)
+        if designs_models is not None:
+            if task.physics.friction == "implicit" or task.physics.posture_dependent or _varies_models(task):
+                raise InputError(
+                    "physics", "friction", task.physics.friction,
+                    "a batch of designs runs on models of its own, which needs friction: explicit, no posture dependence, no varied masses or floors",
+                )  # fmt: skip
+            self.batch.set_models(designs_models)
+        _vary_models(self.batch, task, rng)
+        self.drive = Drive(design, layout, task.physics, self.batch, task.randomisation, rng)
+        self._rated, self._heat = self.drive.flat(self.drive.model.rated_torque), self.drive.flat(self.drive.model.envelope.power_constant)
+        self._sensors, self._places, self._push = self.batch.bind("sensordata"), self.batch.bind("geom_xpos"), self.batch.bind("xfrc_applied")
+        self._pelvis = model.body("pelvis").id
+        self._pad_ids = [model.geom(pad).id for pad in layout.pads]
+        self._pad_radius = float(model.geom(layout.pads[0]).size[0])
+        joints, motors, substeps = len(layout.joints), len(layout.motors), int(task.physics.substeps)
+        self.action, self.previous_action, self.smoothed = (np.zeros((count, joints)) for _ in range(3))
+        self.motor_torque, self.motor_velocity = np.zeros((substeps, count, motors)), np.zeros((substeps, count, motors))
+        self.sensors = np.zeros((substeps, count, self._sensors.shape[-1]))
+        self.states = np.zeros((substeps, count, 13 + 2 * joints))
+        """MuJoCo's position and velocity before each substep, kept while `recording`."""
+        self.recording = False
+        self.thermal = ThermalState(task.thermal, (count, motors))
+        self.commander = commander(task.commands, count)
+        self.rewards: dict[str, Reward] = dict(task.rewards)
+        self.assist: Assist | None = None
+        self.robot = Robot(layout, task.clock)
+        self.episode_step = np.zeros(count, int)
+        self._clock_start = np.zeros(count)
+        self.motion: Motion
+        self.goal: Goal | None = None
+
+    def reset(self) -> dict[str, np.ndarray]:
+        """Start all simulations and give their observations by group."""
+        everyone = np.arange(self.count)
+        self.motion = self._start(everyone)
+        self.commander.reset(everyone, self.motion, self.rng)
+        self.goal = self.commander.judge(self.motion)
+        return observe(self.task.observations, self._state(), self.robot)
+
+    def step(self, action: np.ndarray) -> Step:
+        """One policy step with finite actions `(n, J)`."""
+        task, duration = self.task, self.task.physics.policy_step
+        self.previous_action, self.action = self.action, np.clip(action, -task.control.limit, task.control.limit)
+        self.smoothed = smoothed_action(self.smoothed, self.action, task.control.smoothing)
+        position_before, velocity_before = self.drive.qpos.copy(), self.drive.qvel.copy()
+        self._pushes(duration)
+        self._physics()
+        self.episode_step += 1
+        divergences = self._find_diverged(position_before, velocity_before)
+        diverged = np.array([d.simulation - self.first for d in divergences], int)
+        self.motion = read_motion(self.drive.qpos, self.drive.qvel)
+        self.goal = self.commander.judge(self.motion)
+        ending = terminations.ending(self.motion, self.goal, self.episode_step, task.limits, duration)
+        ending[diverged] = terminations.DIVERGED
+        terminated = np.isin(ending, terminations.FALLS)
+        state = self._state(self.thermal.advance(self.motor_torque / self._rated, duration), terminated)
+        reward_terms = self._rewards(state) * duration
+        reward_terms[diverged] = 0.0
+        ended = np.flatnonzero(ending)
+        lengths = self.episode_step[ended]
+        self.commander.advance(self.motion, self.goal, duration, self.rng)
+        state.command = self.commander.vector(self.goal)
+        observations = observe(task.observations, state, self.robot)
+        final = {group: values[ended] for group, values in observations.items()}
+        if len(ended):
+            self._start_again(ended)
+            for group, values in observe(task.observations, self._state(), self.robot).items():
+                observations[group][ended] = values[ended]
+        return Step(
+            observations=observations,
+            reward=reward_terms.sum(-1),
+            terminated=terminated,
+            truncated=(ending != 0) & ~terminated,
+            ending=ending,
+            reward_terms=reward_terms,
+            ended=ended + self.first,
+            final_observations=final,
+            episode_steps=lengths,
+            divergences=divergences,
+        )
+
+    @property
+    def phase(self) -> np.ndarray:
+        """Of the gait clock, 0 .. 1, `(n,)`."""
+        elapsed = self.episode_step * (self.task.physics.policy_step / self.task.clock.period)
+        return np.asarray((self._clock_start + elapsed) % 1.0)
+
+    def _physics(self) -> None:
+        joints = len(self.layout.joints)
+        target = (self.layout.default + self.task.control.scale * self.smoothed).reshape(self.count, LEGS, joints // LEGS)
+        assisted = self.assist is not None and self.assist.active
+        for substep in range(len(self.sensors)):
+            if self.recording:
+                self.states[substep, :, : 7 + joints], self.states[substep, :, 7 + joints :] = self.drive.qpos, self.drive.qvel
+            self.drive.apply(target, self.motor_torque[substep], self.motor_velocity[substep])
+            if assisted:
+                self._help()
+            self._advance()
+            self.sensors[substep] = self._sensors
+        if assisted:
+            self._push[:, self._pelvis] = 0.0
+
+    def _advance(self) -> None:
+        from mujoco.batch import SimulationError
+
+        try:
+            self.batch.step()
+        except SimulationError as error:
+            self.drive.qpos[error.ids] = np.nan  # found, reported and started anew after the policy step
+
+    def _help(self) -> None:
+        assert self.assist is not None
+        motion = read_motion(self.drive.qpos, self.drive.qvel)
+        direction, speed = self.commander.wanted(self.goal)
+        self._push[:, self._pelvis] = self.assist.wrench(motion, direction, speed)
+
+    def _pushes(self, duration: float) -> None:
+        settings = self.task.randomisation
+        if settings.push_speed:
+            hit = self.rng.uniform(size=self.count) < duration / settings.push_interval
+            change = self.rng.uniform(-settings.push_speed, settings.push_speed, (self.count, 2))
+            self.drive.qvel[hit, :2] += change[hit]
+
+    def _state(self, thermal_excess: np.ndarray | None = None, terminated: np.ndarray | None = None) -> State:
+        torque, speed = self.motor_torque, self.motor_velocity
+        return State(
+            motion=self.motion,
+            action=self.action,
+            previous_action=self.previous_action,
+            command=self.commander.vector(self.goal),
+            motor_torque=torque,
+            motor_velocity=speed,
+            pad_load=models.pad_loads(self.sensors),
+            pad_slip=models.pad_slip(self.sensors[-1]),
+            power=np.einsum("snk,snk->n", self._heat * torque + speed, torque) / len(torque),
+            thermal_excess=np.zeros(self.count) if thermal_excess is None else thermal_excess,
+            phase=self.phase,
+            terminated=np.zeros(self.count, bool) if terminated is None else terminated,
+            goal=self.goal,
+        )
+
+    def _rewards(self, state: State) -> np.ndarray:
+        values = np.zeros((self.count, len(self.rewards)))
+        for column, (name, reward) in enumerate(self.rewards.items()):
+            if reward.weight:
+                values[:, column] = reward.weight * TERMS[name].function(state, self.robot, **reward.parameters)
+        return values
+
+    def _find_diverged(self, position: np.ndarray, velocity: np.ndarray) -> list[Divergence]:
+        """Simulations gone wrong in this step; they are put back to standing so that the others can go on."""
+        moving = np.abs(self.drive.qvel).max(-1)
+        lost = ~np.isfinite(self.drive.qpos.sum(-1)) | ~(moving < FASTEST)
+        warned = self.batch.warning[:, _BROKEN, 1].any(-1)
+        ids = np.flatnonzero(lost | warned)
+        found = []
+        for i in ids:
+            reason = self.batch.error(int(i)) or ("speed or position without bounds" if lost[i] else "warning of MuJoCo")
+            found.append(Divergence(self.first + int(i), int(self.episode_step[i]), reason, position[i], velocity[i], self.action[i].copy()))
+        if len(ids):
+            self._start(ids)
+        return found
+
+    def _start_again(self, ids: np.ndarray) -> None:
+        motion = self._start(ids)
+        self.motion.put(ids, motion)
+        self.commander.reset(ids, motion, self.rng)
+        if self.goal is not None:
+            fresh = self.commander.judge(self.motion)
+            assert fresh is not None
+            for name in Goal.__slots__:
+                getattr(self.goal, name)[ids] = getattr(fresh, name)[ids]
+
+    def _start(self, ids: np.ndarray) -> Motion:
+        """Put robots on the floor near their default posture; motion of these rows."""
+        start, layout, count, rng = self.task.start, self.layout, len(ids), self.rng
+        joints = len(layout.joints)
+        self.batch.reset(ids, 0, 0)
+        self.batch.warning[ids] = 0
+        position = self.drive.qpos[ids]
+        angles = position[:, 7:] + rng.uniform(-start.joint_position, start.joint_position, (count, joints))
+        position[:, 7:] = np.clip(angles, layout.lower, layout.upper)
+        roll, pitch = rng.uniform(-start.tilt, start.tilt, (2, count))
+        position[:, 3:7] = _quaternion(roll, pitch, rng.uniform(-start.yaw, start.yaw, count))
+        velocity = np.zeros((count, 6 + joints))
+        velocity[:, :2] = rng.uniform(-start.linear_velocity, start.linear_velocity, (count, 2))
+        velocity[:, 6:] = rng.uniform(-start.joint_velocity, start.joint_velocity, (count, joints))
+        self.drive.qpos[ids], self.drive.qvel[ids] = position, velocity
+        self.batch.forward(ids, 1)
+        lowest = self._places[ids][:, self._pad_ids, 2].min(-1) - self._pad_radius
+        self.drive.qpos[ids, 2] -= lowest
+        self._clock_start[ids] = rng.uniform(size=count)
+        self.episode_step[ids] = 0
+        self.thermal.reset(ids)
+        for values in (self.action, self.previous_action, self.smoothed):
+            values[ids] = 0.0
+        self.motor_torque[:, ids] = self.motor_velocity[:, ids] = self.sensors[:, ids] = 0.0
+        return read_motion(self.drive.qpos[ids], self.drive.qvel[ids])
+
+    def signals(self) -> Mapping[str, Any]:
+        """What happened within the last policy step; see `Environment.signals`."""
+        joints, substeps = len(self.layout.joints), len(self.sensors)
+        position, velocity = self.states[..., : 7 + joints], self.states[..., 7 + joints :]
+        legs = (substeps, self.count, LEGS, -1)
+        matrix = self.drive.model.joint_from_motor
+        torque = np.einsum("...jm,...m->...j", matrix, self.motor_torque.reshape(legs))
+        friction = self.drive.friction(velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs))
+        shaped = {"driven_joint_torque": torque, "joint_friction": friction}
+        found = {name: values.reshape(substeps, self.count, -1) for name, values in shaped.items()}
+        found |= {
+            "base_position": position[..., :3],
+            "base_orientation": position[..., 3:7],
+            "base_velocity": velocity[..., :3],
+            "base_angular_velocity": velocity[..., 3:_ROTORS_BEFORE],
+            "joint_position": position[..., 7:],
+            "joint_velocity": velocity[..., _ROTORS_BEFORE:],
+            "motor_torque": self.motor_torque,
+            "motor_velocity": self.motor_velocity,
+            "pad_force": models.pad_forces(self.sensors),
+            "pad_slip": models.pad_slip(self.sensors),
+        }
+        return {name: np.moveaxis(values, 0, 1) for name, values in found.items()}
+
+
+def _varies_models(task: Task) -> bool:
+    return bool(task.randomisation.mass or task.randomisation.floor_friction)
+
+
+def _vary_models(batch: Any, task: Task, rng: np.random.Generator) -> None:
+    settings = task.randomisation
+    if settings.mass:
+        factor = rng.uniform(1 - settings.mass, 1 + settings.mass, (batch.nsim, batch.model.nbody))
+        batch.expand("body_mass")[:] *= factor
+        batch.expand("body_inertia")[:] *= factor[..., None]
+    if settings.floor_friction:
+        batch.expand("geom_friction")[..., 0] *= rng.uniform(1 - settings.floor_friction, 1 + settings.floor_friction, (batch.nsim, 1))
+    if settings.mass:
+        batch.set_const()
+
+
+def _quaternion(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> np.ndarray:
+    """Unit quaternions w x y z of yaw, then pitch, then roll, `(n, 4)`."""
+    (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a / 2), np.sin(a / 2)) for a in (roll, pitch, yaw))
+    return np.stack([cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy], -1)

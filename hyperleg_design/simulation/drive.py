@@ -1,0 +1,126 @@
+"""Actuation inside a MuJoCo batch: reads the state, writes motor torques and joint friction before each simulation step."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.robot.linkage import LinkageModel
+from hyperleg_design.simulation import actuation
+from hyperleg_design.simulation.layout import Layout
+from hyperleg_design.simulation.settings import Physics, Randomisation
+
+if TYPE_CHECKING:
+    from mujoco.batch import Batch
+
+    from hyperleg_design.robot.design import Design
+
+LEGS = 2
+
+
+class Drive:
+    """Actuation of all robots of one batch.
+
+    With `physics.posture_dependent` the tendons' coefficients follow the linkage model before each step, so motor torque,
+    motor velocity and rotor inertia are those of the posture; the rotors' velocity term `M J dM^T/dt q_dot` is left out.
+    """
+
+    def __init__(
+        self, design: Design, layout: Layout, physics: Physics, batch: Batch, randomisation: Randomisation | None, rng: np.random.Generator
+    ) -> None:
+        self.model = actuation.actuation_model(design)
+        self.physics = physics
+        self.count = batch.nsim
+        self._shape = (self.count, LEGS, layout.leg_joints)
+        if randomisation is not None:
+            self.model = _varied(self.model, self._shape, randomisation, rng)
+        self.qpos, self.qvel = batch.bind("qpos"), batch.bind("qvel")
+        self._ctrl, self._applied = batch.bind("ctrl"), batch.bind("qfrc_applied")
+        self._linkage = LinkageModel.of(design) if physics.posture_dependent else None
+        if self._linkage is not None:
+            self._coefficients = batch.expand("wrap_prm")
+            self._places = _wrap_places(batch, layout)
+        self.coulomb, self.viscous, self._width = self.model.coulomb, self.model.viscous, physics.friction_velocity
+        if physics.friction_space == "motor":
+            self.coulomb, self.viscous = actuation.motor_friction(design)
+            self._width = actuation.motor_friction_width(self.model.joint_from_motor, physics.friction_velocity)
+        self._damping = None
+        if physics.friction == "implicit":
+            self._damping = batch.expand("dof_damping")[:, 6:] if physics.friction_space == "joint" else batch.expand("tendon_damping")
+
+    def flat(self, values: np.ndarray) -> np.ndarray:
+        """Constants of one leg as rows over both legs, `(1 or n, 2 k)`."""
+        values = values if values.ndim > 1 else values[None, None]
+        return np.broadcast_to(values, (len(values), LEGS, values.shape[-1])).reshape(len(values), -1)
+
+    def apply(self, target: np.ndarray, torque: np.ndarray, speed: np.ndarray) -> None:
+        """Set controls and friction from the present state.
+
+        Args:
+            target: joint angles to reach [rad], `(n, 2, joints)`.
+            torque: filled with the motor torques [Nm], `(n, K)`.
+            speed: filled with the motor velocities [rad/s], `(n, K)`.
+        """
+        position, velocity = self.qpos[:, 7:].reshape(self._shape), self.qvel[:, 6:].reshape(self._shape)
+        matrix, to_motor = self.model.joint_from_motor, None
+        if self._linkage is not None:
+            matrix = self._linkage.joint_from_motor(position)
+            to_motor = actuation.motor_from_joint(matrix, self.model.envelope.power_constant)
+            leg, joint, motor = self._places
+            self._coefficients[:] = matrix[:, leg, joint, motor]
+        motor_speed = actuation.motor_speed(matrix, velocity)
+        wanted = actuation.controller_torque(self.model, target, position, velocity)
+        given = actuation.driven_torque(self.model, wanted, motor_speed, to_motor)
+        torque[:], speed[:] = given.reshape(self.count, -1), motor_speed.reshape(self.count, -1)
+        self._ctrl[:] = torque
+        self._resist(velocity, motor_speed)
+
+    def friction(self, velocity: np.ndarray, motor_speed: np.ndarray) -> np.ndarray:
+        """Friction torque at the joints [Nm], `(..., 2, joints)` and `(..., 2, motors)` -> `(..., 2, joints)`."""
+        if self.physics.friction_space == "joint":
+            return actuation.friction_torque(self.coulomb, self.viscous, velocity, self._width)
+        torque = actuation.friction_torque(self.coulomb, self.viscous, motor_speed, self._width)
+        return actuation.applied(self.model.joint_from_motor, torque)
+
+    def _resist(self, velocity: np.ndarray, motor_speed: np.ndarray) -> None:
+        at_joints = self.physics.friction_space == "joint"
+        moving = velocity if at_joints else motor_speed
+        if self._damping is not None:
+            damping = actuation.friction_damping(self.coulomb, self.viscous, moving, self._width)
+            self._damping[:] = damping.reshape(self.count, -1)
+        elif at_joints:
+            self._applied[:, 6:] = -actuation.friction_torque(self.coulomb, self.viscous, moving, self._width).reshape(self.count, -1)
+        else:
+            self._ctrl[:] -= actuation.friction_torque(self.coulomb, self.viscous, moving, self._width).reshape(self.count, -1)
+
+
+def _varied(
+    model: actuation.ActuationModel, shape: tuple[int, int, int], randomisation: Randomisation, rng: np.random.Generator
+) -> actuation.ActuationModel:
+    def drawn(values: np.ndarray, spread: float) -> np.ndarray:
+        return values * rng.uniform(1 - spread, 1 + spread, shape) if spread else values
+
+    return dataclasses.replace(
+        model,
+        stiffness=drawn(model.stiffness, randomisation.gains),
+        damping=drawn(model.damping, randomisation.gains),
+        coulomb=drawn(model.coulomb, randomisation.joint_friction),
+        viscous=drawn(model.viscous, randomisation.joint_friction),
+    )
+
+
+def _wrap_places(batch: Batch, layout: Layout) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Leg, joint and motor of each tendon coefficient, in the model's order."""
+    model = batch.model
+    leg, joint, motor = [], [], []
+    first = model.joint(layout.joints[0]).id
+    for tendon in range(model.ntendon):
+        start = model.tendon_adr[tendon]
+        for place in range(start, start + model.tendon_num[tendon]):
+            side, row = divmod(int(model.wrap_objid[place]) - first, layout.leg_joints)
+            leg.append(side)
+            joint.append(row)
+            motor.append(tendon % layout.leg_motors)
+    return np.array(leg), np.array(joint), np.array(motor)

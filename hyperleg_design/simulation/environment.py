@@ -1,0 +1,273 @@
+"""The environment: many simulations of a robot under a task, stepped together at the policy's rate.
+
+    environment = Environment(load_design(), load_task("walk"), simulations=256, seed=0)
+    observations = environment.reset()
+    step = environment.step(policy(observations["policy"]))
+
+Simulations are worked on in chunks of fixed size, each with its own random stream and its own one-threaded
+`mujoco.batch.Batch`; threads take chunks as they come. The same seed gives the same bytes with any number of threads.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.simulation import mirror, observations
+from hyperleg_design.simulation.assist import Assist
+from hyperleg_design.simulation.chunk import Chunk, Divergence, Step
+from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.model import simulation_model
+from hyperleg_design.simulation.settings import Limits
+from hyperleg_design.simulation.tasks import Reward, Task, _check_reward
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.layout import Layout
+
+CHUNK = 128
+"""Simulations a chunk; a trajectory depends on it through the random streams, so it is the same on every machine."""
+DIVERGENCES_KEPT = 100
+"""Most divergences that an environment remembers; all are counted."""
+
+
+class Environment:
+    """Simulations of one robot, or of a batch of designs one each, under a task.
+
+    Args:
+        design: a robot; or a batch of `simulations` designs with the same joints and motors.
+        task: what to do.
+        simulations: how many.
+        seed: of all randomness.
+        threads: that step them; all processors by default.
+        assist: helping forces, for training only.
+    """
+
+    def __init__(
+        self, design: Design, task: Task, *, simulations: int, seed: int = 0, threads: int | None = None, assist: Assist | None = None
+    ) -> None:
+        if simulations < 1:
+            raise InputError("environment", "simulations", simulations, "expects at least 1")
+        if threads is not None and threads < 1:
+            raise InputError("environment", "threads", threads, "expects at least 1")
+        if design.batch_shape not in ((), (simulations,)):
+            raise InputError("environment", "simulations", simulations, f"must equal the number of designs, {design.batch_shape[0]}")
+        self.design, self.task, self.simulations, self.seed = design, task, simulations, seed
+        self.layout: Layout = layout_of(design)
+        """Names and order of joints, motors and pads."""
+        batched = bool(design.batch_shape)
+        each = [simulation_model(design.take(i), task.physics) for i in range(simulations)] if batched else None
+        self.model: mujoco.MjModel = each[0] if each else simulation_model(design, task.physics)
+        """MuJoCo model that is simulated; the first one's of a batch of designs."""
+        for model in each or [self.model]:
+            check_standing(model, self.layout, task.limits, design.name)
+        count = -(-simulations // CHUNK)
+        bounds = np.linspace(0, simulations, count + 1).astype(int)
+        streams = np.random.SeedSequence(seed).spawn(count)
+        self.chunks = []
+        for low, high, stream in zip(bounds[:-1], bounds[1:], streams, strict=True):
+            part = _taken(design, int(low), int(high)) if batched else design
+            own = each[low:high] if each else None
+            self.chunks.append(Chunk(part, task, self.layout, self.model, own, int(low), int(high - low), np.random.default_rng(stream)))
+        workers = min(threads or os.cpu_count() or 1, count)
+        self._pool = ThreadPoolExecutor(workers) if workers > 1 else None
+        self.divergences: list[Divergence] = []
+        """Simulations that diverged, the latest `DIVERGENCES_KEPT`."""
+        self.divergence_count = 0
+        """How many have diverged."""
+        self._assist: Assist | None = None
+        self.assist = assist
+
+    @property
+    def action_size(self) -> int:
+        """Numbers in an action: one a joint."""
+        return len(self.layout.joints)
+
+    @property
+    def observation_sizes(self) -> dict[str, int]:
+        """Numbers in each group of observations."""
+        return {group: observations.size(parts, self.layout) for group, parts in self.task.observations.items()}
+
+    @property
+    def observation_columns(self) -> dict[str, list[str]]:
+        """A name for each number of each group."""
+        return {group: observations.column_names(parts, self.layout) for group, parts in self.task.observations.items()}
+
+    @property
+    def reward_names(self) -> list[str]:
+        """Columns of `Step.reward_terms`."""
+        return list(self.chunks[0].rewards)
+
+    @property
+    def assist(self) -> Assist | None:
+        """Helping forces; None, the default, for evaluation."""
+        return self._assist
+
+    @assist.setter
+    def assist(self, assist: Assist | None) -> None:
+        self._assist = assist
+        for chunk in self.chunks:
+            chunk.assist = assist
+
+    @property
+    def episode_step(self) -> np.ndarray:
+        """Policy steps since each episode began, `(n,)`."""
+        return np.concatenate([c.episode_step for c in self.chunks])
+
+    @episode_step.setter
+    def episode_step(self, steps: np.ndarray) -> None:
+        for chunk in self.chunks:
+            chunk.episode_step[:] = np.asarray(steps)[chunk.first : chunk.first + chunk.count]
+
+    def mirror_maps(self) -> dict[str, mirror.MirrorMap]:
+        """Left-right mirror of each observation group, and of actions under `action`."""
+        maps = {group: mirror.mirror_observation(parts, self.layout) for group, parts in self.task.observations.items()}
+        return {**maps, "action": mirror.mirror_joints(self.layout)}
+
+    def set_reward(self, name: str, weight: float | None = None, **parameters: float) -> None:
+        """Change the weight or parameters of a reward term that the task has.
+
+        Raises:
+            InputError: no such term in the task, or no such parameter.
+        """
+        old = self.chunks[0].rewards.get(name)
+        if old is None:
+            raise InputError(self.task.name, f"rewards.{name}", weight, f"is not in the task; it has {', '.join(self.reward_names)}")
+        new = Reward(old.weight if weight is None else float(weight), {**old.parameters, **parameters})
+        _check_reward(self.task.name, name, new, self.chunks[0].goal is not None or not parameters)
+        for chunk in self.chunks:
+            chunk.rewards[name] = new
+
+    def set_commands(self, **values: Any) -> None:
+        """Change settings of the commands, for those drawn from now on.
+
+        Raises:
+            InputError: no such setting, or a value that makes no sense.
+        """
+        import dataclasses
+
+        current = self.chunks[0].commander.settings
+        known = [f.name for f in dataclasses.fields(current)]
+        for name, value in values.items():
+            if name not in known:
+                raise InputError(self.task.name, f"commands.{name}", value, f"no such setting; there are {', '.join(known)}")
+        changed = dataclasses.replace(current, **values)
+        for chunk in self.chunks:
+            chunk.commander.settings = changed
+
+    def reset(self) -> dict[str, np.ndarray]:
+        """Start all simulations; observations by group, `(n, size)`."""
+        return _joined(self._each(Chunk.reset, [()] * len(self.chunks)))
+
+    def step(self, action: np.ndarray) -> Step:
+        """One policy step; simulations whose episode ends start a new one.
+
+        Args:
+            action: `(n, J)`; joint targets are the default posture plus `control.scale` times its moving average.
+
+        Raises:
+            InputError: wrong shape, or values that are not finite.
+        """
+        action = np.asarray(action)
+        if action.shape != (self.simulations, self.action_size):
+            expected = (self.simulations, self.action_size)
+            raise InputError("policy", "action", action.shape, f"must have the shape {expected}; is the policy made for another robot?")
+        if not np.isfinite(action.sum()) and not np.all(np.isfinite(action)):
+            bad = np.flatnonzero(~np.isfinite(action).all(1))
+            raise InputError("policy", "action", action[bad[0]].tolist(), f"is not finite in {len(bad)} simulations, first in {bad[0]}")
+        action = action.astype(float)
+        parts = self._each(Chunk.step, [(action[c.first : c.first + c.count],) for c in self.chunks])
+        step = parts[0] if len(parts) == 1 else _merged(parts)
+        if step.divergences:
+            self.divergence_count += len(step.divergences)
+            self.divergences = (self.divergences + step.divergences)[-DIVERGENCES_KEPT:]
+        return step
+
+    @property
+    def recording(self) -> bool:
+        """Whether states within a policy step are kept for `signals`."""
+        return self.chunks[0].recording
+
+    @recording.setter
+    def recording(self, on: bool) -> None:
+        for chunk in self.chunks:
+            chunk.recording = on
+
+    def signals(self) -> dict[str, np.ndarray]:
+        """What happened within the last policy step, at the start of each substep; needs `recording`.
+
+        Returns:
+            `(n, substeps, ...)` each: `base_position`, `base_velocity` (world), `base_orientation` (w x y z),
+            `base_angular_velocity` (pelvis frame), `joint_position`, `joint_velocity`, `driven_joint_torque` (M times the
+            motor torque, before friction), `joint_friction`, `motor_torque`, `motor_velocity`, `pad_force` (of the floor
+            on each pad, world), `pad_slip`. Zero for an episode's first step's rows that were started anew since.
+        """
+        if not self.recording:
+            raise InputError("environment", "recording", False, "must be set before the step whose signals are read")
+        return _joined([c.signals() for c in self.chunks])
+
+    def close(self) -> None:
+        """Let the threads go."""
+        if self._pool is not None:
+            self._pool.shutdown()
+
+    def _each(self, method: Any, arguments: list[tuple[Any, ...]]) -> list[Any]:
+        if self._pool is None:
+            return [method(chunk, *a) for chunk, a in zip(self.chunks, arguments, strict=True)]
+        waiting = [self._pool.submit(method, chunk, *a) for chunk, a in zip(self.chunks, arguments, strict=True)]
+        return [w.result() for w in waiting]
+
+
+def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: str) -> None:
+    """Whether a robot can stand in its default posture.
+
+    Raises:
+        InputError: its pelvis would be under the height that counts as fallen, or its weight beside its soles.
+    """
+    import mujoco
+
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    height = float(data.qpos[2])
+    if height <= limits.height:
+        remedy = f"the pelvis stands lower than a fall, {limits.height} m; set limits.height of the task, or longer legs"
+        raise InputError(name, "", round(height, 4), remedy)
+    pads = np.array([data.geom(pad).xpos[:2] for pad in layout.pads])
+    middle = data.subtree_com[1][:2]
+    if np.any(middle < pads.min(0)) or np.any(middle > pads.max(0)):
+        remedy = "the centre of mass lies beside the soles in the default posture; change joints.*.default_deg"
+        raise InputError(name, "", np.round(middle, 4).tolist(), remedy)
+
+
+def _taken(design: Design, low: int, high: int) -> Design:
+    from hyperleg_design.robot import parameters
+
+    values = {}
+    for path, rule in parameters.rules(type(design)).items():
+        value = design[path]
+        if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0):
+            values[path] = value[low:high]
+    return design.with_values(values, f"{design.name}[{low}:{high}]")
+
+
+def _joined(parts: Iterable[Any]) -> dict[str, np.ndarray]:
+    parts = list(parts)
+    return {name: np.concatenate([p[name] for p in parts]) if len(parts) > 1 else np.asarray(parts[0][name]) for name in parts[0]}
+
+
+def _merged(parts: list[Step]) -> Step:
+    arrays = ("reward", "terminated", "truncated", "ending", "reward_terms", "ended", "episode_steps")
+    return Step(
+        observations=_joined(p.observations for p in parts),
+        final_observations=_joined(p.final_observations for p in parts),
+        divergences=[d for p in parts for d in p.divergences],
+        **{name: np.concatenate([getattr(p, name) for p in parts]) for name in arrays},
+    )

@@ -1,0 +1,81 @@
+"""The MuJoCo model that is simulated: the robot's, without drawing shapes, with one contact sensor a sole pad."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
+from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.settings import Physics
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.robot.design import Design
+
+PAD_SENSOR_SIZE = 6
+"""Numbers a pad: force and relative velocity in the contact's frame."""
+
+
+def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.MjSpec:
+    """Editable model of one robot as simulated here; motors on tendons, joint friction left to `actuation`.
+
+    A state that is not finite stays as it is instead of being reset by MuJoCo, so that it can be reported. Controls are not
+    clamped: `actuation` holds them inside the motors' envelopes.
+    """
+    import mujoco
+
+    physics = physics or Physics()
+    layout = layout_of(design)
+    spec = mujoco_spec(design, friction=False)
+    for sensor in list(spec.sensors):
+        spec.delete(sensor)
+    for body in spec.bodies:
+        for geom in list(body.geoms):
+            if geom.name in layout.pads:
+                geom.condim = int(physics.contact_dimensions)
+            elif geom.name != FLOOR:
+                spec.delete(geom)
+    spec.geom(FLOOR).condim = int(physics.contact_dimensions)
+    option = spec.option
+    option.timestep = physics.time_step
+    option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{physics.integrator.upper()}")
+    option.cone = getattr(mujoco.mjtCone, f"mjCONE_{physics.cone.upper()}")
+    option.iterations = int(physics.iterations)
+    option.tolerance = physics.tolerance
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET) | int(mujoco.mjtDisableBit.mjDSBL_CLAMPCTRL)
+    data = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE) | 1 << int(mujoco.mjtConDataField.mjCONDATA_LINVEL)
+    geom_kind, strongest, slots = mujoco.mjtObj.mjOBJ_GEOM, 2, 1
+    for pad in layout.pads:
+        # Floor first: the sensor's normal then points from the floor to the pad.
+        spec.add_sensor(
+            name=pad, type=mujoco.mjtSensor.mjSENS_CONTACT, objtype=geom_kind, objname=FLOOR, reftype=geom_kind, refname=pad,
+            intprm=[data, strongest, slots],
+        )  # fmt: skip
+    return spec
+
+
+def simulation_model(design: Design, physics: Physics | None = None) -> mujoco.MjModel:
+    """Compiled `simulation_spec`."""
+    return simulation_spec(design, physics).compile()
+
+
+def pad_forces(sensors: np.ndarray) -> np.ndarray:
+    """Forces of the floor on the pads, in the world [N], `(..., 6 P)` sensor values -> `(..., P, 3)`.
+
+    On a floor the contact's frame is (z, y, -x) of the world.
+    """
+    raw = sensors.reshape(*sensors.shape[:-1], -1, PAD_SENSOR_SIZE)
+    return np.stack([-raw[..., 2], raw[..., 1], raw[..., 0]], -1)
+
+
+def pad_loads(sensors: np.ndarray) -> np.ndarray:
+    """Vertical forces of the floor on the pads [N], `(..., 6 P)` -> `(..., P)`."""
+    return sensors[..., 0::PAD_SENSOR_SIZE]
+
+
+def pad_slip(sensors: np.ndarray) -> np.ndarray:
+    """Speed at which each touching pad slides over the floor [m/s], zero where it does not touch; `(..., 6 P)` -> `(..., P)`."""
+    return np.hypot(sensors[..., 4::PAD_SENSOR_SIZE], sensors[..., 5::PAD_SENSOR_SIZE])

@@ -1,0 +1,143 @@
+"""What terms of rewards, observations and terminations see of all simulations after a policy step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+
+@dataclass(slots=True, eq=False)
+class Motion:
+    """Where the robots are and how they move; `(n, ...)`. Yaw frame: the pelvis's, turned upright."""
+
+    position: np.ndarray
+    """Of the pelvis in the world [m], `(n, 3)`."""
+    rotation: np.ndarray
+    """Pelvis to world, `(n, 3, 3)`."""
+    velocity: np.ndarray
+    """Of the pelvis in the world [m/s], `(n, 3)`."""
+    angular_velocity: np.ndarray
+    """In the pelvis's frame [rad/s], `(n, 3)`."""
+    heading: np.ndarray
+    """Cosine and sine of the yaw angle, `(n, 2)`."""
+    joint_position: np.ndarray
+    """[rad], `(n, J)`."""
+    joint_velocity: np.ndarray
+    """[rad/s], `(n, J)`."""
+
+    @property
+    def gravity(self) -> np.ndarray:
+        """Unit vector of gravity in the pelvis's frame, `(n, 3)`; (0, 0, -1) upright."""
+        return -self.rotation[:, 2]
+
+    @property
+    def local_velocity(self) -> np.ndarray:
+        """Velocity in the pelvis's frame [m/s], `(n, 3)`."""
+        return np.matmul(self.velocity[:, None], self.rotation)[:, 0]
+
+    @property
+    def walking_velocity(self) -> np.ndarray:
+        """Horizontal velocity in the yaw frame [m/s], `(n, 2)`."""
+        return to_yaw_frame(self.heading, self.velocity[:, :2])
+
+    @property
+    def yaw_rate(self) -> np.ndarray:
+        """Angular velocity about the vertical [rad/s], `(n,)`."""
+        return np.einsum("ni,ni->n", self.rotation[:, 2], self.angular_velocity)
+
+    def put(self, ids: np.ndarray, other: Motion) -> None:
+        """Overwrite some simulations' rows."""
+        for field in fields(self):
+            getattr(self, field.name)[ids] = getattr(other, field.name)
+
+
+@dataclass(slots=True, eq=False)
+class Goal:
+    """The waypoint of each simulation, as the step found it."""
+
+    offset: np.ndarray
+    """From the pelvis to the waypoint in the yaw frame [m], `(n, 2)`."""
+    distance: np.ndarray
+    """[m], `(n,)`."""
+    heading_error: np.ndarray
+    """Angle from the heading to the waypoint, counterclockwise [rad], `(n,)`."""
+    following: np.ndarray
+    """From the pelvis to the waypoint after that, in the yaw frame [m], `(n, 2)`."""
+    speed_cap: np.ndarray
+    """Speed up to which speed toward the waypoint is asked for [m/s], `(n,)`."""
+    progress: np.ndarray
+    """By how much this step came closer than ever before, max(d* - d, 0) [m], `(n,)`."""
+    arrived: np.ndarray
+    """Whether this step reached it, `(n,)`."""
+    deviation: np.ndarray
+    """Distance from the straight line between the last waypoint and this one [m], `(n,)`."""
+    finished: np.ndarray
+    """Whether this step reached the last waypoint of a course, `(n,)`."""
+
+    def put(self, ids: np.ndarray, other: Goal) -> None:
+        """Overwrite some simulations' rows."""
+        for field in fields(self):
+            getattr(self, field.name)[ids] = getattr(other, field.name)
+
+
+@dataclass(slots=True, eq=False)
+class State:
+    """All that a policy step left; substeps s lead in what was recorded within it."""
+
+    motion: Motion
+    action: np.ndarray
+    """Newest action, `(n, J)`."""
+    previous_action: np.ndarray
+    """The one before it, `(n, J)`."""
+    command: np.ndarray
+    """Forward, sideways [m/s] and turning [rad/s] speed; or offset to the waypoint (clipped) and heading error, `(n, 3)`."""
+    motor_torque: np.ndarray
+    """[Nm], `(s, n, K)`."""
+    motor_velocity: np.ndarray
+    """[rad/s], `(s, n, K)`."""
+    pad_load: np.ndarray
+    """Vertical force on each sole pad [N], `(s, n, P)`."""
+    pad_slip: np.ndarray
+    """Sliding speed of each touching pad, in the last substep [m/s], `(n, P)`."""
+    power: np.ndarray
+    """Joule heat plus signed mechanical power of all motors, mean over the substeps [W], `(n,)`."""
+    thermal_excess: np.ndarray
+    """Sum over motors of [-(dh/dt + h / T)]+ [1/s], `(n,)`."""
+    phase: np.ndarray
+    """Of the gait clock, 0 .. 1, `(n,)`."""
+    terminated: np.ndarray
+    """Whether the robot has fallen, `(n,)`."""
+    goal: Goal | None
+    """In tasks with waypoints."""
+
+    def foot_load(self, pad_foot: np.ndarray) -> np.ndarray:
+        """Vertical force on each foot [N], `(s, n, 2)`, with the foot of each pad `(P,)`."""
+        left = pad_foot == 0
+        return np.stack([self.pad_load[..., left].sum(-1), self.pad_load[..., ~left].sum(-1)], -1)
+
+
+def read_motion(qpos: np.ndarray, qvel: np.ndarray) -> Motion:
+    """Motion from MuJoCo's coordinates, `(n, 7 + J)` and `(n, 6 + J)`; copies."""
+    w, x, y, z = qpos[:, 3:7].T
+    rotation = np.empty((len(qpos), 3, 3))
+    xx, yy, zz = 2 * x * x, 2 * y * y, 2 * z * z
+    xy, xz, yz = 2 * x * y, 2 * x * z, 2 * y * z
+    wx, wy, wz = 2 * w * x, 2 * w * y, 2 * w * z
+    rotation[:, 0, 0], rotation[:, 0, 1], rotation[:, 0, 2] = 1 - yy - zz, xy - wz, xz + wy
+    rotation[:, 1, 0], rotation[:, 1, 1], rotation[:, 1, 2] = xy + wz, 1 - xx - zz, yz - wx
+    rotation[:, 2, 0], rotation[:, 2, 1], rotation[:, 2, 2] = xz - wy, yz + wx, 1 - xx - yy
+    heading = rotation[:, :2, 0] / np.maximum(np.hypot(rotation[:, 0, 0], rotation[:, 1, 0]), 1e-9)[:, None]
+    return Motion(qpos[:, :3].copy(), rotation, qvel[:, :3].copy(), qvel[:, 3:6].copy(), heading, qpos[:, 7:].copy(), qvel[:, 6:].copy())
+
+
+def to_yaw_frame(heading: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Horizontal world vectors in the yaw frame, `(n, 2)`."""
+    cosine, sine = heading[:, 0], heading[:, 1]
+    return np.stack([cosine * vector[:, 0] + sine * vector[:, 1], cosine * vector[:, 1] - sine * vector[:, 0]], -1)
+
+
+def to_world(heading: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Horizontal yaw-frame vectors in the world, `(n, 2)`."""
+    cosine, sine = heading[:, 0], heading[:, 1]
+    return np.stack([cosine * vector[:, 0] - sine * vector[:, 1], sine * vector[:, 0] + cosine * vector[:, 1]], -1)

@@ -1,0 +1,182 @@
+"""Tasks: commands, observations, rewards and ends of episodes, read from a preset in `sim/` or a user's file."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters
+from hyperleg_design.simulation.commands import VelocityCommands, WaypointCommands
+from hyperleg_design.simulation.observations import PARTS
+from hyperleg_design.simulation.rewards import TERMS
+from hyperleg_design.simulation.settings import Clock, Control, Limits, Physics, Randomisation, Start, Thermal
+
+PREFIX = "task_"
+"""How the presets' files in `sim/` begin."""
+GROUPS = ("policy", "critic")
+"""Observation groups that every task has."""
+_SECTIONS = {
+    "physics": Physics,
+    "control": Control,
+    "start": Start,
+    "limits": Limits,
+    "thermal": Thermal,
+    "clock": Clock,
+    "randomisation": Randomisation,
+}
+_COMMANDS: dict[str, type[VelocityCommands] | type[WaypointCommands]] = {"velocity": VelocityCommands, "waypoints": WaypointCommands}
+
+
+@dataclass(frozen=True)
+class Reward:
+    """Weight and parameters of one reward term in a task."""
+
+    weight: float
+    """The term is multiplied by it and by the policy step."""
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    """Those of the term's function that differ from its defaults."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Task:
+    """A task; everything that an environment needs besides the robot."""
+
+    name: str
+    commands: VelocityCommands | WaypointCommands
+    observations: Mapping[str, tuple[str, ...]]
+    """Parts of each observation group."""
+    rewards: Mapping[str, Reward]
+    """By name of the term."""
+    physics: Physics = field(default_factory=Physics)
+    control: Control = field(default_factory=Control)
+    start: Start = field(default_factory=Start)
+    limits: Limits = field(default_factory=Limits)
+    thermal: Thermal = field(default_factory=Thermal)
+    clock: Clock = field(default_factory=Clock)
+    randomisation: Randomisation = field(default_factory=Randomisation)
+
+    def __post_init__(self) -> None:
+        goal = isinstance(self.commands, WaypointCommands)
+        for name, reward in self.rewards.items():
+            _check_reward(self.name, name, reward, goal)
+        for group, parts in self.observations.items():
+            for part in parts:
+                if part not in PARTS:
+                    raise InputError(self.name, f"observations.{group}", part, parameters.unknown(part, sorted(PARTS)))
+                if PARTS[part].needs_goal and not goal:
+                    raise InputError(self.name, f"observations.{group}", part, "needs commands of kind waypoints")
+        for group in GROUPS:
+            if not self.observations.get(group):
+                raise InputError(self.name, f"observations.{group}", None, "is missing or empty")
+
+    @property
+    def deviations(self) -> dict[str, str]:
+        """What is not the paper's: reward terms, and the gait clock where it is observed, with descriptions."""
+        found = {name: TERMS[name].description for name in self.rewards if not TERMS[name].paper}
+        if any("clock" in parts for parts in self.observations.values()):
+            found["clock"] = "gait clock in the observation"
+        return found
+
+    def changed(self, **sections: Any) -> Task:
+        """A copy with other sections."""
+        return dataclasses.replace(self, **sections)
+
+
+def load_task(name: str | Path) -> Task:
+    """Read a task.
+
+    Args:
+        name: a shipped name such as `walk`, or a YAML file.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    known = task_names()
+    path = resources.find("sim", f"{PREFIX}{name}") if name in known else Path(name)
+    if not path.is_file():
+        raise InputError("task", "", str(name), f"no such file; shipped: {', '.join(known)}")
+    return task_from_mapping(read_yaml(path), short_name(path))
+
+
+def task_names() -> list[str]:
+    """Names of the shipped tasks."""
+    return [n[len(PREFIX) :] for n in resources.names("sim") if n.startswith(PREFIX)]
+
+
+def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
+    """A task from nested mappings as YAML gives them.
+
+    Raises:
+        InputError: unknown or missing field, or a value that makes no sense.
+    """
+    known = {"name", "description", "commands", "observations", "rewards", *_SECTIONS}
+    for key in data:
+        if key not in known:
+            raise InputError(where, str(key), data[key], parameters.unknown(str(key), sorted(known)))
+    for key in ("name", "commands", "observations", "rewards"):
+        if key not in data:
+            raise InputError(where, key, None, "is missing")
+    sections = {key: parameters.from_mapping(cls, data[key], where, key) for key, cls in _SECTIONS.items() if key in data}
+    observations = {}
+    for group, parts in _mapping(data["observations"], where, "observations").items():
+        if not isinstance(parts, list):
+            raise InputError(where, f"observations.{group}", parts, "expects a list of parts")
+        observations[str(group)] = tuple(str(part) for part in parts)
+    rewards = {
+        str(term): _reward(entry, where, f"rewards.{term}") for term, entry in _mapping(data["rewards"], where, "rewards").items()
+    }  # fmt: skip
+    try:
+        return Task(name=str(data["name"]), commands=_commands(data["commands"], where), observations=observations, rewards=rewards, **sections)
+    except InputError as error:
+        raise InputError(where, error.field, error.value, error.remedy) from None
+
+
+def _commands(data: Any, where: str) -> VelocityCommands | WaypointCommands:
+    rest = dict(_mapping(data, where, "commands"))
+    kind = rest.pop("kind", None)
+    if kind not in _COMMANDS:
+        raise InputError(where, "commands.kind", kind, f"expects one of {', '.join(_COMMANDS)}")
+    courses = rest.pop("courses", [])
+    if courses and kind != "waypoints":
+        raise InputError(where, "commands.courses", courses, "needs kind: waypoints")
+    share = rest.pop("course_share", 0.0) if kind == "waypoints" else 0.0  # checked together with the courses
+    settings = parameters.from_mapping(_COMMANDS[kind], rest, where, "commands")
+    if isinstance(settings, WaypointCommands):
+        try:
+            points = tuple(tuple((float(x), float(y)) for x, y in course) for course in courses)
+        except (TypeError, ValueError):
+            raise InputError(where, "commands.courses", courses, "expects a list of lists of points [x, y] in metres") from None
+        return dataclasses.replace(settings, courses=points, course_share=share)
+    return settings
+
+
+def _reward(entry: Any, where: str, path: str) -> Reward:
+    values = {"weight": entry} if not isinstance(entry, Mapping) else dict(entry)
+    rule = parameters.Rule("number")
+    values = {str(k): parameters.checked(v, rule, where, f"{path}.{k}") for k, v in values.items()}
+    if "weight" not in values:
+        raise InputError(where, f"{path}.weight", None, "is missing")
+    return Reward(values.pop("weight"), values)
+
+
+def _check_reward(where: str, name: str, reward: Reward, goal: bool) -> None:
+    if name not in TERMS:
+        raise InputError(where, f"rewards.{name}", reward.weight, parameters.unknown(name, sorted(TERMS)).replace("field", "term"))
+    term = TERMS[name]
+    for key, value in reward.parameters.items():
+        if key not in term.parameters:
+            raise InputError(where, f"rewards.{name}.{key}", value, parameters.unknown(key, ["weight", *term.parameters]))
+    if term.needs_goal and not goal:
+        raise InputError(where, f"rewards.{name}", reward.weight, "needs commands of kind waypoints")
+
+
+def _mapping(data: Any, where: str, path: str) -> Mapping[str, Any]:
+    if not isinstance(data, Mapping):
+        raise InputError(where, path, data, "expects a mapping")
+    return data
