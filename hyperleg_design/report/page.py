@@ -52,12 +52,19 @@ class Details:
 
 
 @dataclass(frozen=True)
+class Heading:
+    """A heading inside a section."""
+
+    text: str
+
+
+@dataclass(frozen=True)
 class Section:
     """A part of a page."""
 
     title: str
     content: Sequence[Any] = ()
-    """Texts (paragraphs), `Table`, `Picture`, `Missing`, `Details`; a list of pictures stands side by side."""
+    """Texts (paragraphs), `Heading`, `Table`, `Picture`, `Missing`, `Details`; a list of pictures stands side by side."""
     anchor: str = ""
 
 

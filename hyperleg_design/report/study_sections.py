@@ -11,7 +11,7 @@ import numpy as np
 from hyperleg_design.evaluation import paper
 from hyperleg_design.report import picture
 from hyperleg_design.report.comparison import Row, motor_rows, table_one
-from hyperleg_design.report.page import Cell, Details, Section, Table
+from hyperleg_design.report.page import Cell, Details, Heading, Section, Table
 from hyperleg_design.report.style import save
 from hyperleg_design.robot import ablation, parameters, transmission
 from hyperleg_design.robot.names import JOINTS, POSTURES
@@ -115,7 +115,11 @@ def cooperative_actuation(context: Context) -> Made:
     ]  # fmt: skip
     inertia = leg_reflected_inertia(design)
     inertia = np.where(np.abs(inertia) < 1e-12, 0.0, inertia)  # rounding where motors cancel
-    reflected = Table(["", *joints], [[j, *map(float, row)] for j, row in zip(joints, inertia, strict=True)], f"Reflected rotor inertia M diag(J) Mᵀ [kg m²], {design.transmission.posture}")
+    reflected = Table(
+        ["", *joints],
+        [[j, *map(float, row)] for j, row in zip(joints, inertia, strict=True)],
+        f"Reflected rotor inertia M diag(J) Mᵀ [kg m²], {design.transmission.posture}",
+    )
     content = [
         "Motor torques reach the joints by joint_torque = M motor_torque, and motor_velocity = Mᵀ joint_velocity, so power is the same on both sides. The knee's row is negative because knee flexion is positive: positive motor torque extends the knee and pushes the toes down.",
         *tables,
@@ -151,6 +155,23 @@ def envelopes(context: Context) -> Made:
         context.picture("polyhedron", "Knee, ankle pitch and toe together, inside the box of their maxima.", lambda p: save(polyhedron_figure(design), p)),
     ]  # fmt: skip
     return Made(Section("Envelopes, and what a box hides", content))
+
+
+def sweeps(context: Context) -> Made:
+    """Every shipped sweep."""
+    from hyperleg_design import resources
+    from hyperleg_design.report.sweep_page import sweep_content
+    from hyperleg_design.sweep.run import run_sweep
+
+    content: list[Any] = [
+        "Thousands of designs at once, each with its masses, torques, speeds, reachable torque set and heat. Every table stands beside this page as Parquet, with the resolved configuration inside."
+    ]
+    designs = 0
+    for name in sorted(resources.names("sweeps"), key=lambda n: (n == "combined", n)):
+        result = run_sweep(name, context.folder / "sweeps" / name, progress=False)
+        designs += result.summary["designs"]
+        content += [Heading(name.replace("_", " ").capitalize()), *sweep_content(result, context.folder, f"figures/{name}")]
+    return Made(Section("Sweeps", content), ((f"{designs:,}".replace(",", " "), "designs in the sweeps"),))
 
 
 def motors(context: Context) -> Made:
@@ -197,6 +218,7 @@ STEPS: Mapping[str, Callable[[Context], Made]] = {
     "inconsistencies": inconsistencies,
     "cooperative actuation": cooperative_actuation,
     "envelopes": envelopes,
+    "sweeps": sweeps,
     "motors": motors,
     "parameters": made_from,
 }

@@ -1,0 +1,62 @@
+"""Checks of files of every kind, for people and programs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml
+from hyperleg_design.robot.check import check_file, finding_of
+from hyperleg_design.robot.finding import Finding
+from hyperleg_design.sweep.space import load_sweep
+
+
+def check_paths(paths: Sequence[str]) -> list[dict[str, Any]]:
+    """Check files, each by its own rules.
+
+    Returns:
+        For each: `path`, `errors`, `warnings` (counts) and `findings`.
+    """
+    if not paths:
+        raise InputError("check", "", None, "expects files, or names of shipped designs, motors or sweeps")
+    found = []
+    for path in paths:
+        findings = _check(path)
+        errors = sum(f.severity == "error" for f in findings)
+        found.append({"path": path, "errors": errors, "warnings": len(findings) - errors, "findings": [asdict(f) for f in findings]})
+    return found
+
+
+def _check(path: str) -> list[Finding]:
+    try:
+        place = _find(path)
+        if place.suffix in (".yaml", ".yml") and {"axes", "sampling"} & set(read_yaml(place)):
+            load_sweep(place)
+            return []
+        return check_file(place)
+    except InputError as error:
+        return [finding_of(error)]
+
+
+def _find(path: str) -> Path:
+    """A file, or a shipped design, motor or sweep by name."""
+    if Path(path).is_file():
+        return Path(path)
+    for kind in ("descriptions", "motors", "sweeps"):
+        if path in resources.names(kind):
+            return resources.find(kind, path)
+    raise InputError(path, "", None, "no such file; a name must be that of a shipped design, motor or sweep (hyperleg list)")
+
+
+def checks_text(found: list[dict[str, Any]]) -> str:
+    """The same for a terminal."""
+    lines = []
+    for entry in found:
+        verdict = "good" if not entry["findings"] else f"{entry['errors']} errors, {entry['warnings']} warnings"
+        lines.append(f"{entry['path']}: {verdict}")
+        lines += [f"  {f['severity']}: {f['place']} {f['message']}: {f['remedy']}" for f in entry["findings"]]
+    return "\n".join(lines)
