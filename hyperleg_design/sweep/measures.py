@@ -123,7 +123,7 @@ def label(column: str) -> str:
     """A column's name with unit, for figures and tables."""
     found = measure_of(column)
     name = column.replace("_", " ").replace(".", ", ")
-    return f"{name} [{found.unit}]" if found.unit else name
+    return f"{name} [{found.unit.replace('^2', '²')}]" if found.unit else name
 
 
 def evaluate(design: Design, names: Iterable[str] | None = None) -> dict[str, np.ndarray]:
@@ -252,8 +252,8 @@ def reflected_inertia(batch: Batch) -> np.ndarray:
 
 @measure("kg m^2", "low")
 def reflected_inertia_norm(batch: Batch) -> np.ndarray:
-    """Spectral norm of M diag(J) M^T, walking: rotor inertia at the joints in its worst direction."""
-    return np.linalg.eigvalsh(leg_reflected_inertia(batch.design, "walking"))[..., -1]
+    """Rotor inertia of the joints below the hip in its worst direction, the spectral norm of M diag(J) M^T, walking."""
+    return np.linalg.eigvalsh(leg_reflected_inertia(batch.design, "walking")[..., 3:, 3:])[..., -1]
 
 
 def _holding_heat(batch: Batch, load: StaticLoad) -> np.ndarray:

@@ -46,10 +46,11 @@ _KEYS = ("name", "description", "design", "set", "variants", "sampling", "count"
 
 @dataclass(frozen=True)
 class Map:
-    """A measure to draw over two axes."""
+    """A measure to draw over two axes, or over one."""
 
     x: str
     y: str
+    """Empty for a curve over x alone."""
     measure: str
 
 
@@ -284,11 +285,11 @@ def _maps(found: Any, axes: tuple[Axis, ...], columns: tuple[str, ...], where: s
     known = [axis.name for axis in axes if axis.numeric]
     made = []
     for entry in found:
-        if not isinstance(entry, Mapping) or set(entry) != {"x", "y", "measure"}:
-            raise InputError(where, "maps", entry, "expects {x: axis, y: axis, measure: name}")
+        if not isinstance(entry, Mapping) or set(entry) | {"y"} != {"x", "y", "measure"}:
+            raise InputError(where, "maps", entry, "expects {x: axis, y: axis, measure: name}; y may be left out")
         for key in ("x", "y"):
-            if entry[key] not in known or entry["x"] == entry["y"]:
-                raise InputError(where, f"maps.{key}", entry[key], f"expects two different ones of the numeric axes {', '.join(known)}")
+            if key in entry and (entry[key] not in known or entry["x"] == entry.get("y")):
+                raise InputError(where, f"maps.{key}", entry[key], f"expects different ones of the numeric axes {', '.join(known)}")
         _columns([entry["measure"]], columns, where, "maps.measure")
-        made.append(Map(entry["x"], entry["y"], entry["measure"]))
+        made.append(Map(entry["x"], entry.get("y", ""), entry["measure"]))
     return tuple(made)
