@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hyperleg_design.errors import HyperlegError, InfeasibleError, InputError, OutputError, shown
+
+
+def test_text_names_where_field_value_and_remedy():
+    error = InputError("descriptions/a.yaml", "toe.mass", -1, "expects a number in kg")
+    assert str(error) == "descriptions/a.yaml: toe.mass = -1: expects a number in kg"
+    assert (error.where, error.field, error.value, error.remedy) == ("descriptions/a.yaml", "toe.mass", -1, "expects a number in kg")
+
+
+def test_nothing_is_shown_of_a_value_that_is_not_there():
+    assert str(InputError("a.yaml", "toe.mass", None, "is missing [kg]")) == "a.yaml: toe.mass: is missing [kg]"
+    assert str(InputError("a.yaml", "", None, "cannot be read")) == "a.yaml: cannot be read"
+
+
+@pytest.mark.parametrize("kind", [InputError, OutputError, InfeasibleError])
+def test_one_base_for_all(kind):
+    assert issubclass(kind, HyperlegError)
+
+
+@given(st.recursive(st.none() | st.text() | st.integers() | st.binary() | st.floats(), lambda x: st.lists(x) | st.dictionaries(st.text(), x)))
+@settings(max_examples=60)
+def test_a_value_is_shown_in_one_short_line(value):
+    assert len(shown(value)) <= 120
+    assert "\n" not in shown(value)
+
+
+def test_values_that_python_cannot_print():
+    loop: list = []
+    loop.append(loop)
+    deep: list = []
+    for _ in range(5000):
+        deep = [deep]
+    wide: dict = {}
+    for _ in range(40):  # 2^40 leaves if printed
+        wide = {"a": wide, "b": wide}
+    for value in (loop, deep, wide, 10**5000):
+        assert len(shown(value)) <= 120

@@ -1,0 +1,82 @@
+"""The package as a whole: what an import costs, which room knows which, that everything says what it is."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import hyperleg_design
+
+PACKAGE = Path(hyperleg_design.__file__).parent
+MODULES = sorted(PACKAGE.rglob("*.py"))
+HEAVY = ("mujoco", "pinocchio", "cvxpy", "pandas", "pyvista", "matplotlib", "scipy", "torch", "xacro", "yourdfpy", "lxml")
+ROOMS = ("robot", "sizing", "simulation", "learning", "evaluation", "gap", "sweep", "report", "cli")
+"""In order: a room imports only rooms before it."""
+APART = {"evaluation": {"learning"}, "gap": {"learning"}, "sweep": {"learning"}}
+"""Rooms that a room must not know though they come before it."""
+
+
+def name_of(path: Path) -> str:
+    return str(path.relative_to(PACKAGE))
+
+
+@pytest.mark.parametrize("statement", ["import hyperleg_design", "import hyperleg_design; hyperleg_design.load_design()"])
+def test_heavy_libraries_load_when_used(statement):
+    code = f"import sys; {statement}; print(*sorted(set({HEAVY!r}) & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
+def test_every_public_name_resolves():
+    for name in hyperleg_design.__all__:
+        assert getattr(hyperleg_design, name) is not None
+    assert set(hyperleg_design.__all__) == set(dir(hyperleg_design))
+    with pytest.raises(AttributeError, match="no_such_name"):
+        _ = hyperleg_design.no_such_name
+
+
+def test_public_names_are_the_same_to_a_type_checker():
+    tree = ast.parse((PACKAGE / "__init__.py").read_text())
+    guarded = next(node for node in tree.body if isinstance(node, ast.If))
+    typed = {(a.asname, node.module) for node in guarded.body if isinstance(node, ast.ImportFrom) for a in node.names}
+    assert typed == {(name, f"hyperleg_design.{home}") for name, home in hyperleg_design._HOME.items()}
+
+
+def imported_rooms(path: Path) -> set[str]:
+    """First parts below the package of everything that a module imports, wherever in the module it does."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text())):
+        names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{name_of(path)} imports relative to itself"
+            names = [f"{node.module}.{a.name}" for a in node.names]
+        found |= {n.split(".")[1] for n in names if n.startswith("hyperleg_design.")}
+    return found
+
+
+@pytest.mark.parametrize("path", MODULES, ids=name_of)
+def test_a_room_knows_only_the_rooms_before_it(path):
+    own = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+    known = imported_rooms(path) & set(ROOMS)
+    if path.parent == PACKAGE and own not in ROOMS:
+        allowed = set(ROOMS) if own == "__init__" else set()
+    else:
+        allowed = set(ROOMS[: ROOMS.index(own) + 1]) - APART.get(own, set())
+    assert known <= allowed, f"{name_of(path)} imports {sorted(known - allowed)}"
+
+
+@pytest.mark.parametrize("path", MODULES, ids=name_of)
+def test_every_module_says_what_it_holds(path):
+    assert ast.get_docstring(ast.parse(path.read_text()))
+
+
+def test_library_code_prints_nothing():
+    for path in MODULES:
+        if path.name == "cli.py":
+            continue
+        calls = (n for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name))
+        assert not [n.lineno for n in calls if n.func.id == "print"], name_of(path)
