@@ -1,0 +1,81 @@
+"""Sole pads of a robot as points that can push on the floor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.robot.tree import Tree
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.models import RigidBodyModel
+
+HEEL, BALL, TIP = "heel", "ball", "tip"
+"""Rows of pads under a foot, from behind; the tip's are on the toe plate."""
+
+
+@dataclass(frozen=True)
+class Pad:
+    """One spherical pad."""
+
+    name: str
+    """`left_heel_0` and the like."""
+    side: str
+    row: str
+    """`heel`, `ball` or `tip`."""
+    link: str
+    position: tuple[float, float, float]
+    """Of its centre in the link's frame [m]."""
+    radius: float
+    """[m]"""
+
+
+def sole_pads(tree: Tree) -> tuple[Pad, ...]:
+    """Pads of both feet: left heel, ball, tip, then the right's; two in each row."""
+    found = []
+    for link in tree.links:
+        side = link.name.split("_")[0]
+        for index, shape in enumerate(link.pads):
+            row = TIP if link.name.endswith("toe_plate") else (HEEL, BALL)[index // 2]
+            found.append(Pad(f"{side}_{row}_{index % 2}", side, row, link.name, shape.position, shape.size[0]))
+    return tuple(found)
+
+
+def contact_points(model: RigidBodyModel, q: np.ndarray) -> np.ndarray:
+    """Lowest point of each pad in the world [m], `(pads, 3)`; on level floor a sphere touches there."""
+    points, _ = contact_kinematics(model, q)
+    return points
+
+
+def contact_kinematics(model: RigidBodyModel, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest points of the pads and their Jacobians.
+
+    Args:
+        model: floating or fixed robot.
+        q: its configuration, `(nq,)`.
+
+    Returns:
+        Points in the world [m], `(pads, 3)`, and the velocity of the body's material there over `v`, world axes,
+        `(pads, 3, nv)`.
+    """
+    import pinocchio as pin
+
+    pin.computeJointJacobians(model.model, model.data, q)
+    pin.updateFramePlacements(model.model, model.data)
+    pads = sole_pads(model.tree)
+    points, jacobians = np.zeros((len(pads), 3)), np.zeros((len(pads), 3, model.model.nv))
+    link = ""
+    rotation, origin, twist = np.eye(3), np.zeros(3), np.zeros((6, model.model.nv))
+    for index, pad in enumerate(pads):
+        if pad.link != link:
+            link = pad.link
+            frame = model.model.getFrameId(link)
+            place = model.data.oMf[frame]
+            rotation, origin = np.array(place.rotation), np.array(place.translation)
+            twist = np.array(pin.getFrameJacobian(model.model, model.data, frame, pin.LOCAL_WORLD_ALIGNED))
+        offset = rotation @ np.array(pad.position) - np.array([0.0, 0.0, pad.radius])
+        points[index] = origin + offset
+        jacobians[index] = twist[:3] + np.cross(twist[3:].T, offset).T  # v + w x r
+    return points, jacobians

@@ -1,0 +1,84 @@
+"""A squat: both feet flat, the pelvis goes down and up, the pressure stays where it was."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.models import rigid_body_model
+from hyperleg_design.robot.names import SIDES
+from hyperleg_design.robot.tree import SIGN
+from hyperleg_design.sizing.motions.balance import Series, balanced_states, highest_pelvis
+from hyperleg_design.sizing.motions.foot_path import FLAT, FootPath
+from hyperleg_design.sizing.motions.motion import Motion, check_positive, contact_mask
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+
+@dataclass(frozen=True, kw_only=True)
+class SquatPlan:
+    """Depth and pace of the squat; all assumed."""
+
+    depth: float = 0.18
+    """Of the pelvis, top to bottom [m]."""
+    period: float = 2.0
+    """Down and up [s]."""
+    min_knee: float = 0.30
+    """Knee flexion at the top [rad]."""
+
+    def __post_init__(self) -> None:
+        check_positive("squat", depth=self.depth, period=self.period, min_knee=self.min_knee)
+
+
+def standing_feet(design: Design, count: int) -> tuple[FootPath, FootPath]:
+    """Both feet flat under the hips, `count` samples; the ankles stand at x = 0."""
+    found = []
+    for side in SIDES:
+        position = np.zeros((3, count, 3))
+        position[0] = [0.0, SIGN[side] * design.hip.spacing / 2, design.foot.ankle_height]
+        found.append(FootPath(position, np.zeros((3, count)), np.zeros((3, count)), np.full(count, FLAT)))
+    return found[0], found[1]
+
+
+def sole_middle(design: Design) -> float:
+    """Middle between heel and tip pads, ahead of the ankle [m]."""
+    tip = design.foot.ball_length + design.toe.length
+    return float(tip - design.foot.heel_length) / 2
+
+
+def squat(design: Design, plan: SquatPlan | None = None, samples: int = 80) -> Motion:
+    """One squat, down and up as a sinusoid.
+
+    Args:
+        design: a robot, of any variant.
+        plan: depth and pace.
+        samples: in a period.
+
+    Raises:
+        InfeasibleError: a joint's range ends before.
+        InputError: a plan that makes no sense.
+    """
+    plan = plan or SquatPlan()
+    if samples < 20:
+        raise InputError("squat", "samples", samples, "expects at least 20")
+    model = rigid_body_model(design)
+    time = np.arange(samples) * plan.period / samples
+    feet = standing_feet(design, samples)
+    pressure = np.zeros((samples, 3))
+    pressure[:, 0] = sole_middle(design)
+    rate = 2 * np.pi / plan.period
+    wave = plan.depth / 2 * np.stack([np.cos(rate * time) - 1, -rate * np.sin(rate * time), -(rate**2) * np.cos(rate * time)])
+
+    def height(place: np.ndarray, _rise: np.ndarray) -> np.ndarray:
+        return wave + np.array([highest_pelvis(design, place, feet, wave[0], plan.min_knee), 0.0, 0.0])[:, None]
+
+    found = balanced_states(model, feet, pressure, height, Series(plan.period / samples, mirrored=False))
+    assumed = {
+        "squat": f"{plan.depth:g} m in {plan.period:g} s, down and up as a sinusoid (assumed)",
+        "feet": "flat under the hips, trunk upright, pressure in the middle of the soles (assumed)",
+    }
+    return Motion("squat", model, time, found.q, found.v, found.a, contact_mask(model, feet), feet, pressure, True, 0.0, assumed)

@@ -1,0 +1,117 @@
+"""A stair step: shift the weight, lift one foot onto the step, rise, bring the other foot beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.models import rigid_body_model
+from hyperleg_design.robot.names import SIDES
+from hyperleg_design.robot.tree import SIGN
+from hyperleg_design.sizing.motions.balance import Series, balanced_states, highest_pelvis
+from hyperleg_design.sizing.motions.foot_path import Step, foot_path, quintic
+from hyperleg_design.sizing.motions.motion import Motion, check_positive, contact_mask
+from hyperleg_design.sizing.motions.squat import sole_middle
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+
+@dataclass(frozen=True, kw_only=True)
+class StairPlan:
+    """Step and pace; all assumed."""
+
+    step_height: float = 0.17
+    """Of the step [m], a common stair."""
+    step_depth: float = 0.29
+    """How far ahead the feet stand on the step [m]."""
+    shift: float = 0.4
+    """Weight from both feet to one, or back [s]."""
+    swing: float = 0.45
+    """A foot in the air [s]."""
+    rise: float = 0.6
+    """Weight from the lower foot to the upper one while the body rises [s]."""
+    width: float = 1.0
+    """Between the feet, over the distance between the hips [-]."""
+    clearance: float = 0.06
+    """Added height of the swinging foot in the middle [m]."""
+    pitch_off: float = 0.45
+    """Pitch of the rear foot as it leaves the lower floor [rad]."""
+    lean: float = 0.10
+    """Of the trunk over the standing foot [rad]; upright, the hips' narrow range inward (5 deg) would not let it stand there."""
+    inward: float = 0.4
+    """How far inside the standing foot's middle the pressure is, over the half distance of its pads [-]."""
+    upper_pressure: float = 0.2
+    """Where the upper foot takes the weight, from below its ankle to its middle [-]; further ahead the ankle would bend too far."""
+    heel_rise: float = 0.2
+    """When in the rise the rear heel leaves the floor [-]."""
+    min_knee: float = 0.30
+    """Least knee flexion [rad]."""
+
+    def __post_init__(self) -> None:
+        fields = ("step_height", "step_depth", "shift", "swing", "rise", "clearance", "min_knee")
+        check_positive("stair", **{name: getattr(self, name) for name in fields})
+        if not 0 <= self.pitch_off < 1.2:
+            raise InputError("stair", "pitch_off", self.pitch_off, "expects 0 .. 1.2 rad")
+
+
+def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> Motion:
+    """One step up, left foot first, from rest to rest.
+
+    The heel of the rear foot rises as the body does, over the toe where that moves.
+
+    Args:
+        design: a robot, of any variant.
+        plan: step and pace.
+        samples: in all.
+
+    Raises:
+        InfeasibleError: the step is too high for the legs, or a joint's range ends before.
+        InputError: a plan that makes no sense.
+    """
+    plan = plan or StairPlan()
+    if samples < 40:
+        raise InputError("stair", "samples", samples, "expects at least 40")
+    model = rigid_body_model(design)
+    marks = np.cumsum([0.0, plan.shift / 2, plan.shift, plan.swing, plan.rise, plan.swing, plan.shift, plan.shift / 2])
+    _, leave, up, landed, over, beside, centred, end = marks
+    time = np.linspace(0.0, end, samples)
+    y, ahead, high = plan.width * design.hip.spacing / 2, plan.step_depth, plan.step_height
+    left = Step(up, up, landed, landed, (0.0, y, 0.0), (ahead, y, high), 0.0, 0.0, plan.clearance)
+    heel_up = landed + plan.heel_rise * plan.rise
+    right = Step(heel_up, over, beside, beside, (0.0, -y, 0.0), (ahead, -y, high), plan.pitch_off, 0.0, plan.clearance)
+    feet = (foot_path(design, time, [left]), foot_path(design, time, [right]))
+
+    middle, tip = sole_middle(design), design.foot.ball_length + design.toe.length - design.contact.pad_radius
+    inner = y - plan.inward * max(design.foot.width / 2 - design.contact.pad_radius, 0.0)
+    lower, upper = np.array([middle, -inner, 0.0]), np.array([ahead + plan.upper_pressure * middle, inner, high])
+    ready = np.array([0.5 * (middle + tip), -inner, 0.0])
+    stops = [
+        (0.0, np.array([middle, 0.0, 0.0])), (leave, np.array([middle, 0.0, 0.0])), (up, lower), (landed, ready), (over, upper),
+        (beside, upper), (centred, np.array([ahead + middle, 0.0, high])), (end, np.array([ahead + middle, 0.0, high])),
+    ]  # fmt: skip
+    path = np.zeros((3, samples, 3))
+    for (t0, p0), (t1, p1) in zip(stops[:-1], stops[1:], strict=True):
+        inside = (time >= t0) & (time <= t1)
+        for axis in range(3):
+            path[:, inside, axis] = quintic(time[inside], t0, t1, (p0[axis], 0, 0), (p1[axis], 0, 0))
+    pressure, lean = path[0], -plan.lean / inner * path[..., 1]
+
+    climb = np.zeros((3, samples))
+    climb[0, time >= over] = high
+    rising = (time >= landed) & (time < over)
+    climb[:, rising] = quintic(time[rising], landed, over, (0, 0, 0), (high, 0, 0))
+
+    def height(place: np.ndarray, _rise: np.ndarray) -> np.ndarray:
+        return climb + np.array([highest_pelvis(design, place, feet, climb[0], plan.min_knee, lean[0]), 0.0, 0.0])[:, None]
+
+    found = balanced_states(model, feet, pressure, height, Series(end / (samples - 1), mirrored=True), roll=lean)
+    assumed = {
+        "step": f"{high:g} m high, {ahead:g} m ahead, {SIDES[0]} foot first, {end:.2f} s from rest to rest (assumed)",
+        "pelvis": f"leans by {np.rad2deg(plan.lean):.0f} deg over the standing foot, rises with the weight's passage, as high as a knee of {np.rad2deg(plan.min_knee):.0f} deg lets it be (assumed)",
+        "balance": f"the zero-moment point goes from foot to foot; sides {SIGN['left'] * y:g} m off the middle (assumed)",
+    }
+    return Motion("stair", model, time, found.q, found.v, found.a, contact_mask(model, feet), feet, pressure, False, ahead, assumed)
