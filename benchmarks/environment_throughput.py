@@ -1,7 +1,8 @@
 """Policy steps per second of the whole environment, over those of bare mj_step on the same model and states.
 
 Bare physics is `mujoco.batch.Batch.step` with four substeps a policy step, on as many C threads, from the very states that
-the environment is about to step. Both are timed in turn, step by step, so that the machine's drift hits both.
+the environment stepped. Both are timed in turn, in blocks of a few steps, so that the machine's drift hits both; between
+blocks the threads of the other come to rest.
 
     python benchmarks/environment_throughput.py --threads 2 --simulations 256 512 1024
 """
@@ -17,8 +18,13 @@ from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task
 
+BLOCK = 10
+"""Policy steps timed together."""
+PAUSE = 0.02
+"""Between blocks [s]."""
 
-def measure(simulations: int, threads: int, steps: int, task: str, noise: float) -> dict[str, float]:
+
+def measure(simulations: int, threads: int, blocks: int, task: str, noise: float) -> dict[str, float]:
     """Policy steps per second of the environment and of bare physics, and the ratio of the medians."""
     from mujoco import batch
 
@@ -27,22 +33,32 @@ def measure(simulations: int, threads: int, steps: int, task: str, noise: float)
     rng = np.random.default_rng(1)
     environment.reset()
     actions = rng.normal(size=(16, simulations, environment.action_size)) * noise
+    states = np.empty((BLOCK, *bare.state.shape))
     whole, physics = [], []
-    for step in range(steps + 20):
-        bare.state[:] = np.concatenate([chunk.batch.state for chunk in environment.chunks])
-        start = time.perf_counter()
-        bare.step(nstep=int(environment.task.physics.substeps))
-        middle = time.perf_counter()
-        environment.step(actions[step % len(actions)])
-        end = time.perf_counter()
-        if step >= 20:
-            physics.append(middle - start)
-            whole.append(end - middle)
+    for block in range(blocks + 1):
+        spent = 0.0
+        for step in range(BLOCK):
+            for chunk in environment.chunks:
+                states[step, chunk.first : chunk.first + chunk.count] = chunk.batch.state
+            start = time.perf_counter()
+            environment.step(actions[(block * BLOCK + step) % len(actions)])
+            spent += time.perf_counter() - start
+        whole.append(spent / BLOCK)
+        time.sleep(PAUSE)
+        spent = 0.0
+        for state in states:
+            bare.state[:] = state
+            start = time.perf_counter()
+            bare.step(nstep=int(environment.task.physics.substeps))
+            spent += time.perf_counter() - start
+        physics.append(spent / BLOCK)
+        time.sleep(PAUSE)
+    del whole[0], physics[0]
     environment.close()
     return {
         "environment": simulations / float(np.median(whole)),
         "bare": simulations / float(np.median(physics)),
-        "ratio": float(np.median(physics) / np.median(whole)),
+        "ratio": float(np.median(np.array(physics) / np.array(whole))),
     }
 
 
@@ -50,13 +66,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--simulations", type=int, nargs="+", default=[256, 512, 1024])
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--steps", type=int, default=100)
+    parser.add_argument("--blocks", type=int, default=12)
     parser.add_argument("--task", default="walk")
     parser.add_argument("--noise", type=float, nargs="+", default=[0.1, 1.0], help="standard deviations of the random actions")
     options = parser.parse_args()
     for noise in options.noise:
         for simulations in options.simulations:
-            found = measure(simulations, options.threads, options.steps, options.task, noise)
+            found = measure(simulations, options.threads, options.blocks, options.task, noise)
             print(
                 f"noise {noise:g}, {simulations} simulations, {options.threads} threads: environment {found['environment']:.0f}, "
                 f"bare mj_step {found['bare']:.0f} policy steps/s, ratio {found['ratio']:.3f}"

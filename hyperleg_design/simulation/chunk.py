@@ -1,11 +1,13 @@
 """A few simulations stepped by one thread: physics, rewards, ends, resets and observations.
 
-Everything in a chunk depends on its own simulations and its own random stream only, so a trajectory does not depend on
+Threads take turns in Python and run side by side in MuJoCo: left to the interpreter's own lock, which NumPy lets go of in
+every longer operation, they would hand it to and fro thousands of times a second. Everything in a chunk depends on its own simulations and its own random stream only, so a trajectory does not depend on
 how many threads work on the chunks.
 """
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -92,8 +94,11 @@ class Chunk:
         first: int,
         count: int,
         rng: np.random.Generator,
+        turn: threading.Lock,
     ) -> None:
         from mujoco import batch
+
+        self._turn = turn
 
         self.task, self.layout, self.first, self.count, self.rng = task, layout, first, count, rng
         self.batch = batch.Batch(model, count, 1)
@@ -151,7 +156,7 @@ class Chunk:
         self.goal = self.commander.judge(self.motion)
         ending = terminations.ending(self.motion, self.goal, self.episode_step, task.limits, duration)
         ending[diverged] = terminations.DIVERGED
-        terminated = np.isin(ending, terminations.FALLS)
+        terminated = terminations.fell(ending)
         state = self._state(self.thermal.advance(self.motor_torque / self._rated, duration), terminated)
         reward_terms = self._rewards(state) * duration
         reward_terms[diverged] = 0.0
@@ -202,10 +207,16 @@ class Chunk:
     def _advance(self) -> None:
         from mujoco.batch import SimulationError
 
+        failed: np.ndarray | None = None
+        self._turn.release()
         try:
             self.batch.step()
         except SimulationError as error:
-            self.drive.qpos[error.ids] = np.nan  # found, reported and started anew after the policy step
+            failed = error.ids
+        finally:
+            self._turn.acquire()
+        if failed is not None:
+            self.drive.qpos[failed] = np.nan  # found, reported and started anew after the policy step
 
     def _help(self) -> None:
         assert self.assist is not None
@@ -222,6 +233,7 @@ class Chunk:
 
     def _state(self, thermal_excess: np.ndarray | None = None, terminated: np.ndarray | None = None) -> State:
         torque, speed = self.motor_torque, self.motor_velocity
+        pad_load = models.pad_loads(self.sensors)
         return State(
             motion=self.motion,
             action=self.action,
@@ -229,7 +241,8 @@ class Chunk:
             command=self.commander.vector(self.goal),
             motor_torque=torque,
             motor_velocity=speed,
-            pad_load=models.pad_loads(self.sensors),
+            pad_load=pad_load,
+            foot_load=models.foot_loads(pad_load),
             pad_slip=models.pad_slip(self.sensors[-1]),
             power=np.einsum("snk,snk->n", self._heat * torque + speed, torque) / len(torque),
             thermal_excess=np.zeros(self.count) if thermal_excess is None else thermal_excess,
@@ -242,12 +255,15 @@ class Chunk:
         values = np.zeros((self.count, len(self.rewards)))
         for column, (name, reward) in enumerate(self.rewards.items()):
             if reward.weight:
-                values[:, column] = reward.weight * TERMS[name].function(state, self.robot, **reward.parameters)
+                np.multiply(TERMS[name].function(state, self.robot, **reward.parameters), reward.weight, out=values[:, column])
         return values
 
     def _find_diverged(self, position: np.ndarray, velocity: np.ndarray) -> list[Divergence]:
         """Simulations gone wrong in this step; they are put back to standing so that the others can go on."""
-        moving = np.abs(self.drive.qvel).max(-1)
+        if self._sound():
+            return []
+        with np.errstate(invalid="ignore"):
+            moving = np.abs(self.drive.qvel).max(-1)
         lost = ~np.isfinite(self.drive.qpos.sum(-1)) | ~(moving < FASTEST)
         warned = self.batch.warning[:, _BROKEN, 1].any(-1)
         ids = np.flatnonzero(lost | warned)
@@ -258,6 +274,12 @@ class Chunk:
         if len(ids):
             self._start(ids)
         return found
+
+    def _sound(self) -> bool:
+        """Whether all simulations are well."""
+        speed, position = self.drive.qvel, self.drive.qpos
+        bounded = -FASTEST < np.minimum.reduce(speed, None) and np.maximum.reduce(speed, None) < FASTEST
+        return bool(bounded and np.isfinite(np.add.reduce(position, None)) and not self.batch.warning[:, _BROKEN, 1].any())
 
     def _start_again(self, ids: np.ndarray) -> None:
         motion = self._start(ids)

@@ -42,18 +42,33 @@ class Drive:
         if self._linkage is not None:
             self._coefficients = batch.expand("wrap_prm")
             self._places = _wrap_places(batch, layout)
-        self.coulomb, self.viscous, self._width = self.model.coulomb, self.model.viscous, physics.friction_velocity
+        self.coulomb, self.viscous = self.model.coulomb, self.model.viscous
+        self._width: np.ndarray = np.array(physics.friction_velocity)
         if physics.friction_space == "motor":
             self.coulomb, self.viscous = actuation.motor_friction(design)
             self._width = actuation.motor_friction_width(self.model.joint_from_motor, physics.friction_velocity)
+        self._spread()
         self._damping = None
         if physics.friction == "implicit":
             self._damping = batch.expand("dof_damping")[:, 6:] if physics.friction_space == "joint" else batch.expand("tendon_damping")
 
+    def _spread(self) -> None:
+        """Constants written out for every simulation and leg, so that NumPy runs through them in one go."""
+
+        def full(values: np.ndarray) -> np.ndarray:
+            return np.ascontiguousarray(np.broadcast_to(values, (self.count, LEGS, values.shape[-1])))
+
+        one = self.model.envelope
+        names = ("no_load_speed", "stall_torque", "peak_torque", "power_constant")
+        envelope = dataclasses.replace(one, **{n: full(getattr(one, n)) for n in names})
+        gains = {n: full(getattr(self.model, n)) for n in ("rated_torque", "stiffness", "damping")}
+        self.model = dataclasses.replace(self.model, envelope=envelope, **gains)
+        self.coulomb, self.viscous = full(self.coulomb), full(self.viscous)
+        self._width = full(np.broadcast_to(self._width, self.coulomb.shape[-1:])) if self._width.ndim < 3 else full(self._width)
+
     def flat(self, values: np.ndarray) -> np.ndarray:
-        """Constants of one leg as rows over both legs, `(1 or n, 2 k)`."""
-        values = values if values.ndim > 1 else values[None, None]
-        return np.broadcast_to(values, (len(values), LEGS, values.shape[-1])).reshape(len(values), -1)
+        """Constants `(n, 2, k)` as rows over both legs, `(n, 2 k)`."""
+        return values.reshape(self.count, -1)
 
     def apply(self, target: np.ndarray, torque: np.ndarray, speed: np.ndarray) -> None:
         """Set controls and friction from the present state.
@@ -63,7 +78,7 @@ class Drive:
             torque: filled with the motor torques [Nm], `(n, K)`.
             speed: filled with the motor velocities [rad/s], `(n, K)`.
         """
-        position, velocity = self.qpos[:, 7:].reshape(self._shape), self.qvel[:, 6:].reshape(self._shape)
+        position, velocity = self.qpos[:, 7:].copy().reshape(self._shape), self.qvel[:, 6:].copy().reshape(self._shape)
         matrix, to_motor = self.model.joint_from_motor, None
         if self._linkage is not None:
             matrix = self._linkage.joint_from_motor(position)

@@ -11,6 +11,7 @@ Simulations are worked on in chunks of fixed size, each with its own random stre
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
@@ -32,8 +33,10 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
     from hyperleg_design.simulation.layout import Layout
 
-CHUNK = 128
-"""Simulations a chunk; a trajectory depends on it through the random streams, so it is the same on every machine."""
+CHUNK = 256
+"""Most simulations in a chunk: fewer and larger ones waste less time in Python."""
+SMALLEST_SPLIT = 32
+"""Simulations from which there are two chunks at least."""
 DIVERGENCES_KEPT = 100
 """Most divergences that an environment remembers; all are counted."""
 
@@ -68,14 +71,16 @@ class Environment:
         """MuJoCo model that is simulated; the first one's of a batch of designs."""
         for model in each or [self.model]:
             check_standing(model, self.layout, task.limits, design.name)
-        count = -(-simulations // CHUNK)
+        # A trajectory depends on the chunks through their random streams, so they follow from the number of simulations alone.
+        count = max(-(-simulations // CHUNK), 2 if simulations >= SMALLEST_SPLIT else 1)
         bounds = np.linspace(0, simulations, count + 1).astype(int)
         streams = np.random.SeedSequence(seed).spawn(count)
+        self._turn = threading.Lock()
         self.chunks = []
         for low, high, stream in zip(bounds[:-1], bounds[1:], streams, strict=True):
             part = _taken(design, int(low), int(high)) if batched else design
             own = each[low:high] if each else None
-            self.chunks.append(Chunk(part, task, self.layout, self.model, own, int(low), int(high - low), np.random.default_rng(stream)))
+            self.chunks.append(Chunk(part, task, self.layout, self.model, own, int(low), int(high - low), np.random.default_rng(stream), self._turn))
         workers = min(threads or os.cpu_count() or 1, count)
         self._pool = ThreadPoolExecutor(workers) if workers > 1 else None
         self.divergences: list[Divergence] = []
@@ -219,9 +224,13 @@ class Environment:
             self._pool.shutdown()
 
     def _each(self, method: Any, arguments: list[tuple[Any, ...]]) -> list[Any]:
+        def work(chunk: Chunk, given: tuple[Any, ...]) -> Any:
+            with self._turn:
+                return method(chunk, *given)
+
         if self._pool is None:
-            return [method(chunk, *a) for chunk, a in zip(self.chunks, arguments, strict=True)]
-        waiting = [self._pool.submit(method, chunk, *a) for chunk, a in zip(self.chunks, arguments, strict=True)]
+            return [work(chunk, a) for chunk, a in zip(self.chunks, arguments, strict=True)]
+        waiting = [self._pool.submit(work, chunk, a) for chunk, a in zip(self.chunks, arguments, strict=True)]
         return [w.result() for w in waiting]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,7 +30,7 @@ class Layout:
     motors: tuple[str, ...]
     """Names with the side in front, `(K,)`."""
     pads: tuple[str, ...]
-    """Geoms of the sole pads in the MuJoCo model, `(P,)`."""
+    """Geoms of the sole pads in the MuJoCo model, as many of the left foot as of the right, `(P,)`."""
     pad_foot: np.ndarray
     """Foot of each pad, 0 left, 1 right, `(P,)`."""
     pad_position: np.ndarray
@@ -54,6 +55,11 @@ class Layout:
     def leg_motors(self) -> int:
         """Motors of one leg."""
         return len(self.motors) // 2
+
+    @cached_property
+    def hip_sideways(self) -> np.ndarray:
+        """Places of hip yaw and roll, `(4,)`."""
+        return self.joint_indices("hip_yaw", "hip_roll")
 
     def joint_indices(self, *names: str) -> np.ndarray:
         """Places of joints, given without the side, in both legs."""

@@ -73,9 +73,14 @@ def pad_forces(sensors: np.ndarray) -> np.ndarray:
 
 def pad_loads(sensors: np.ndarray) -> np.ndarray:
     """Vertical forces of the floor on the pads [N], `(..., 6 P)` -> `(..., P)`."""
-    return sensors[..., 0::PAD_SENSOR_SIZE]
+    return sensors[..., 0::PAD_SENSOR_SIZE].copy()
 
 
 def pad_slip(sensors: np.ndarray) -> np.ndarray:
     """Speed at which each touching pad slides over the floor [m/s], zero where it does not touch; `(..., 6 P)` -> `(..., P)`."""
-    return np.hypot(sensors[..., 4::PAD_SENSOR_SIZE], sensors[..., 5::PAD_SENSOR_SIZE])
+    return np.sqrt(sensors[..., 4::PAD_SENSOR_SIZE] ** 2 + sensors[..., 5::PAD_SENSOR_SIZE] ** 2)
+
+
+def foot_loads(loads: np.ndarray) -> np.ndarray:
+    """Vertical forces on the left and the right foot [N] from those on the pads, `(..., P)` -> `(..., 2)`."""
+    return np.add.reduce(loads.reshape(*loads.shape[:-1], 2, -1), -1)

@@ -57,7 +57,7 @@ def waypoint(state: State, robot: Robot) -> list[np.ndarray]:
 
 def privileged(state: State, robot: Robot) -> list[np.ndarray]:
     """What only a simulation knows: linear velocity, pelvis height, vertical force on each foot over the weight."""
-    load = state.foot_load(robot.layout.pad_foot)[-1] / robot.layout.weight
+    load = state.foot_load[-1] / robot.layout.weight
     return [state.motion.local_velocity, state.motion.position[:, 2:3], load]
 
 

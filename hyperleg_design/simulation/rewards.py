@@ -115,14 +115,14 @@ def position_progress(state: State, robot: Robot) -> np.ndarray:
 @term()
 def contact_match(state: State, robot: Robot) -> np.ndarray:
     """Fraction of the feet that stand, or do not, as the gait clock says."""
-    stands = state.foot_load(robot.layout.pad_foot)[-1] > TOUCH
-    return (stands == stance(state.phase, robot.clock.stance)).mean(-1)
+    stands = state.foot_load[-1] > TOUCH
+    return np.add.reduce(stands == stance(state.phase, robot.clock.stance), 1) / 2
 
 
 @term()
 def flight(state: State, robot: Robot) -> np.ndarray:
     """1 where no foot touches the floor."""
-    return (state.pad_load[-1].sum(-1) <= TOUCH).astype(float)
+    return np.logical_and.reduce(state.foot_load[-1] <= TOUCH, 1).astype(float)
 
 
 @term()
@@ -142,19 +142,15 @@ def action_rate(state: State, robot: Robot) -> np.ndarray:
 @term()
 def foot_slide(state: State, robot: Robot) -> np.ndarray:
     """Sliding speed of the feet [m/s]: of each foot's touching pads the mean, weighted by load, summed over the feet."""
-    load, slip = state.pad_load[-1], state.pad_slip
-    left = robot.layout.pad_foot == 0
-    total = np.zeros(len(slip))
-    for foot in (left, ~left):
-        on = load[:, foot]
-        total += np.einsum("np,np->n", on, slip[:, foot]) / np.maximum(on.sum(-1), TOUCH)
-    return total
+    count = len(state.pad_slip)
+    weighted = (state.pad_load[-1] * state.pad_slip).reshape(count, 2, -1).sum(-1)
+    return (weighted / np.maximum(state.foot_load[-1], TOUCH)).sum(-1)
 
 
 @term()
 def hip_deviation(state: State, robot: Robot) -> np.ndarray:
     """Hip yaw and roll away from the default posture, summed [rad]."""
-    places = robot.layout.joint_indices("hip_yaw", "hip_roll")
+    places = robot.layout.hip_sideways
     return np.abs(state.motion.joint_position[:, places] - robot.layout.default[places]).sum(-1)
 
 
@@ -175,7 +171,7 @@ def joint_limits(state: State, robot: Robot, share: float = 0.95) -> np.ndarray:
 @term()
 def ground_force(state: State, robot: Robot, body_weights: float = 1.5) -> np.ndarray:
     """Largest vertical force on one foot within the step above so many body weights, in body weights."""
-    peak = state.foot_load(robot.layout.pad_foot).max((0, 2))
+    peak = state.foot_load.max((0, 2))
     return np.maximum(peak / robot.layout.weight - body_weights, 0.0)
 
 
@@ -208,4 +204,4 @@ def path_deviation(state: State, robot: Robot, most: float = 1.5) -> np.ndarray:
 
 def stance(phase: np.ndarray, share: float) -> np.ndarray:
     """Whether left and right foot should stand at phases of the gait clock, `(n,)` -> `(n, 2)`; the right is half a stride behind."""
-    return np.stack([phase, (phase + 0.5) % 1.0], -1) < share
+    return (phase[:, None] + np.array([0.0, 0.5])) % 1.0 < share

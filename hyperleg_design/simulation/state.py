@@ -98,6 +98,8 @@ class State:
     """[rad/s], `(s, n, K)`."""
     pad_load: np.ndarray
     """Vertical force on each sole pad [N], `(s, n, P)`."""
+    foot_load: np.ndarray
+    """Vertical force on the left and the right foot [N], `(s, n, 2)`."""
     pad_slip: np.ndarray
     """Sliding speed of each touching pad, in the last substep [m/s], `(n, P)`."""
     power: np.ndarray
@@ -111,11 +113,6 @@ class State:
     goal: Goal | None
     """In tasks with waypoints."""
 
-    def foot_load(self, pad_foot: np.ndarray) -> np.ndarray:
-        """Vertical force on each foot [N], `(s, n, 2)`, with the foot of each pad `(P,)`."""
-        left = pad_foot == 0
-        return np.stack([self.pad_load[..., left].sum(-1), self.pad_load[..., ~left].sum(-1)], -1)
-
 
 def read_motion(qpos: np.ndarray, qvel: np.ndarray) -> Motion:
     """Motion from MuJoCo's coordinates, `(n, 7 + J)` and `(n, 6 + J)`; copies."""
@@ -127,17 +124,24 @@ def read_motion(qpos: np.ndarray, qvel: np.ndarray) -> Motion:
     rotation[:, 0, 0], rotation[:, 0, 1], rotation[:, 0, 2] = 1 - yy - zz, xy - wz, xz + wy
     rotation[:, 1, 0], rotation[:, 1, 1], rotation[:, 1, 2] = xy + wz, 1 - xx - zz, yz - wx
     rotation[:, 2, 0], rotation[:, 2, 1], rotation[:, 2, 2] = xz - wy, yz + wx, 1 - xx - yy
-    heading = rotation[:, :2, 0] / np.maximum(np.hypot(rotation[:, 0, 0], rotation[:, 1, 0]), 1e-9)[:, None]
+    forward = rotation[:, :2, 0]
+    heading = forward / np.sqrt(np.maximum(np.einsum("ni,ni->n", forward, forward), 1e-18))[:, None]
     return Motion(qpos[:, :3].copy(), rotation, qvel[:, :3].copy(), qvel[:, 3:6].copy(), heading, qpos[:, 7:].copy(), qvel[:, 6:].copy())
 
 
 def to_yaw_frame(heading: np.ndarray, vector: np.ndarray) -> np.ndarray:
     """Horizontal world vectors in the yaw frame, `(n, 2)`."""
     cosine, sine = heading[:, 0], heading[:, 1]
-    return np.stack([cosine * vector[:, 0] + sine * vector[:, 1], cosine * vector[:, 1] - sine * vector[:, 0]], -1)
+    turned = np.empty_like(vector)
+    turned[:, 0] = cosine * vector[:, 0] + sine * vector[:, 1]
+    turned[:, 1] = cosine * vector[:, 1] - sine * vector[:, 0]
+    return turned
 
 
 def to_world(heading: np.ndarray, vector: np.ndarray) -> np.ndarray:
     """Horizontal yaw-frame vectors in the world, `(n, 2)`."""
     cosine, sine = heading[:, 0], heading[:, 1]
-    return np.stack([cosine * vector[:, 0] - sine * vector[:, 1], sine * vector[:, 0] + cosine * vector[:, 1]], -1)
+    turned = np.empty_like(vector)
+    turned[:, 0] = cosine * vector[:, 0] - sine * vector[:, 1]
+    turned[:, 1] = sine * vector[:, 0] + cosine * vector[:, 1]
+    return turned

@@ -10,8 +10,11 @@ from hyperleg_design.simulation.state import Goal, Motion
 ENDINGS = ("running", "low", "tilted", "time_out", "off_path", "course_finished", "diverged")
 """What `Step.ending` counts: index 0 while an episode goes on."""
 RUNNING, LOW, TILTED, TIME_OUT, OFF_PATH, COURSE_FINISHED, DIVERGED = range(len(ENDINGS))
-FALLS = (LOW, TILTED)
-"""Endings that terminate; the others truncate."""
+
+
+def fell(code: np.ndarray) -> np.ndarray:
+    """Endings that terminate an episode, `(n,)`; the others truncate it."""
+    return (code == LOW) | (code == TILTED)
 
 
 def low(motion: Motion, limits: Limits) -> np.ndarray:

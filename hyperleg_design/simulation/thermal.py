@@ -50,7 +50,7 @@ class ThermalState:
             excess = (load - self.settings.threshold) / time_constant
             self.average += (duration / time_constant) * (load - self.average)
         else:
-            load = relative_torque.mean(0)
+            load = np.add.reduce(relative_torque, 0) / len(relative_torque)
             rate = (load - self.average) / time_constant
             excess = 2 * self.average * rate - self.margin / time_constant
             self.average += duration * rate
