@@ -28,8 +28,9 @@ class InputError(HyperlegError):
 
     @property
     def place(self) -> str:
-        """Where and field."""
-        return f"{self.where}: {self.field}" if self.field else self.where
+        """Where and field, the field as a user wrote it."""
+        field = self.field if self.field.isprintable() and len(self.field) <= 120 else shown(self.field)
+        return f"{self.where}: {field}" if self.field else self.where
 
 
 def shown(value: object) -> str:

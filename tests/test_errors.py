@@ -41,3 +41,9 @@ def test_values_that_python_cannot_print():
         wide = {"a": wide, "b": wide}
     for value in (loop, deep, wide, 10**5000):
         assert len(shown(value)) <= 120
+
+
+def test_a_field_with_odd_characters_stays_in_one_line():
+    text = str(InputError("a.yaml", "x\ny" + "z" * 500, 1, "no such field"))
+    assert "\n" not in text
+    assert len(text) < 200

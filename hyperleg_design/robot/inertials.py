@@ -74,7 +74,8 @@ def _vector(*parts: Any) -> np.ndarray:
 def _declared(mass: Any, com: Any, gyration: Any) -> Inertial:
     mass = np.asarray(mass, float)
     diagonal = mass[..., None] * np.asarray(gyration, float) ** 2
-    return Inertial(mass, np.broadcast_to(np.asarray(com, float), diagonal.shape), diagonal[..., None] * np.eye(3))
+    com = np.asarray(com, float)
+    return Inertial(mass, np.broadcast_to(com, np.broadcast_shapes(com.shape, diagonal.shape)), diagonal[..., None] * np.eye(3))
 
 
 def _change(table: masses.MassTable, segment: str, legs: int) -> Any:

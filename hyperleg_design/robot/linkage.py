@@ -26,6 +26,9 @@ from hyperleg_design.robot.names import POSTURES
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
 
+RATIOS = (0.02, 50.0)
+"""Ratios of crank to lever between which a four-bar transmits anything [-]."""
+
 
 @dataclass(frozen=True)
 class FourBar:
@@ -81,7 +84,7 @@ class FourBar:
         from scipy.optimize import least_squares
 
         def made(unknown: np.ndarray) -> FourBar:
-            return cls(crank, float(np.exp(unknown[0])) * crank, ground, crank_start, float(unknown[1]), turns)
+            return cls(crank, float(np.exp(np.clip(unknown[0], -9, 9))) * crank, ground, crank_start, float(unknown[1]), turns)
 
         def misfit(unknown: np.ndarray) -> np.ndarray:
             bar = made(unknown)
@@ -89,20 +92,18 @@ class FourBar:
                 ratios = np.array([bar(np.array(0.0))[1] - at_rest, bar(np.array(turn))[1] - at_turn])
             return np.where(np.isfinite(ratios), ratios, 10.0)
 
-        start = np.array([np.log(at_rest), 0.0])
-        best = least_squares(misfit, start, xtol=1e-15, ftol=1e-15, gtol=1e-15)
-        bar = made(best.x)
-        with np.errstate(invalid="ignore"):
-            sampled = bar(np.linspace(*turns, 181))[1]
-        solved = np.max(np.abs(best.fun)) < 1e-9 and turns[0] <= turn <= turns[1]
-        if not solved or not np.all(np.isfinite(sampled)) or np.any(sampled < 0.02) or np.any(sampled > 50):
-            raise InputError(
-                "transmission.linkage",
-                field,
-                turn,
-                f"no four-bar turns the ratio {at_rest:.4g} into {at_turn:.4g} there; change the walking posture or the bars",
-            )
-        return bar
+        low, high = RATIOS
+        if low < min(at_rest, at_turn) and max(at_rest, at_turn) < high and turns[0] <= turn <= turns[1]:
+            best = least_squares(misfit, np.array([np.log(at_rest), 0.0]), xtol=1e-15, ftol=1e-15, gtol=1e-15)
+            bar = made(best.x)
+            with np.errstate(invalid="ignore"):
+                sampled = bar(np.linspace(*turns, 181))[1]
+            if np.max(np.abs(best.fun)) < 1e-9 and np.all((low < sampled) & (sampled < high)):
+                return bar
+        raise InputError(
+            "transmission.linkage", field, float(np.rad2deg(turn)),
+            f"no four-bar turns the ratio {at_rest:.4g} into {at_turn:.4g} at that angle; change the walking posture or the bars",
+        )  # fmt: skip
 
 
 def _range(design: Design, joint: str) -> tuple[float, float]:

@@ -11,7 +11,7 @@ import dataclasses
 import difflib
 import math
 import typing
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
@@ -23,6 +23,9 @@ from hyperleg_design.errors import InputError
 
 LABELS = ("paper", "vendor", "derived", "assumed", "user")
 """Origins of a value; `user` marks one that a user set."""
+
+MOST_NAMES = 16
+"""Names that an error lists at most."""
 
 T = TypeVar("T")
 
@@ -236,8 +239,17 @@ def labelled(data: Any, where: str, path: str) -> tuple[Any, Origin]:
 
 def unknown(name: str, known: list[str]) -> str:
     """Remedy for a name that does not exist: the nearest one, or all."""
-    near = difflib.get_close_matches(name, known, n=1)
-    return f"no such field; did you mean {near[0]}?" if near else f"no such field; there are {', '.join(known)}"
+    near = difflib.get_close_matches(name[:100], known, n=1)
+    return f"no such field; did you mean {near[0]}?" if near else f"no such field; there are {some(known)}"
+
+
+def some(names: Iterable[str]) -> str:
+    """Names in one line: all, or where there are many, the sections they lie in."""
+    names = list(names)
+    if len(names) <= MOST_NAMES:
+        return ", ".join(names)
+    sections = list(dict.fromkeys(f"{name.partition('.')[0]}.*" if "." in name else name for name in names))
+    return ", ".join(sections if 1 < len(sections) <= MOST_NAMES else [*names[:MOST_NAMES], "..."])
 
 
 def leaves(instance: Any, path: str = "") -> dict[str, Any]:
@@ -291,7 +303,7 @@ def with_values(instance: T, values: Mapping[str, Any], where: str, prefix: str 
         elif head in fields and not rest and is_leaf(fields[head]):
             own[head] = checked(value, rule_of(fields[head]), where, prefix + head)
         elif head in sections:
-            raise InputError(where, f"{prefix}{path}", value, f"is a section; name one of {', '.join(rules(sections[head], prefix + head))}")
+            raise InputError(where, f"{prefix}{path}", value, f"is a section; name one of {some(rules(sections[head], prefix + head))}")
         else:
             raise InputError(where, f"{prefix}{path}", value, unknown(f"{prefix}{path}", sorted(leaves(instance, prefix[:-1]))))
     for head, part in inner.items():
