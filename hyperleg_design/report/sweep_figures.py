@@ -1,4 +1,4 @@
-"""Pictures of a sweep: maps over two axes, Pareto fronts, parallel coordinates."""
+"""Pictures of a sweep: maps over two axes, curves over one, Pareto fronts; all that its definition asks for."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.report.parallel_figure import parallel_figure
 from hyperleg_design.report.style import VARIANT_COLOUR, figure_style, save
+from hyperleg_design.report.sweep_rows import axis_of, base_level, base_value, fronts_of, thinned, variant_title
 from hyperleg_design.sweep import measures
 from hyperleg_design.sweep.axis import Axis
 from hyperleg_design.sweep.evaluate import Columns
-from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.run import SweepResult
 from hyperleg_design.sweep.space import Map, Sweep
 from hyperleg_design.sweep.summary import base_values
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 _POINTS = 4000
 """Points drawn of a cloud; more would only thicken it."""
 
-_BACKGROUND_LINES = 300
-_FRONT_LINES = 150
 _INK = "#1d2129"
 
 
@@ -47,7 +46,7 @@ def draw_sweep(result: SweepResult, folder: str | Path) -> dict[str, str]:
         made[f"{sweep.name}-pareto.png"] = "Designs that no other beats in every objective, of each variant; a star marks the unchanged design."
         save(parallel_figure(result), folder / f"{sweep.name}-parallel.png")
         made[f"{sweep.name}-parallel.png"] = (
-            "Designs of the Pareto fronts over all axes and objectives, before a sample of all designs (grey); the black line is the unchanged design."
+            "Designs of the Pareto fronts over all axes and objectives, before a sample of all (grey); black is the unchanged design."
         )
     return made
 
@@ -62,7 +61,7 @@ def map_figure(result: SweepResult, chosen: Map) -> Figure:
         InputError: no design has this measure.
     """
     sweep = result.sweep
-    x_axis, y_axis = _axis(sweep, chosen.x), _axis(sweep, chosen.y)
+    x_axis, y_axis = axis_of(sweep, chosen.x), axis_of(sweep, chosen.y)
     shown = _shown(result, chosen)
     with figure_style():
         import matplotlib.pyplot as plt
@@ -75,9 +74,9 @@ def map_figure(result: SweepResult, chosen: Map) -> Figure:
         scale = LogNorm(low, high) if _wide(every) else Normalize(low, high if high > low else low + 1.0)
         for panel, mesh, variant in zip(panels[0], drawn, shown, strict=True):
             mesh.set_norm(scale)
-            base = (_base_value(x_axis, sweep), _base_value(y_axis, sweep))
+            base = (base_value(x_axis, sweep), base_value(y_axis, sweep))
             panel.plot(*base, marker="*", markersize=13, color="white", markeredgecolor=_INK, linestyle="none", zorder=5)
-            panel.set(xlabel=_axis_label(x_axis, sweep), title=_title(variant) if len(shown) > 1 else "")
+            panel.set(xlabel=_axis_label(x_axis, sweep), title=variant_title(variant) if len(shown) > 1 else "")
             panel.grid(False)
             if sweep.sampling != "grid":
                 _log_ticks(panel, x_axis.log, y_axis.log)
@@ -96,7 +95,7 @@ def _shown(result: SweepResult, chosen: Map) -> dict[str, Columns]:
     table = result.columns(["variant", *drawn, *others, chosen.measure])
     keep = ~np.isnan(table[chosen.measure])
     for name in others:
-        keep &= table[name] == _base_level(_axis(sweep, name), sweep)
+        keep &= table[name] == base_level(axis_of(sweep, name), sweep)
     shown = {v: {k: c[keep & (table["variant"] == v)] for k, c in table.items()} for v in sweep.variants}
     shown = {v: t for v, t in shown.items() if t[chosen.measure].size}
     if not shown:
@@ -107,7 +106,7 @@ def _shown(result: SweepResult, chosen: Map) -> dict[str, Columns]:
 def _draw_map(panel: Any, sweep: Sweep, part: Columns, chosen: Map) -> Any:
     x, y, z = part[chosen.x], part[chosen.y], part[chosen.measure]
     if sweep.sampling != "grid":
-        log = {f"{k}scale": "log" for k, name in (("x", chosen.x), ("y", chosen.y)) if _axis(sweep, name).log}
+        log = {f"{k}scale": "log" for k, name in (("x", chosen.x), ("y", chosen.y)) if axis_of(sweep, name).log}
         return panel.hexbin(x, y, C=z, reduce_C_function=np.median, gridsize=16, cmap="viridis", linewidths=0.2, **log)
     columns, rows = np.unique(x), np.unique(y)
     grid = np.full((rows.size, columns.size), np.nan)
@@ -130,7 +129,7 @@ def curve_figure(result: SweepResult, chosen: Map) -> Figure:
         InputError: no design has this measure.
     """
     sweep = result.sweep
-    axis = _axis(sweep, chosen.x)
+    axis = axis_of(sweep, chosen.x)
     shown = _shown(result, chosen)
     grid = sweep.sampling == "grid"
     with figure_style():
@@ -141,11 +140,11 @@ def curve_figure(result: SweepResult, chosen: Map) -> Figure:
         for (variant, part), width in zip(shown.items(), widths, strict=True):
             order = np.argsort(part[chosen.x], kind="stable")
             look = {"linewidth": width} if grid else {"linestyle": "none", "marker": ".", "markersize": 3, "alpha": 0.4}
-            panel.plot(part[chosen.x][order], part[chosen.measure][order], color=VARIANT_COLOUR[variant], label=_title(variant), **look)
+            panel.plot(part[chosen.x][order], part[chosen.measure][order], color=VARIANT_COLOUR[variant], label=variant_title(variant), **look)
             base = base_values(sweep, variant)
             if chosen.measure in base:
                 star = {"marker": "*", "markersize": 12, "markeredgecolor": _INK, "linestyle": "none", "zorder": 5}
-                panel.plot(_base_value(axis, sweep), base[chosen.measure], color=VARIANT_COLOUR[variant], **star)
+                panel.plot(base_value(axis, sweep), base[chosen.measure], color=VARIANT_COLOUR[variant], **star)
         panel.set(xlabel=_axis_label(axis, sweep), ylabel=measures.label(chosen.measure))
         if len(shown) > 1:
             panel.legend()
@@ -161,7 +160,7 @@ def pareto_figure(result: SweepResult) -> Figure:
     sweep = result.sweep
     if len(sweep.objectives) < 2:
         raise InputError(sweep.source, "objectives", list(sweep.objectives), "expects at least two measures")
-    table, fronts = _fronts(result)
+    table, fronts = fronts_of(result)
     pairs = list(combinations(sweep.objectives, 2))
     with figure_style():
         import matplotlib.pyplot as plt
@@ -175,9 +174,9 @@ def pareto_figure(result: SweepResult) -> Figure:
             for variant, front in fronts.items():
                 colour = VARIANT_COLOUR[variant]
                 rows = np.flatnonzero(table["variant"] == variant)
-                cloud = rows[_thinned(rows.size, _POINTS)]
+                cloud = rows[thinned(rows.size, _POINTS)]
                 panel.scatter(table[first][cloud], table[second][cloud], s=4, color=colour, alpha=0.22, linewidths=0, rasterized=True)
-                _draw_front(panel, table, front, first, second, colour, _title(variant), joined=len(sweep.objectives) == 2)
+                _draw_front(panel, table, front, first, second, colour, variant_title(variant), joined=len(sweep.objectives) == 2)
                 base = base_values(sweep, variant)
                 if first in base and second in base:
                     panel.plot(base[first], base[second], marker="*", markersize=13, color=colour, markeredgecolor=_INK, linestyle="none", zorder=6)
@@ -229,144 +228,6 @@ def _plain_log(axis: Any) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def parallel_figure(result: SweepResult) -> Figure:
-    """Parallel coordinates of the front designs of all variants: axes first, then objectives, best at the top.
-
-    Raises:
-        InputError: the sweep has no objective.
-    """
-    sweep = result.sweep
-    if not sweep.objectives:
-        raise InputError(sweep.source, "objectives", [], "expects at least one measure")
-    table, fronts = _fronts(result)
-    names = [*(axis.name for axis in sweep.axes), *sweep.objectives]
-    good = np.all([~np.isnan(table[o]) for o in sweep.objectives], axis=0)
-    rows = np.flatnonzero(good)
-    with figure_style():
-        import matplotlib.pyplot as plt
-        from matplotlib.collections import LineCollection
-
-        figure, panel = plt.subplots(figsize=(1.35 * len(names) + 2.0, 4.6), layout="constrained")
-        scales = [_Scale.of(sweep, name, table[name][rows]) for name in names]
-        height = np.stack([scale.height(table[name]) for scale, name in zip(scales, names, strict=True)], -1)
-        place = np.arange(len(names))
-
-        def lines(chosen: np.ndarray, **look: Any) -> None:
-            panel.add_collection(LineCollection([np.column_stack([place, height[i]]) for i in chosen], **look))
-
-        lines(rows[_thinned(rows.size, _BACKGROUND_LINES)], colors="#c9ced6", linewidths=0.5, alpha=0.5, zorder=1)
-        for variant, front in fronts.items():
-            lines(front[_thinned(front.size, _FRONT_LINES)], colors=VARIANT_COLOUR[variant], linewidths=0.9, alpha=0.55, zorder=2)
-            panel.plot([], [], color=VARIANT_COLOUR[variant], label=f"front, {_title(variant)}")
-        base = _base_row(sweep)
-        level = [scale.height(np.asarray([base[name]]))[0] if name in base else np.nan for scale, name in zip(scales, names, strict=True)]
-        panel.plot(place, level, color=_INK, linewidth=1.8, zorder=3, label="unchanged design")
-        for x, scale in zip(place, scales, strict=True):
-            panel.axvline(x, color="#6b7280", linewidth=0.8, zorder=0)
-            for at, text in scale.ticks:
-                panel.annotate(text, (x, at), xytext=(3, 0), textcoords="offset points", fontsize=7.5, va="center", zorder=6, bbox=_HALO)
-        panel.axvline(len(sweep.axes) - 0.5, color=_INK, linewidth=0.8, linestyle=":")
-        panel.set_xticks(place, [scale.label for scale in scales], fontsize=8)
-        panel.set(xlim=(-0.3, len(names) - 0.4), ylim=(-0.05, 1.05), yticks=[])
-        panel.grid(False)
-        panel.spines[["left", "bottom"]].set_visible(False)
-        panel.tick_params(length=0)
-        figure.legend(loc="outside upper center", ncols=len(fronts) + 1, fontsize=9)
-        return figure
-
-
-_HALO = {"boxstyle": "square,pad=0.1", "facecolor": "white", "edgecolor": "none", "alpha": 0.75}
-
-
-class _Scale:
-    """Where values of one column stand between 0 and 1; an objective has its better end up."""
-
-    def __init__(self, label: str, low: float, high: float, flip: bool, log: bool, texts: list[str] | None) -> None:
-        self.label, self._low, self._high, self._flip, self._log, self._texts = label, low, high, flip, log, texts
-
-    @classmethod
-    def of(cls, sweep: Sweep, name: str, values: np.ndarray) -> _Scale:
-        axis = next((a for a in sweep.axes if a.name == name), None)
-        if axis is not None and not axis.numeric:
-            texts = [str(v) for v in axis.levels]
-            return cls(_wrapped(axis.label), 0.0, max(len(texts) - 1.0, 1.0), False, False, texts)
-        if axis is not None:
-            low, high = (min(axis.levels), max(axis.levels)) if axis.levels else (axis.low, axis.high)
-            return cls(_wrapped(axis.label), low, high if high > low else low + 1.0, False, axis.log, None)
-        low, high = float(values.min()), float(values.max())
-        high = high if high > low else low + 1.0
-        better = measures.measure_of(name).better
-        log = low > 0 and high > 20 * low
-        return cls(_wrapped(measures.label(name)) + f"\n(up: {better})", low, high, better == "low", log, None)
-
-    def height(self, values: np.ndarray) -> np.ndarray:
-        """Places of values, `(n,)`."""
-        if self._texts is not None:
-            order = {text: i for i, text in enumerate(self._texts)}
-            numbers = np.array([order.get(str(v), np.nan) for v in values], float)
-        else:
-            numbers = np.asarray(values, float)
-        if self._log:
-            at = np.log(numbers / self._low) / np.log(self._high / self._low)
-        else:
-            at = (numbers - self._low) / (self._high - self._low)
-        return 1.0 - at if self._flip else at
-
-    @property
-    def ticks(self) -> list[tuple[float, str]]:
-        """Places and texts of the ticks."""
-        if self._texts is not None:
-            return list(zip(self.height(np.asarray(self._texts)).tolist(), self._texts, strict=True))
-        values = np.geomspace(self._low, self._high, 5) if self._log else np.linspace(self._low, self._high, 5)
-        return [(float(self.height(np.asarray([v]))[0]), _short(v)) for v in values]
-
-
-def _fronts(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:
-    """The table, and the rows on each variant's front; variants that lack an objective are left out."""
-    sweep = result.sweep
-    table = result.columns(["variant", *(axis.name for axis in sweep.axes), *sweep.objectives])
-    values = np.stack([table[c] for c in sweep.objectives], -1)
-    better = [measures.measure_of(c).better for c in sweep.objectives]
-    fronts = {}
-    for variant in sweep.variants:
-        rows = np.flatnonzero(table["variant"] == variant)
-        front = rows[nondominated(values[rows], better)]
-        if front.size:
-            fronts[variant] = front
-    if not fronts:
-        raise InputError(sweep.source, "objectives", list(sweep.objectives), "no design has all of them")
-    return table, fronts
-
-
-def _short(value: float) -> str:
-    return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.3g}"
-
-
-def _thinned(count: int, most: int) -> np.ndarray:
-    """Evenly spread positions, at most so many."""
-    return np.arange(count) if count <= most else np.linspace(0, count - 1, most).astype(int)
-
-
-def _axis(sweep: Sweep, name: str) -> Axis:
-    return next(a for a in sweep.axes if a.name == name)
-
-
-def _base_value(axis: Axis, sweep: Sweep) -> Any:
-    return 1.0 if axis.scaled else sweep.base[axis.paths[0]]
-
-
-def _base_level(axis: Axis, sweep: Sweep) -> Any:
-    """Level of a grid's axis nearest to the unchanged design."""
-    value = _base_value(axis, sweep)
-    if not axis.numeric:
-        return value if value in axis.levels else axis.levels[0]
-    return min(axis.levels, key=lambda level: abs(level - value))
-
-
-def _base_row(sweep: Sweep) -> dict[str, Any]:
-    return {axis.name: _base_value(axis, sweep) for axis in sweep.axes} | base_values(sweep, sweep.variants[0])
-
-
 def _fixed_text(sweep: Sweep, chosen: Map) -> str:
     """What a map's other axes stand at, for its caption."""
     if sweep.sampling != "grid":
@@ -375,7 +236,7 @@ def _fixed_text(sweep: Sweep, chosen: Map) -> str:
     fixed = []
     for axis in sweep.axes:
         if axis.name not in (chosen.x, chosen.y):
-            level = _base_level(axis, sweep)
+            level = base_level(axis, sweep)
             fixed.append(f"{axis.label} at {level:g}" if axis.numeric else f"{axis.label} at {level}")
     return f"{'With ' + ', '.join(fixed) + '; a' if fixed else 'A'} star marks the unchanged design."
 
@@ -389,15 +250,3 @@ def _axis_label(axis: Axis, sweep: Sweep) -> str:
 def _objective_label(column: str) -> str:
     better = "lower" if measures.measure_of(column).better == "low" else "higher"
     return f"{measures.label(column)}, {better} is better"
-
-
-def _title(variant: str) -> str:
-    return variant.replace("_", " ")
-
-
-def _wrapped(label: str) -> str:
-    """A label over several lines, for narrow places."""
-    import textwrap
-
-    name, bracket, unit = label.replace("actuators.", "").replace(".", " ").partition("[")
-    return "\n".join([*textwrap.wrap(name, 13, break_long_words=False), *([bracket + unit] if unit else [])])

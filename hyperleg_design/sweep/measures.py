@@ -290,9 +290,9 @@ def push_off_power(batch: Batch) -> np.ndarray:
 
 
 def largest_power(envelope: MotorEnvelope, speed: np.ndarray) -> np.ndarray:
-    """Largest summed power over all rates s at which the motors turn together at `s speed`, `(...)` [W].
+    """Largest summed power over the rates s at which the motors turn together at `s speed`, `(...)` [W].
 
-    Each motor gives s v min(peak, stall (1 - s v / w0)), concave in s: the derivative of the sum is piecewise linear and
+    Up to the rate at which the first motor reaches its top speed, past which its driver has no hold of it. Each motor gives s v min(peak, stall (1 - s v / w0)), concave in s: the derivative of the sum is piecewise linear and
     falls, with kinks at the motors' corner speeds, so its root is exact in one of the intervals between them.
 
     Args:
@@ -309,9 +309,13 @@ def largest_power(envelope: MotorEnvelope, speed: np.ndarray) -> np.ndarray:
     constant = np.sum(speed[..., None, :] * np.where(past, stall[..., None, :], peak[..., None, :]), -1)
     slope = np.sum(np.where(past, (2 * stall * speed**2 / free)[..., None, :], 0.0), -1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.where(slope > 0, constant / slope, 0.0)
-    high = np.concatenate([kinks[..., 1:], np.full((*corner.shape[:-1], 1), np.inf)], -1)
-    rate = np.clip(root, np.where(np.isfinite(kinks), kinks, 0.0), np.where(np.isfinite(high), high, np.maximum(root, 0.0)))
+        root = np.where(slope > 0, constant / slope, np.inf)
+    # a motor that stands still has its kink at infinity: that interval is none
+    start = np.where(np.isfinite(kinks), kinks, 0.0)
+    end = np.concatenate([kinks[..., 1:], np.full((*corner.shape[:-1], 1), np.inf)], -1)
+    limit = np.min(np.where(turning, envelope.top_speed / safe, np.inf), -1)[..., None]
+    rate = np.minimum(np.maximum(start, np.minimum(root, end)), limit)
+    rate = np.where(np.isfinite(rate), rate, 0.0)
     turned = rate[..., :, None] * speed[..., None, :]
     torque = np.minimum(peak[..., None, :], stall[..., None, :] * (1 - turned / free[..., None, :]))
     return np.max(np.sum(turned * torque, -1), -1)

@@ -265,7 +265,7 @@ def _measures(found: Any, where: str) -> tuple[str, ...]:
     if not isinstance(chosen, list) or not chosen:
         raise InputError(where, "measures", chosen, f"expects a list of some of {', '.join(known)}")
     for name in chosen:
-        if name not in measures.MEASURES:
+        if name not in known:
             raise InputError(where, "measures", name, parameters.unknown(str(name), known).replace("such field", "such measure"))
     return tuple(name for name in known if name in chosen)
 

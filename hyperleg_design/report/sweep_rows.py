@@ -1,0 +1,66 @@
+"""What the figures of a sweep have in common: rows of fronts, levels of the unchanged design."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.sweep import measures
+from hyperleg_design.sweep.axis import Axis
+from hyperleg_design.sweep.evaluate import Columns
+from hyperleg_design.sweep.pareto import nondominated
+from hyperleg_design.sweep.run import SweepResult
+from hyperleg_design.sweep.space import Sweep
+from hyperleg_design.sweep.summary import base_values
+
+
+def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:
+    """The table, and the rows on each variant's front; variants that lack an objective are left out."""
+    sweep = result.sweep
+    table = result.columns(["variant", *(axis.name for axis in sweep.axes), *sweep.objectives])
+    values = np.stack([table[c] for c in sweep.objectives], -1)
+    better = [measures.measure_of(c).better for c in sweep.objectives]
+    fronts = {}
+    for variant in sweep.variants:
+        rows = np.flatnonzero(table["variant"] == variant)
+        front = rows[nondominated(values[rows], better)]
+        if front.size:
+            fronts[variant] = front
+    if not fronts:
+        raise InputError(sweep.source, "objectives", list(sweep.objectives), "no design has all of them")
+    return table, fronts
+
+
+def thinned(count: int, most: int) -> np.ndarray:
+    """Evenly spread positions, at most so many."""
+    return np.arange(count) if count <= most else np.linspace(0, count - 1, most).astype(int)
+
+
+def axis_of(sweep: Sweep, name: str) -> Axis:
+    """Axis of a sweep by name."""
+    return next(a for a in sweep.axes if a.name == name)
+
+
+def base_value(axis: Axis, sweep: Sweep) -> Any:
+    """Where the unchanged design stands on an axis; 1 for factors."""
+    return 1.0 if axis.scaled else sweep.base[axis.paths[0]]
+
+
+def base_level(axis: Axis, sweep: Sweep) -> Any:
+    """Level of a grid's axis nearest to the unchanged design."""
+    value = base_value(axis, sweep)
+    if not axis.numeric:
+        return value if value in axis.levels else axis.levels[0]
+    return min(axis.levels, key=lambda level: abs(level - value))
+
+
+def base_row(sweep: Sweep) -> dict[str, Any]:
+    """Axis values and measures of the unchanged design as the sweep's first variant."""
+    return {axis.name: base_value(axis, sweep) for axis in sweep.axes} | base_values(sweep, sweep.variants[0])
+
+
+def variant_title(variant: str) -> str:
+    """A variant as a reader sees it."""
+    return variant.replace("_", " ")
