@@ -20,20 +20,23 @@ def check_paths(paths: Sequence[str]) -> list[dict[str, Any]]:
 
     Returns:
         For each: `path`, `errors`, `warnings` (counts) and `findings`.
+
+    Raises:
+        InputError: no paths, or one that names nothing.
     """
     if not paths:
         raise InputError("check", "", None, "expects files, or names of shipped designs, motors or sweeps")
+    places = [_find(path) for path in paths]
     found = []
-    for path in paths:
-        findings = _check(path)
+    for path, place in zip(paths, places, strict=True):
+        findings = _check(place)
         errors = sum(f.severity == "error" for f in findings)
         found.append({"path": path, "errors": errors, "warnings": len(findings) - errors, "findings": [asdict(f) for f in findings]})
     return found
 
 
-def _check(path: str) -> list[Finding]:
+def _check(place: Path) -> list[Finding]:
     try:
-        place = _find(path)
         if place.suffix in (".yaml", ".yml") and {"axes", "sampling"} & set(read_yaml(place)):
             load_sweep(place)
             return []
