@@ -35,6 +35,8 @@ class InputError(HyperlegError):
 
 def shown(value: object) -> str:
     """A value as messages show it: one line, short however large or nested the value is."""
+    if hasattr(value, "tolist"):  # numpy's, as Python's
+        value = value.tolist()
     try:
         text = " ".join(_SHORT.repr(value).split())
     except ValueError:  # Python refuses to write integers of thousands of digits

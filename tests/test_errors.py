@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -41,6 +42,11 @@ def test_values_that_python_cannot_print():
         wide = {"a": wide, "b": wide}
     for value in (loop, deep, wide, 10**5000):
         assert len(shown(value)) <= 120
+
+
+def test_numpy_values_look_like_pythons():
+    assert shown(np.float64(0.5)) == "0.5"
+    assert shown(np.array([1.0, 2.0])) == "[1.0, 2.0]"
 
 
 def test_a_field_with_odd_characters_stays_in_one_line():

@@ -101,7 +101,7 @@ class FourBar:
             if np.max(np.abs(best.fun)) < 1e-9 and np.all((low < sampled) & (sampled < high)):
                 return bar
         raise InputError(
-            "transmission.linkage", field, float(np.rad2deg(turn)),
+            "transmission.linkage", field, round(float(np.rad2deg(turn)), 6),
             f"no four-bar turns the ratio {at_rest:.4g} into {at_turn:.4g} at that angle; change the walking posture or the bars",
         )  # fmt: skip
 
