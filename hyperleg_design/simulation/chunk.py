@@ -102,6 +102,8 @@ class Chunk:
 
         self.task, self.layout, self.first, self.count, self.rng = task, layout, first, count, rng
         self.batch = batch.Batch(model, count, 1)
+        # A second batch finds how high to start: what is bound in the first is copied out after each of its steps.
+        self._starter = batch.Batch(model, count, 1)
         if designs_models is not None:
             if task.physics.friction == "implicit" or task.physics.posture_dependent or _varies_models(task):
                 raise InputError(
@@ -109,14 +111,22 @@ class Chunk:
                     "a batch of designs runs on models of its own, which needs friction: explicit, no posture dependence, no varied masses or floors",
                 )  # fmt: skip
             self.batch.set_models(designs_models)
+            self._starter.set_models(designs_models)
         _vary_models(self.batch, task, rng)
         self.drive = Drive(design, layout, task.physics, self.batch, task.randomisation, rng)
         self._rated, self._heat = self.drive.flat(self.drive.model.rated_torque), self.drive.flat(self.drive.model.envelope.power_constant)
-        self._sensors, self._places, self._push = self.batch.bind("sensordata"), self.batch.bind("geom_xpos"), self.batch.bind("xfrc_applied")
+        self._sensors, self._push = self.batch.bind("sensordata"), self.batch.bind("xfrc_applied")
+        self._places, self._tried = self._starter.bind("geom_xpos"), self._starter.bind("qpos")
+        self.batch.reset(None, 0, 0)
+        self._standing = self.batch.state.copy()
         self._pelvis = model.body("pelvis").id
         self._pad_ids = [model.geom(pad).id for pad in layout.pads]
         self._pad_radius = float(model.geom(layout.pads[0]).size[0])
         joints, motors, substeps = len(layout.joints), len(layout.motors), int(task.physics.substeps)
+        start = task.start
+        self._spread = np.r_[
+            [start.joint_position] * joints, [start.joint_velocity] * joints, [start.linear_velocity] * 2, [start.tilt] * 2, start.yaw
+        ]
         self.action, self.previous_action, self.smoothed = (np.zeros((count, joints)) for _ in range(3))
         self.motor_torque, self.motor_velocity = np.zeros((substeps, count, motors)), np.zeros((substeps, count, motors))
         self.sensors = np.zeros((substeps, count, self._sensors.shape[-1]))
@@ -136,10 +146,9 @@ class Chunk:
     def reset(self) -> dict[str, np.ndarray]:
         """Start all simulations and give their observations by group."""
         everyone = np.arange(self.count)
-        self.motion = self._start(everyone)
-        self.commander.reset(everyone, self.motion, self.rng)
-        self.goal = self.commander.judge(self.motion)
-        return observe(self.task.observations, self._state(), self.robot)
+        state = self._started(everyone)
+        self.motion, self.goal = state.motion, state.goal
+        return observe(self.task.observations, state, self.robot)
 
     def step(self, action: np.ndarray) -> Step:
         """One policy step with finite actions `(n, J)`."""
@@ -167,9 +176,12 @@ class Chunk:
         observations = observe(task.observations, state, self.robot)
         final = {group: values[ended] for group, values in observations.items()}
         if len(ended):
-            self._start_again(ended)
-            for group, values in observe(task.observations, self._state(), self.robot).items():
-                observations[group][ended] = values[ended]
+            fresh = self._started(ended)
+            self.motion.put(ended, fresh.motion)
+            if self.goal is not None and fresh.goal is not None:
+                self.goal.put(ended, fresh.goal)
+            for group, values in observe(task.observations, fresh, self.robot).items():
+                observations[group][ended] = values
         return Step(
             observations=observations,
             reward=reward_terms.sum(-1),
@@ -231,7 +243,8 @@ class Chunk:
             change = self.rng.uniform(-settings.push_speed, settings.push_speed, (self.count, 2))
             self.drive.qvel[hit, :2] += change[hit]
 
-    def _state(self, thermal_excess: np.ndarray | None = None, terminated: np.ndarray | None = None) -> State:
+    def _state(self, thermal_excess: np.ndarray, terminated: np.ndarray) -> State:
+        """State of all simulations after physics."""
         torque, speed = self.motor_torque, self.motor_velocity
         pad_load = models.pad_loads(self.sensors)
         return State(
@@ -245,10 +258,34 @@ class Chunk:
             foot_load=models.foot_loads(pad_load),
             pad_slip=models.pad_slip(self.sensors[-1]),
             power=np.einsum("snk,snk->n", self._heat * torque + speed, torque) / len(torque),
-            thermal_excess=np.zeros(self.count) if thermal_excess is None else thermal_excess,
+            thermal_excess=thermal_excess,
             phase=self.phase,
-            terminated=np.zeros(self.count, bool) if terminated is None else terminated,
+            terminated=terminated,
             goal=self.goal,
+        )
+
+    def _started(self, ids: np.ndarray) -> State:
+        """Start simulations and give the state of their rows; nothing has touched or moved yet."""
+        motion = self._start(ids)
+        goal = self.commander.reset(ids, motion, self.rng)
+        count, substeps, joints = len(ids), len(self.sensors), len(self.layout.joints)
+        motors, pads = np.zeros((substeps, count, len(self.layout.motors))), np.zeros((substeps, count, len(self.layout.pads)))
+        none = np.zeros(count)
+        return State(
+            motion=motion,
+            action=np.zeros((count, joints)),
+            previous_action=np.zeros((count, joints)),
+            command=self.commander.vector(goal, ids),
+            motor_torque=motors,
+            motor_velocity=motors,
+            pad_load=pads,
+            foot_load=models.foot_loads(pads),
+            pad_slip=pads[-1],
+            power=none,
+            thermal_excess=none,
+            phase=self.phase[ids],
+            terminated=np.zeros(count, bool),
+            goal=goal,
         )
 
     def _rewards(self, state: State) -> np.ndarray:
@@ -281,41 +318,28 @@ class Chunk:
         bounded = -FASTEST < np.minimum.reduce(speed, None) and np.maximum.reduce(speed, None) < FASTEST
         return bool(bounded and np.isfinite(np.add.reduce(position, None)) and not self.batch.warning[:, _BROKEN, 1].any())
 
-    def _start_again(self, ids: np.ndarray) -> None:
-        motion = self._start(ids)
-        self.motion.put(ids, motion)
-        self.commander.reset(ids, motion, self.rng)
-        if self.goal is not None:
-            fresh = self.commander.judge(self.motion)
-            assert fresh is not None
-            for name in Goal.__slots__:
-                getattr(self.goal, name)[ids] = getattr(fresh, name)[ids]
-
     def _start(self, ids: np.ndarray) -> Motion:
         """Put robots on the floor near their default posture; motion of these rows."""
-        start, layout, count, rng = self.task.start, self.layout, len(ids), self.rng
-        joints = len(layout.joints)
-        self.batch.reset(ids, 0, 0)
+        layout, count, joints = self.layout, len(ids), len(self.layout.joints)
+        drawn = self.rng.uniform(-1.0, 1.0, (count, len(self._spread) + 1))
+        offset = drawn[:, :-1] * self._spread
+        self.batch.state[ids] = self._standing[ids]
         self.batch.warning[ids] = 0
-        position = self.drive.qpos[ids]
-        angles = position[:, 7:] + rng.uniform(-start.joint_position, start.joint_position, (count, joints))
-        position[:, 7:] = np.clip(angles, layout.lower, layout.upper)
-        roll, pitch = rng.uniform(-start.tilt, start.tilt, (2, count))
-        position[:, 3:7] = _quaternion(roll, pitch, rng.uniform(-start.yaw, start.yaw, count))
-        velocity = np.zeros((count, 6 + joints))
-        velocity[:, :2] = rng.uniform(-start.linear_velocity, start.linear_velocity, (count, 2))
-        velocity[:, 6:] = rng.uniform(-start.joint_velocity, start.joint_velocity, (count, joints))
+        position, velocity = self.drive.qpos[ids], np.zeros((count, 6 + joints))
+        position[:, 7:] = np.minimum(np.maximum(position[:, 7:] + offset[:, :joints], layout.lower), layout.upper)
+        position[:, 3:7] = _quaternion(*offset[:, -3:].T)
+        velocity[:, 6:], velocity[:, :2] = offset[:, joints : 2 * joints], offset[:, 2 * joints : 2 * joints + 2]
+        self._tried[ids] = position
+        self._starter.forward(ids, 1)
+        position[:, 2] -= self._places[ids][:, self._pad_ids, 2].min(-1) - self._pad_radius
         self.drive.qpos[ids], self.drive.qvel[ids] = position, velocity
-        self.batch.forward(ids, 1)
-        lowest = self._places[ids][:, self._pad_ids, 2].min(-1) - self._pad_radius
-        self.drive.qpos[ids, 2] -= lowest
-        self._clock_start[ids] = rng.uniform(size=count)
+        self._clock_start[ids] = 0.5 + 0.5 * drawn[:, -1]
         self.episode_step[ids] = 0
         self.thermal.reset(ids)
         for values in (self.action, self.previous_action, self.smoothed):
             values[ids] = 0.0
         self.motor_torque[:, ids] = self.motor_velocity[:, ids] = self.sensors[:, ids] = 0.0
-        return read_motion(self.drive.qpos[ids], self.drive.qvel[ids])
+        return read_motion(position, velocity)
 
     def signals(self) -> Mapping[str, Any]:
         """What happened within the last policy step; see `Environment.signals`."""

@@ -76,8 +76,8 @@ class Commander(Protocol):
 
     settings: Any
 
-    def reset(self, ids: np.ndarray, motion: Motion, rng: np.random.Generator) -> None:
-        """New commands at the start of episodes; `motion` holds the rows of `ids`."""
+    def reset(self, ids: np.ndarray, motion: Motion, rng: np.random.Generator) -> Goal | None:
+        """New commands at the start of episodes, and where they stand to them; `motion` holds the rows of `ids`."""
 
     def judge(self, motion: Motion) -> Goal | None:
         """Where each simulation stands to its waypoint, if there are any."""
@@ -85,8 +85,8 @@ class Commander(Protocol):
     def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator) -> None:
         """Go on by one policy step, after it was judged; rows of `goal` that got a new waypoint then describe that."""
 
-    def vector(self, goal: Goal | None) -> np.ndarray:
-        """The command that a policy sees, `(n, 3)`."""
+    def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
+        """The command that a policy sees, `(n, 3)`; of `ids`, whose goals are given, or of all."""
 
     def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
         """Direction to go in the yaw frame `(n, 2)` and speed [m/s] `(n,)`."""
@@ -123,9 +123,9 @@ class VelocityCommander:
         if len(over):
             self.reset(over, motion, rng)
 
-    def vector(self, goal: Goal | None) -> np.ndarray:
+    def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
         """Forward, sideways, turning."""
-        return self.values.copy()
+        return self.values.copy() if ids is None else self.values[ids]
 
     def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
         """Straight on at the forward speed."""
@@ -146,7 +146,7 @@ class WaypointCommander:
         """Course that each simulation runs; -1 for none."""
         self._origin, self._heading = np.zeros((count, 2)), np.zeros((count, 2))
 
-    def reset(self, ids: np.ndarray, motion: Motion, rng: np.random.Generator) -> None:
+    def reset(self, ids: np.ndarray, motion: Motion, rng: np.random.Generator) -> Goal:
         """First waypoints, from where the robots stand, ahead of them."""
         count, s = len(ids), self.settings
         here = motion.position[:, :2]
@@ -156,7 +156,9 @@ class WaypointCommander:
         self.target[ids] = self._drawn(here, motion.heading, rng)
         self.following[ids] = self._drawn(self.target[ids], _unit(self.target[ids] - here), rng)
         self._from_course(ids)
-        self.best[ids] = np.linalg.norm(self.target[ids] - here, axis=1)
+        goal = self._seen(ids, here, motion.heading)
+        self.best[ids] = goal.distance
+        return goal
 
     def judge(self, motion: Motion) -> Goal:
         """Distances, progress and arrivals; the best distance is brought up to date."""
@@ -181,7 +183,7 @@ class WaypointCommander:
         self.best[ids] = np.linalg.norm(self.target[ids] - here, axis=1)
         goal.put(ids, self._seen(ids, here, motion.heading[ids]))
 
-    def vector(self, goal: Goal | None) -> np.ndarray:
+    def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
         """Offset to the waypoint in the yaw frame, clipped to `SIGHT`, and heading error."""
         assert goal is not None
         return np.column_stack([clipped(goal.offset), goal.heading_error])
