@@ -1,0 +1,1 @@
+"""Reference motions, planned from a model for any design: none was measured."""

@@ -1,0 +1,206 @@
+"""What a motion demands of every motor: torque, speed, heat, and what is left to the envelope.
+
+The motion's inverse dynamics (Pinocchio, rotor inertia included) plus joint friction must come from the contact forces and
+from the motors; `allocation` splits them at least Joule heat. Both legs have the same motors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.transmission import joint_from_motor, joint_names, motor_names, motor_velocity
+from hyperleg_design.sizing.allocation import Allocation, least_heat
+from hyperleg_design.sizing.contacts import contact_kinematics
+from hyperleg_design.sizing.energy import EnergyLedger, EnergySums, cost_of_transport, energy_ledger
+from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope, torque_limits
+from hyperleg_design.sizing.motions.motion import GRAVITY, Motion
+from hyperleg_design.sizing.motions.reference import reference_motion
+from hyperleg_design.sizing.thermal import thermal_use
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+FRICTION_SPEED = 0.1
+"""Width v_m of the Coulomb friction's tanh [rad/s] (assumed; the paper does not print it)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Demand:
+    """Demand of one motion on one robot; legs are left, right."""
+
+    design: Design = field(repr=False)
+    motion: Motion = field(repr=False)
+    joint_torque: np.ndarray
+    """Given by the motors to the joints [Nm], `(n, 2, joints)`."""
+    motor_torque: np.ndarray
+    """[Nm], `(n, 2, motors)`."""
+    motor_velocity: np.ndarray
+    """[rad/s], `(n, 2, motors)`."""
+    lower: np.ndarray
+    """Least torque at that speed [Nm], `(n, 2, motors)`."""
+    upper: np.ndarray
+    """Largest torque at that speed [Nm], `(n, 2, motors)`."""
+    allocation: Allocation
+    ledger: EnergyLedger
+    """Powers [W] of all motors, left leg's first, `(n, 2 * motors)`."""
+
+    @property
+    def margin(self) -> np.ndarray:
+        """Torque to the nearer limit [Nm], `(n, 2, motors)`; negative beyond the envelope."""
+        return np.minimum(self.upper - self.motor_torque, self.motor_torque - self.lower)
+
+    @property
+    def beyond(self) -> np.ndarray:
+        """Whether some motor is beyond its envelope, or the contacts cannot balance the base, `(n,)`."""
+        return np.any(self.allocation.excess > 0, (1, 2)) | np.any(self.allocation.gap != 0, 1)
+
+    @property
+    def beyond_share(self) -> float:
+        """Part of the time that is beyond the robot [-]."""
+        return float(np.mean(self.beyond))
+
+    @property
+    def power(self) -> EnergySums:
+        """Mean powers of all motors together [W]."""
+        return self.ledger.mean_power().total()
+
+    def cost_of_transport(self, side: str = "motor") -> float:
+        """Energy / (m g distance) [-], at the motors (the paper's) or at the battery.
+
+        Raises:
+            InputError: a motion that goes nowhere, or a side that is none.
+        """
+        if side not in ("motor", "battery"):
+            raise InputError("cost of transport", "side", side, "expects motor or battery")
+        energy = self.ledger.energy().total()
+        mass = sum(link.mass for link in self.motion.model.tree.links)
+        return float(cost_of_transport(energy.motor_side if side == "motor" else energy.battery, mass, self.motion.distance))
+
+    def table(self) -> list[dict[str, Any]]:
+        """One row a motor, the worse leg counting.
+
+        `motor`, `peak_torque`, `rms_torque` [Nm], `rms_over_rated` [-], `peak_speed` [rad/s], `speed_over_no_load` [-],
+        `margin` [Nm] (smallest, negative beyond), `margin_over_peak` [-], `joule`, `mechanical` [W] (mean, both legs).
+        """
+        arrays, names = motor_arrays(self.design), motor_names(self.design)
+        powers = self.ledger.mean_power()
+        torque = np.swapaxes(self.motor_torque, 0, 1)
+        use = thermal_use(torque, arrays.rated_torque[: len(names)], self.motion.time_step, periodic=self.motion.periodic)
+        rows = []
+        for m, name in enumerate(names):
+            least, speed = float(self.margin[..., m].min()), float(np.abs(self.motor_velocity[..., m]).max())
+            rows.append(
+                {
+                    "motor": name,
+                    "peak_torque": float(np.abs(self.motor_torque[..., m]).max()),
+                    "rms_torque": float(use.rms_torque[:, m].max()),
+                    "rms_over_rated": float(use.continuous_use[:, m].max()),
+                    "peak_speed": speed,
+                    "speed_over_no_load": speed / float(arrays.no_load_speed[m]),
+                    "margin": least,
+                    "margin_over_peak": least / float(arrays.peak_torque[m]),
+                    "joule": float(powers.joule.reshape(2, -1)[:, m].sum()),
+                    "mechanical": float(powers.mechanical.reshape(2, -1)[:, m].sum()),
+                }
+            )
+        return rows
+
+    def summary(self) -> dict[str, Any]:
+        """Plain numbers for a page or JSON: mean powers [W], cost of transport where it travels, share beyond, worst margin, table."""
+        power = self.power
+        found = {
+            "design": self.design.name,
+            "variant": self.design.variant,
+            "motion": self.motion.name,
+            "duration": self.motion.duration,
+            "distance": self.motion.distance,
+            "joule": float(power.joule),
+            "mechanical": float(power.mechanical),
+            "mechanical_absolute": float(power.mechanical_absolute),
+            "motor_side": float(power.motor_side),
+            "battery": float(power.battery),
+            "beyond_share": self.beyond_share,
+            "margin_over_peak": min(row["margin_over_peak"] for row in self.table()),
+            "assumptions": dict(self.motion.assumptions),
+            "motors": self.table(),
+        }
+        if self.motion.distance > 0:
+            found["cost_of_transport"] = self.cost_of_transport("motor")
+            found["cost_of_transport_battery"] = self.cost_of_transport("battery")
+        return found
+
+
+def joint_friction(design: Design, velocity: np.ndarray) -> np.ndarray:
+    """Friction that the motors must overcome, `coulomb tanh(v / v_m) + viscous v`, `(..., joints)` [Nm]."""
+    names = joint_names(design)
+    coulomb = np.array([getattr(design.joints, n).coulomb for n in names], float)
+    viscous = np.array([getattr(design.joints, n).viscous for n in names], float)
+    return coulomb * np.tanh(np.asarray(velocity) / FRICTION_SPEED) + viscous * velocity
+
+
+def required_forces(motion: Motion) -> np.ndarray:
+    """Generalised forces that contacts and motors must give, joint friction included, `(n, nv)`."""
+    model = motion.model
+    found = np.stack([model.inverse_dynamics(*state) for state in zip(motion.q, motion.v, motion.a, strict=True)])
+    found[:, 6:] += joint_friction(model.design, motion.joint_velocity).reshape(len(found), -1)
+    return found
+
+
+def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -> Demand:
+    """Demand of a motion on a robot.
+
+    Args:
+        design: a robot.
+        motion: planned for this design, or the name of a reference motion.
+        allow_excess: report what lies beyond the envelopes; else it is an error.
+
+    Raises:
+        InputError: a batch, a motion planned for another set of joints, or no such motion.
+        InfeasibleError: the legs cannot do the motion, or `allow_excess` is off and the motors cannot.
+    """
+    if isinstance(motion, str):
+        motion = reference_motion(design, motion)
+    if motion.model.design is not design and (design.batch_shape or joint_names(motion.model.design) != joint_names(design)):
+        raise InputError(design.name, "motion", motion.name, f"was planned for {motion.model.design.name} {motion.model.design.variant}; plan it anew")
+    if motion.model.design is not design:
+        raise InputError(design.name, "motion", motion.name, "was planned for another design; plan it for this one")
+    matrix, envelope = joint_from_motor(design), motor_envelope(design)
+    speed = motor_velocity(matrix, motion.joint_velocity)
+    lower, upper = torque_limits(envelope, speed)
+    jacobian = np.stack([contact_kinematics(motion.model, q)[1] for q in motion.q])
+    weight = GRAVITY * float(sum(link.mass for link in motion.model.tree.links))
+    found = least_heat(
+        required_forces(motion), jacobian, motion.contact, matrix, lower, upper, envelope.power_constant,
+        friction=float(design.contact.friction), weight=weight, allow_excess=allow_excess,
+    )  # fmt: skip
+    return Demand(
+        design=design,
+        motion=motion,
+        joint_torque=np.einsum("jm,nlm->nlj", matrix, found.motor_torque),
+        motor_torque=found.motor_torque,
+        motor_velocity=speed,
+        lower=lower,
+        upper=upper,
+        allocation=found,
+        ledger=_ledger(found.motor_torque, speed, motion.time_step, envelope),
+    )
+
+
+def _ledger(torque: np.ndarray, speed: np.ndarray, time_step: float, envelope: MotorEnvelope) -> EnergyLedger:
+    flat = (len(torque), -1)
+    constants = np.tile(envelope.power_constant, torque.shape[1])
+    return energy_ledger(torque.reshape(flat), speed.reshape(flat), time_step, constants, envelope.efficiency_out, envelope.efficiency_regen)
+
+
+def demands(designs: Mapping[str, Design], name: str) -> dict[str, Demand]:
+    """Demand of one reference motion on several robots, each with the motion planned for it, by the names given."""
+    return {key: demand(design, name) for key, design in designs.items()}
+
+
+__all__ = ["Demand", "demand", "demands", "joint_friction", "required_forces"]
