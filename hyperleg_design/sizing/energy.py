@@ -1,0 +1,257 @@
+"""Where the electrical energy goes: a ledger from the battery through drivers and windings to the joints.
+
+At each motor, with torque tau, speed w and power constant Cp (paper, Eq. (5)):
+
+    joule = Cp tau^2        mechanical = tau w        electrical = joule + mechanical        (motor side, the paper's)
+    battery = electrical / efficiency_out     where the motor draws  (electrical > 0)
+    battery = electrical * efficiency_regen   where it gives back    (electrical < 0)
+    driver_loss = battery - electrical >= 0
+
+Table III of the paper adds up on the motor side, without driver efficiencies; Table I prints these. Both sides are kept
+here. Every motor has its own driver, and the drivers share one direct-current bus, so what one gives back another may
+draw: sums over motors are taken after the efficiencies. Samples hold for one time step, so energy is power times the step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.transmission import motor_names
+from hyperleg_design.sizing.motions.motion import GRAVITY
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyLedger:
+    """Powers [W] of every motor over time, or, after `energy`, `total` and the like, what is left of these axes."""
+
+    time_step: float
+    """[s]"""
+    joule: np.ndarray
+    """Heat of the windings, `(..., t, m)`."""
+    mechanical: np.ndarray
+    """Given to the joints, negative where a motor brakes, `(..., t, m)`."""
+    driver_loss: np.ndarray
+    """Heat of the drivers, `(..., t, m)`."""
+    drawn: np.ndarray
+    """From the battery by drawing motors, `(..., t, m)`, not negative."""
+    returned: np.ndarray
+    """To the battery by motors that give back, `(..., t, m)`, not negative."""
+
+    @property
+    def mechanical_positive(self) -> np.ndarray:
+        """Power of motors that drive, `(..., t, m)` [W]."""
+        return np.maximum(self.mechanical, 0.0)
+
+    @property
+    def mechanical_negative(self) -> np.ndarray:
+        """Power of motors that brake, `(..., t, m)` [W], not positive."""
+        return np.minimum(self.mechanical, 0.0)
+
+    @property
+    def motor_side(self) -> np.ndarray:
+        """Joule heat and signed mechanical power, the paper's total, `(..., t, m)` [W]."""
+        return self.joule + self.mechanical
+
+    @property
+    def battery(self) -> np.ndarray:
+        """Drawn less returned, `(..., t, m)` [W]."""
+        return self.drawn - self.returned
+
+    @property
+    def duration(self) -> float:
+        """[s]"""
+        return self.time_step * self.joule.shape[-2]
+
+    def residual(self) -> np.ndarray:
+        """How far the balance battery = mechanical + joule + driver loss is from closing, `(..., t, m)` [-].
+
+        Relative to the sum of the magnitudes; 0 where nothing flows.
+        """
+        gap = self.battery - self.mechanical - self.joule - self.driver_loss
+        scale = np.abs(self.battery) + np.abs(self.mechanical) + self.joule + self.driver_loss
+        return np.divide(np.abs(gap), scale, out=np.zeros_like(gap), where=scale > 0)
+
+    def energy(self) -> EnergySums:
+        """Energy of each motor over the whole time, `(..., m)` [J]."""
+        return self._summed(self.time_step)
+
+    def mean_power(self) -> EnergySums:
+        """Mean power of each motor over the whole time, `(..., m)` [W]."""
+        return self._summed(1.0 / self.joule.shape[-2])
+
+    def _summed(self, factor: float) -> EnergySums:
+        parts = ("joule", "mechanical_positive", "mechanical_negative", "driver_loss", "drawn", "returned")
+        return EnergySums(**{name: getattr(self, name).sum(-2) * factor for name in parts})
+
+
+@dataclass(frozen=True, eq=False)
+class EnergySums:
+    """Energies [J] or mean powers [W] of each motor, `(..., m)`; after `total`, of all motors, `(...)`."""
+
+    joule: np.ndarray
+    """Heat of the windings."""
+    mechanical_positive: np.ndarray
+    """While the motor drives."""
+    mechanical_negative: np.ndarray
+    """While the motor brakes, not positive."""
+    driver_loss: np.ndarray
+    """Heat of the drivers."""
+    drawn: np.ndarray
+    """From the battery while the motor draws."""
+    returned: np.ndarray
+    """To the battery while the motor gives back."""
+
+    @property
+    def mechanical(self) -> np.ndarray:
+        """Signed."""
+        return self.mechanical_positive + self.mechanical_negative
+
+    @property
+    def mechanical_absolute(self) -> np.ndarray:
+        """Driving and braking, each counted as positive."""
+        return self.mechanical_positive - self.mechanical_negative
+
+    @property
+    def motor_side(self) -> np.ndarray:
+        """Joule heat and signed mechanical: the paper's total."""
+        return self.joule + self.mechanical
+
+    @property
+    def battery(self) -> np.ndarray:
+        """Drawn less returned."""
+        return self.drawn - self.returned
+
+    def total(self) -> EnergySums:
+        """Summed over motors, `(...)`."""
+        return EnergySums(**{name: np.asarray(value).sum(-1) for name, value in vars(self).items()})
+
+    def residual(self) -> np.ndarray:
+        """How far the balance is from closing, relative to the sum of the magnitudes [-]."""
+        gap = self.battery - self.mechanical - self.joule - self.driver_loss
+        scale = np.asarray(self.drawn + self.returned + self.mechanical_absolute + self.joule + self.driver_loss)
+        return np.divide(np.abs(gap), scale, out=np.zeros(np.shape(gap)), where=scale > 0)
+
+
+def energy_ledger(
+    motor_torque: Any, motor_velocity: Any, time_step: float, power_constant: Any, efficiency_out: Any = 0.9, efficiency_regen: Any = 0.8
+) -> EnergyLedger:
+    """The ledger of motors over time.
+
+    Args:
+        motor_torque: [Nm], `(..., t, m)`.
+        motor_velocity: [rad/s], `(..., t, m)`.
+        time_step: between samples [s].
+        power_constant: Cp [W/Nm^2], `(..., m)`.
+        efficiency_out: of the drivers, battery to motor [-], `()` or the batch (Table I: 0.9).
+        efficiency_regen: of the drivers, motor to battery [-], `()` or the batch (Table I: 0.8); 0 where nothing returns.
+
+    Raises:
+        InputError: shapes that do not fit, values that are not finite, a step that is not positive, an efficiency that is none.
+    """
+    torque, velocity = _samples(motor_torque, "motor_torque"), _samples(motor_velocity, "motor_velocity")
+    if torque.shape[-2:] != velocity.shape[-2:]:
+        raise InputError("energy", "motor_velocity", list(velocity.shape), f"expects the time and motors of motor_torque, {list(torque.shape)}")
+    if not (np.ndim(time_step) == 0 and np.isfinite(time_step) and time_step > 0):
+        raise InputError("energy", "time_step", time_step, "expects a positive number in s")
+    heat = np.asarray(power_constant, float)
+    if heat.shape[-1:] not in ((), torque.shape[-1:]) or not np.all(np.isfinite(heat) & (heat >= 0)):
+        raise InputError("energy", "power_constant", heat.tolist(), f"expects {torque.shape[-1]} numbers in W/Nm^2, not negative")
+    out = _efficiency(efficiency_out, "efficiency_out", allow_zero=False)
+    regen = _efficiency(efficiency_regen, "efficiency_regen", allow_zero=True)
+    joule = (heat[..., None, :] if heat.ndim else heat) * torque**2
+    mechanical = torque * velocity
+    joule, mechanical = np.broadcast_arrays(joule, mechanical)
+    electrical = joule + mechanical
+    draws, gives = np.maximum(electrical, 0.0), np.maximum(-electrical, 0.0)
+    return EnergyLedger(
+        time_step=float(time_step),
+        joule=joule,
+        mechanical=mechanical,
+        driver_loss=(1 / out - 1) * draws + (1 - regen) * gives,
+        drawn=draws / out,
+        returned=gives * regen,
+    )
+
+
+def design_ledger(design: Design, motor_torque: Any, motor_velocity: Any, time_step: float) -> EnergyLedger:
+    """The ledger of one leg with the power constants and driver efficiencies of a design or batch.
+
+    Args:
+        design: a robot or batch.
+        motor_torque: of the motors that are there [Nm], `(..., t, motors)`.
+        motor_velocity: [rad/s], `(..., t, motors)`.
+        time_step: between samples [s].
+
+    Raises:
+        InputError: as `energy_ledger`.
+    """
+    count = len(motor_names(design))
+    constants = motor_arrays(design).power_constant[..., :count]
+    return energy_ledger(motor_torque, motor_velocity, time_step, constants, design.electrical.efficiency_out, design.electrical.efficiency_regen)
+
+
+def joint_power(joint_torque: Any, joint_velocity: Any) -> np.ndarray:
+    """Mechanical power of each joint, tau_joint q_dot [W], `(..., joints)`.
+
+    Its sum over joints equals the sum of the motors' mechanical power, because M maps both; joint by joint the two differ
+    where motors are shared.
+
+    Raises:
+        InputError: unequal numbers of joints.
+    """
+    torque, velocity = np.asarray(joint_torque, float), np.asarray(joint_velocity, float)
+    if torque.shape[-1:] != velocity.shape[-1:]:
+        raise InputError("energy", "joint_velocity", list(velocity.shape), f"expects the joints of joint_torque, {list(torque.shape)}")
+    return torque * velocity
+
+
+def cost_of_transport(energy: Any, mass: Any, distance: Any) -> np.ndarray:
+    """Energy / (m g distance) [-], from energy [J], mass [kg] and distance [m], `(...)`.
+
+    Raises:
+        InputError: a mass or distance that is not positive.
+    """
+    return _per_weight(energy, mass, distance, "distance", "m")
+
+
+def power_cost_of_transport(power: Any, mass: Any, speed: Any) -> np.ndarray:
+    """Power / (m g v) [-], from mean power [W], mass [kg] and mean speed [m/s], `(...)`.
+
+    Raises:
+        InputError: a mass or speed that is not positive.
+    """
+    return _per_weight(power, mass, speed, "speed", "m/s")
+
+
+def _per_weight(amount: Any, mass: Any, per: Any, name: str, unit: str) -> np.ndarray:
+    amount, mass, per = (np.asarray(v, float) for v in (amount, mass, per))
+    for field, value, of in (("mass", mass, "kg"), (name, per, unit)):
+        if not np.all(np.isfinite(value) & (value > 0)):
+            worst = float(value.flat[np.argmin(np.where(np.isfinite(value), value, -np.inf))])
+            raise InputError("cost of transport", field, worst, f"expects a positive number in {of}; without it no transport is done")
+    return np.asarray(amount / (mass * GRAVITY * per))
+
+
+def _samples(value: Any, field: str) -> np.ndarray:
+    array = np.asarray(value, float)
+    if array.ndim < 2 or 0 in array.shape[-2:]:
+        raise InputError("energy", field, list(array.shape), "is the shape found; expects samples over time of each motor, (..., t, m)")
+    if not np.all(np.isfinite(array)):
+        raise InputError("energy", field, float(array[~np.isfinite(array)][0]), "expects finite numbers")
+    return array
+
+
+def _efficiency(value: Any, field: str, *, allow_zero: bool) -> np.ndarray:
+    """An efficiency with room for time and motors behind the batch."""
+    array = np.asarray(value, float)
+    if not np.all((array <= 1) & ((array >= 0) if allow_zero else (array > 0))):
+        raise InputError("energy", field, array.tolist(), "expects a share of one: from 0 to 1" + ("" if allow_zero else ", above 0"))
+    return array[..., None, None]
