@@ -1,0 +1,440 @@
+"""Other legged robots, from the descriptions in `example-robot-data`, measured as HyperLeg is: how heavy, where, how far to swing.
+
+Posture: as the description has it at zero, then the knee turned until, seen along its axis, hip, knee and ankle (the foot
+where there is no ankle) lie on a straight line. A leg that is closed by rods (Cassie) stays as its description poses it,
+nearly stretched. Some robots cannot reach that posture; it serves comparison only. Leg length runs, across the
+hip-pitch axis, from it to a point of the sole under the ankle, or to the far side of a round foot. Rods that a description
+hangs below the knee count there.
+
+Left out, of what the package has: `hector` is a quadrotor, `alex` an upper body; `simple_humanoid` has invented masses (130.8 kg)
+and an inertia of 1 kg m^2 for every link; `centauro` has wheels; `quadruped` and `solo` (8 joints) are older builds of `solo12`.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.sizing.inertia import LegInertia
+
+PACKAGE = "example-robot-data"
+
+
+@dataclass(frozen=True)
+class RobotSource:
+    """Where one robot's description is, and what its leg is called there. Names and numbers are the description's own."""
+
+    name: str
+    """As figures show it."""
+    kind: str
+    """`biped`, `quadruped` or `human`."""
+    file: str
+    """Below the folder of robots, URDF or SDF."""
+    first_hip: str
+    """Joint between trunk and leg."""
+    hip_pitch: str
+    """Joint that swings the leg fore and aft."""
+    knee: str
+    """Joint of the knee."""
+    ankle: str
+    """Joint of the ankle's pitch; empty where there is none."""
+    foot: str
+    """Link or frame in which `sole` is given."""
+    sole: tuple[float, float, float]
+    """A point of the sole under the ankle, or the centre of a round foot [m]."""
+    foot_radius: float = 0.0
+    """Of a round foot, below its centre [m]."""
+    legs: int = 2
+    whole: bool = True
+    """Whether the description has the whole robot; the total mass is unknown otherwise."""
+
+
+SOURCES = (
+    # sole: pads of 5 mm radius, 30 mm below the ankle roll's frame
+    RobotSource(
+        name="Unitree G1",
+        kind="biped",
+        file="g1_description/urdf/g1_29dof_rev_1_0.urdf",
+        first_hip="left_hip_pitch_joint",
+        hip_pitch="left_hip_pitch_joint",
+        knee="left_knee_joint",
+        ankle="left_ankle_pitch_joint",
+        foot="left_ankle_roll_link",
+        sole=(0.0, 0.0, -0.03),
+        foot_radius=0.005,
+    ),
+    # closed by rods; sole: axis of the capsule-like cylinder of the foot. This file has rotors and gears in their links
+    RobotSource(
+        name="Cassie",
+        kind="biped",
+        file="cassie_description/robots/cassie_v2.sdf",
+        first_hip="left-roll-op",
+        hip_pitch="left-pitch-op",
+        knee="left-knee-op",
+        ankle="left-foot-op",
+        foot="left-foot",
+        sole=(0.01, 0.045, 0.0),
+        foot_radius=0.0168,
+    ),
+    RobotSource(
+        name="Talos",
+        kind="biped",
+        file="talos_data/robots/talos_full_v2.urdf",
+        first_hip="leg_left_1_joint",
+        hip_pitch="leg_left_3_joint",
+        knee="leg_left_4_joint",
+        ankle="leg_left_5_joint",
+        foot="left_sole_link",
+        sole=(0.0, 0.0, 0.0),
+    ),
+    RobotSource(
+        name="iCub",
+        kind="biped",
+        file="icub_description/robots/icub.urdf",
+        first_hip="l_hip_pitch",
+        hip_pitch="l_hip_pitch",
+        knee="l_knee",
+        ankle="l_ankle_pitch",
+        foot="l_sole",
+        sole=(0.0, 0.0, 0.0),
+    ),
+    RobotSource(
+        name="Romeo",
+        kind="biped",
+        file="romeo_description/urdf/romeo.urdf",
+        first_hip="LHipYaw",
+        hip_pitch="LHipPitch",
+        knee="LKneePitch",
+        ankle="LAnklePitch",
+        foot="l_sole",
+        sole=(0.0, 0.0, 0.0),
+    ),
+    # legs and pelvis only; sole: lowest point of the foot's mesh
+    RobotSource(
+        name="Alexander",
+        kind="biped",
+        file="alexander_description/urdf/alexander_v1.lowerBodyOnly.urdf",
+        first_hip="LEFT_HIP_X",
+        hip_pitch="LEFT_HIP_Y",
+        knee="LEFT_KNEE_Y",
+        ankle="LEFT_ANKLE_Y",
+        foot="LEFT_FOOT",
+        sole=(0.0, 0.0, -0.072),
+        whole=False,
+    ),
+    # foot without mass; its mesh is a ring of 16 mm radius
+    RobotSource(
+        name="Bolt",
+        kind="biped",
+        file="bolt_description/robots/bolt.urdf",
+        first_hip="FL_HAA",
+        hip_pitch="FL_HFE",
+        knee="FL_KFE",
+        ankle="",
+        foot="FL_FOOT",
+        sole=(0.0, 0.0, 0.0),
+        foot_radius=0.016,
+    ),
+    # y points up; sole: lowest point of the foot's mesh
+    RobotSource(
+        name="Human",
+        kind="human",
+        file="human_description/robots/human.urdf",
+        first_hip="left_hip_Z",
+        hip_pitch="left_hip_Z",
+        knee="left_knee_Z",
+        ankle="left_ankle_Z",
+        foot="left_foot",
+        sole=(0.0, -0.0765, 0.0),
+    ),
+    # lowest point of the foot's mesh is 22.9 mm below its centre
+    RobotSource(
+        name="Unitree Go2",
+        kind="quadruped",
+        file="go2_description/urdf/go2.urdf",
+        first_hip="FL_hip_joint",
+        hip_pitch="FL_thigh_joint",
+        knee="FL_calf_joint",
+        ankle="",
+        foot="FL_foot",
+        sole=(0.0, 0.0, 0.0),
+        foot_radius=0.0229,
+        legs=4,
+    ),
+    RobotSource(
+        name="ANYmal C",
+        kind="quadruped",
+        file="anymal_c_simple_description/urdf/anymal.urdf",
+        first_hip="LF_HAA",
+        hip_pitch="LF_HFE",
+        knee="LF_KFE",
+        ankle="",
+        foot="LF_FOOT",
+        sole=(0.0, 0.0, 0.0225),
+        foot_radius=0.03,
+        legs=4,
+    ),
+    RobotSource(
+        name="Solo12",
+        kind="quadruped",
+        file="solo_description/robots/solo12.urdf",
+        first_hip="FL_HAA",
+        hip_pitch="FL_HFE",
+        knee="FL_KFE",
+        ankle="",
+        foot="FL_FOOT",
+        sole=(0.0, 0.0, 0.0),
+        foot_radius=0.016,
+        legs=4,
+    ),
+)
+"""Robots to compare with."""
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """What moves with one joint of a description, in the world, in the description's zero posture."""
+
+    joint: str
+    parent: str
+    """Joint it hangs from; empty on the trunk."""
+    origin: np.ndarray
+    """Of the joint [m], `(3,)`."""
+    axis: np.ndarray
+    """Unit vector, `(3,)`; zero where the joint has no single axis."""
+    mass: float
+    """[kg]"""
+    com: np.ndarray
+    """[m], `(3,)`"""
+    inertia: np.ndarray
+    """About `com`, world axes [kg m^2], `(3, 3)`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """A robot as its description poses it."""
+
+    bodies: Mapping[str, Body]
+    """By joint; the trunk's stands under the empty name."""
+    foot_position: np.ndarray
+    """Origin of the foot's frame [m], `(3,)`."""
+    foot_rotation: np.ndarray
+    """`(3, 3)`"""
+    foot_joint: str
+    """Joint that the foot moves with."""
+
+    def behind(self, joint: str) -> list[Body]:
+        """Bodies that move with a joint."""
+        found = [self.bodies[joint]]
+        for body in found:
+            found += [child for child in self.bodies.values() if child.parent == body.joint and child.joint]
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class OtherRobot:
+    """Measures of one robot."""
+
+    source: RobotSource
+    leg: LegInertia
+    """Each a number; the total mass is nan where the description is not whole."""
+    knee_turned: float
+    """By which the knee was turned from the description's zero to make the leg straight [rad]; nan where it stays as posed."""
+
+
+def robots_folder() -> Path:
+    """Folder of the robots of `example-robot-data`, wherever it is installed.
+
+    Raises:
+        InputError: the package is not installed, or without its robots.
+    """
+    try:
+        files = importlib.metadata.files(PACKAGE) or []
+    except importlib.metadata.PackageNotFoundError:
+        files = []
+    # .../example-robot-data/robots/ROBOT/FILE of a wheel; the prefix of an environment that is not pip's
+    found = [Path(str(f.locate())).parents[1] for f in files if f.parts[-4:-2] == (PACKAGE, "robots")][:1]
+    for folder in (*found, Path(sys.prefix) / "share" / PACKAGE / "robots"):
+        if folder.is_dir():
+            return folder.resolve()
+    raise InputError(PACKAGE, "", None, "is not installed, so there are no robots to compare with; run pip install example-robot-data")
+
+
+def find_source(name: str) -> RobotSource:
+    """A robot of `SOURCES` by name, whatever the case.
+
+    Raises:
+        InputError: there is none.
+    """
+    for source in SOURCES:
+        if source.name.lower() == name.lower():
+            return source
+    raise InputError("robot", "", name, f"expects one of {', '.join(s.name for s in SOURCES)}")
+
+
+@cache
+def measure(source: RobotSource) -> OtherRobot:
+    """Mass and inertia of one leg of a robot.
+
+    Raises:
+        InputError: the description is missing or does not have the joints named.
+    """
+    path = robots_folder() / source.file
+    if not path.is_file():
+        raise InputError(PACKAGE, source.name, str(path), "no such file; this release of the package does not have the robot")
+    description = _read_sdf(path, source) if path.suffix == ".sdf" else _read_urdf(path, source)
+    hip, knee = description.bodies[source.hip_pitch], description.bodies[source.knee]
+    sole = description.foot_position + description.foot_rotation @ np.array(source.sole)
+    turned, turn = float("nan"), np.eye(3)
+    if path.suffix != ".sdf":  # rods would have to follow
+        end = description.bodies[source.ankle].origin if source.ankle else sole
+        turned = _straightening(hip.origin, knee.origin, end, knee.axis)
+        turn = _rotation(knee.axis, turned)
+    distal = description.behind(source.knee)
+    lower = {body.joint for body in distal}
+    if description.foot_joint in lower:
+        sole = knee.origin + turn @ (sole - knee.origin)
+    inertia, moment, swing_mass = np.zeros((3, 3)), np.zeros(3), 0.0
+    for body in description.behind(source.hip_pitch):
+        centre, own = body.com, body.inertia
+        if body.joint in lower:
+            centre, own = knee.origin + turn @ (centre - knee.origin), turn @ own @ turn.T
+        offset = centre - hip.origin
+        inertia += own + body.mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+        moment += body.mass * offset
+        swing_mass += body.mass
+    total = sum(body.mass for body in description.bodies.values())
+    leg = LegInertia(
+        total_mass=total if source.whole else float("nan"),
+        leg_mass=sum(body.mass for body in description.behind(source.first_hip)),
+        distal_mass=sum(body.mass for body in distal),
+        leg_length=float(np.linalg.norm(_across(sole - hip.origin, hip.axis))) + source.foot_radius,
+        swing_mass=swing_mass,
+        swing_inertia=float(hip.axis @ inertia @ hip.axis),
+        com_distance=float(np.linalg.norm(_across(moment / swing_mass, hip.axis))),
+    )
+    return OtherRobot(source, leg, turned)
+
+
+def compare(names: Iterable[str] | None = None) -> tuple[OtherRobot, ...]:
+    """Measures of all robots of `SOURCES`, or of those named.
+
+    Raises:
+        InputError: no such robot, or `example-robot-data` is not there.
+    """
+    chosen = SOURCES if names is None else tuple(find_source(name) for name in names)
+    return tuple(measure(source) for source in chosen)
+
+
+def _across(vector: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """Part of a vector that is perpendicular to an axis."""
+    return vector - (vector @ axis) * axis
+
+
+def _straightening(hip: np.ndarray, knee: np.ndarray, end: np.ndarray, axis: np.ndarray) -> float:
+    """Angle about the knee's axis that brings the end of the leg into the line from hip to knee [rad]."""
+    upper, lower = _across(knee - hip, axis), _across(end - knee, axis)
+    return float(np.arctan2(axis @ np.cross(lower, upper), lower @ upper))
+
+
+def _rotation(axis: np.ndarray, angle: float) -> np.ndarray:
+    """About a unit vector (Rodrigues), `(3, 3)`."""
+    x, y, z = axis
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew
+
+
+def _read_urdf(path: Path, source: RobotSource) -> Description:
+    """Read a URDF through Pinocchio, which merges links that are fixed to each other."""
+    import pinocchio as pin
+
+    model: Any = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer())
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, pin.neutral(model))
+    pin.computeJointJacobians(model, data, pin.neutral(model))
+    bodies = {}
+    for index in range(1, model.njoints):
+        placed, own = data.oMi[index], model.inertias[index]
+        column = pin.getJointJacobian(model, data, index, pin.LOCAL_WORLD_ALIGNED)[3:, model.idx_vs[index]]
+        trunk = index == 1
+        name = "" if trunk else str(model.names[index])
+        rotation = np.array(placed.rotation)
+        parent = int(model.parents[index])
+        bodies[name] = Body(
+            joint=name,
+            parent="" if parent <= 1 else str(model.names[parent]),
+            origin=np.array(placed.translation),
+            axis=np.zeros(3) if trunk else np.array(column),
+            mass=float(own.mass),
+            com=np.array(placed.act(own.lever)),
+            inertia=rotation @ np.array(own.inertia) @ rotation.T,
+        )
+    _require(path, source, bodies, [str(frame.name) for frame in model.frames])
+    frame = model.getFrameId(source.foot)
+    placed = data.oMf[frame]
+    joint = str(model.names[model.frames[frame].parentJoint])
+    return Description(bodies, np.array(placed.translation), np.array(placed.rotation), joint)
+
+
+def _read_sdf(path: Path, source: RobotSource) -> Description:
+    """Read links of an SDF model as posed in it; of a link that closes a loop, the first joint counts."""
+    from xml.etree import ElementTree
+
+    root = ElementTree.parse(path).getroot().find("model")
+    links = {str(link.get("name")): link for link in (root.findall("link") if root is not None else ())}
+    joints = {str(j.findtext("child")).strip(): j for j in reversed(root.findall("joint") if root is not None else ())}
+    bodies, frames = {}, {}
+    for name, link in links.items():
+        position, rotation = _pose(link.findtext("pose"))
+        frames[name] = position, rotation
+        com, turn = _pose(link.findtext("inertial/pose"))
+        joint = joints.get(name)
+        axis = np.zeros(3)
+        own = "" if joint is None else str(joint.get("name"))
+        if joint is not None and (text := joint.findtext("axis/xyz")):
+            axis = np.array([float(v) for v in text.split()])
+            if joint.findtext("axis/use_parent_model_frame", "0").strip() not in ("1", "true"):
+                axis = rotation @ axis
+            axis = axis / np.linalg.norm(axis)
+        up = "" if joint is None else str(joint.findtext("parent")).strip()
+        bodies[own] = Body(
+            joint=own,
+            parent=str(joints[up].get("name")) if up in joints else "",
+            origin=position,
+            axis=axis,
+            mass=float(link.findtext("inertial/mass", "0")),
+            com=position + rotation @ com,
+            inertia=rotation @ turn @ _sdf_inertia(link) @ turn.T @ rotation.T,
+        )
+    _require(path, source, bodies, list(frames))
+    return Description(bodies, *frames[source.foot], str(joints[source.foot].get("name")))
+
+
+def _pose(text: str | None) -> tuple[np.ndarray, np.ndarray]:
+    """Position and rotation of `x y z roll pitch yaw`."""
+    x, y, z, roll, pitch, yaw = (float(v) for v in (text or "0 0 0 0 0 0").split())
+    eye = np.eye(3)
+    return np.array([x, y, z]), _rotation(eye[2], yaw) @ _rotation(eye[1], pitch) @ _rotation(eye[0], roll)
+
+
+def _sdf_inertia(link: Any) -> np.ndarray:
+    xx, xy, xz, yy, yz, zz = (float(link.findtext(f"inertial/inertia/i{part}", "0")) for part in ("xx", "xy", "xz", "yy", "yz", "zz"))
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def _require(path: Path, source: RobotSource, bodies: Mapping[str, Body], frames: list[str]) -> None:
+    """Whether a description has what the table names."""
+    for field in ("first_hip", "hip_pitch", "knee", "ankle"):
+        name = getattr(source, field)
+        if (name or field != "ankle") and name not in bodies:
+            raise InputError(path.name, f"{source.name}.{field}", name, "no such joint in this description; another release of example-robot-data?")
+    if source.foot not in frames:
+        raise InputError(path.name, f"{source.name}.foot", source.foot, "no such link in this description; another release of example-robot-data?")
