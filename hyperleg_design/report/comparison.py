@@ -20,6 +20,10 @@ AGREES = 1e-3
 """Relative difference up to which a number agrees: what rounding to three or four digits leaves."""
 
 
+WALK_MEASURES = ("cost_of_transport", "cost_of_transport_battery", "motor_side", "joule", "mechanical", "beyond_share", "margin_over_peak")
+"""What `compare` shows of the planned walk's demand."""
+
+
 @dataclass(frozen=True)
 class Row:
     """One number of the paper beside ours."""
@@ -101,16 +105,19 @@ def compare(designs: list[Design], *, demand: bool = False) -> dict[str, Any]:
         By design name: mass, reach and torque measures, SI units.
     """
     from hyperleg_design.sizing.analysis import analyze
-    from hyperleg_design.sizing.inertia import leg_inertia_measures
+    from hyperleg_design.sizing.demand import demand as demand_of
+    from hyperleg_design.sizing.inertia import leg_inertia
 
     found: dict[str, Any] = {}
     for design in designs:
         whole = analyze(design)
         kept = ("variant", "total_mass", "leg_mass", "leg_length", "height", "max_joint_torque", "single_joint_speed", "torque_alone")
         entry = {k: whole[k] for k in (*kept, "zonotope_to_box_volume")}
-        entry |= {k: float(v) for k, v in leg_inertia_measures(design).items()}
+        inertia = leg_inertia(design)
+        entry |= {k: float(getattr(inertia, k)) for k in ("distal_share", "swing_inertia", "gyration_over_length")}
         if demand:
-            entry["walk"] = walk_measures(design)
+            walk = demand_of(design, "walk").summary()
+            entry["walk"] = {k: walk[k] for k in WALK_MEASURES}
         name = design.name if design.name not in found else f"{design.name} ({len(found) + 1})"
         found[name] = entry
     return found
