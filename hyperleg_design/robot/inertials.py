@@ -43,7 +43,7 @@ def inertials(design: Design, side: float = 1.0) -> dict[str, Inertial]:
         InputError: the housed actuators leave a link with an inertia that no body has.
     """
     table = masses.mass_table(design)
-    carrier = design.hip.carrier_gyration * np.ones(3)
+    carrier = np.asarray(design.hip.carrier_gyration, float)[..., None] * np.ones(3)
     foot_link = table.foot - design.foot.cross_mass
     zero = np.zeros(3)
     found = {
@@ -61,7 +61,7 @@ def inertials(design: Design, side: float = 1.0) -> dict[str, Inertial]:
         body = _declared(getattr(table, name) - _change(table, name, 1) - kept, com, gyration)
         found[name] = _with_housed(design, name, table, body, side)
     mirror = np.array([1.0, side, 1.0])
-    found["ankle_cross"] = _declared(design.foot.cross_mass, zero, design.foot.cross_gyration * np.ones(3))
+    found["ankle_cross"] = _declared(design.foot.cross_mass, zero, np.asarray(design.foot.cross_gyration, float)[..., None] * np.ones(3))
     found["foot"] = _declared(foot_link, design.foot.com * mirror, design.foot.gyration)
     found["toe_plate"] = _declared(table.toe, design.toe.com * mirror, design.toe.gyration)
     return found
@@ -106,7 +106,9 @@ def _with_housed(design: Design, segment: str, table: masses.MassTable, body: In
         raise InputError(
             design.source or design.name, field, None, "is too small for the actuators that leave this segment: its inertia would be no body's"
         )
-    return Inertial(mass, com, inertia)
+    # a body that nothing joined or left keeps its declared numbers to the bit, whatever else is in the batch
+    changed = np.any(np.stack(np.broadcast_arrays(*(np.asarray(m) != 0 for m, _ in points))), 0)
+    return Inertial(mass, np.where(changed[..., None], com, body.com), np.where(changed[..., None, None], inertia, body.inertia))
 
 
 def _shifted(mass: Any, offset: np.ndarray) -> np.ndarray:

@@ -292,8 +292,9 @@ def push_off_power(batch: Batch) -> np.ndarray:
 def largest_power(envelope: MotorEnvelope, speed: np.ndarray) -> np.ndarray:
     """Largest summed power over the rates s at which the motors turn together at `s speed`, `(...)` [W].
 
-    Up to the rate at which the first motor reaches its top speed, past which its driver has no hold of it. Each motor gives s v min(peak, stall (1 - s v / w0)), concave in s: the derivative of the sum is piecewise linear and
-    falls, with kinks at the motors' corner speeds, so its root is exact in one of the intervals between them.
+    Up to the rate at which the first motor reaches its top speed, past which its driver has no hold of it. Each gives
+    s v min(peak, stall (1 - s v / w0)), concave in s: the derivative of the sum is piecewise linear and falls, with kinks at
+    the motors' corner speeds, so its root is exact in one of the intervals between them.
 
     Args:
         envelope: limits, `(..., motors)`.

@@ -25,6 +25,7 @@ import numpy as np
 
 from hyperleg_design.robot.inertials import Inertial
 from hyperleg_design.robot.masses import mass_table
+from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.robot.transmission import joint_names
 from hyperleg_design.sizing.motions.motion import GRAVITY
 
@@ -113,7 +114,7 @@ def push_off(design: Design, inertials: Mapping[str, Inertial]) -> StaticLoad:
     """The push-off of a design or batch; `inertials` of its left leg."""
     total = np.asarray(mass_table(design).total, float)
     active = design.toe.joint == "active"
-    angles = np.broadcast_to(PUSH_OFF * (1.0, 1.0, 1.0, 1.0 if active else 0.0), (*total.shape, 4))
+    angles = np.broadcast_to(PUSH_OFF * (1.0, 1.0, 1.0, 1.0 if active else 0.0), (*design.batch_shape, 4))
     points = _points(design, angles)
     pitch = angles.sum(-1)
     reach = np.asarray(design.toe.length) * (PUSH_OFF_ON_TOE if active else 1.0)
@@ -145,13 +146,13 @@ def holding_torque(
         com = inertials[name].com
         x = points[origin] + com[..., 0] * np.cos(pitch[..., level]) + com[..., 2] * np.sin(pitch[..., level])
         placed.append((inertials[name].mass, x))
-    torque = np.zeros((*np.shape(force), 7))
+    torque = [np.zeros(())] * len(JOINTS)
     # the cross turns with the ankle's pitch, so it is behind that joint; its own centre is on the axis
     for column, origin, first in ((2, "hip", 0), (3, "knee", 1), (4, "ankle", 2), (6, "toe", 4)):
         behind = sum((mass * GRAVITY * (x - points[origin]) for mass, x in placed[first:]), start=np.zeros(()))
         pushed = 0.0 if origin == "toe" and not on_toe else force
-        torque[..., column] = pushed * (pressure_point - points[origin]) - behind
-    return torque[..., : len(joint_names(design))]
+        torque[column] = pushed * (pressure_point - points[origin]) - behind
+    return np.stack(np.broadcast_arrays(*torque), -1)[..., : len(joint_names(design))]
 
 
 def _points(design: Design, angles: np.ndarray) -> dict[str, np.ndarray]:

@@ -3,9 +3,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hyperleg_design.robot import transmission
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import parameters, transmission
 from hyperleg_design.robot.ablation import ablate
-from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.motors import catalogue
@@ -41,6 +42,32 @@ def test_a_batch_equals_its_designs_one_by_one(variant):
         assert list(alone) == list(together)
         for column, values in together.items():
             np.testing.assert_allclose(values[i], alone[column][0], rtol=1e-12, err_msg=column)
+
+
+SIMULATED = ("joints.", "contact.", "transmission.linkage.")
+"""Sections that no sizing measure reads."""
+LEAVES = sorted(p for p, rule in parameters.rules(Design).items() if rule.kind == "number" and not p.startswith(SIMULATED))
+
+
+@pytest.mark.parametrize("variant", ["toe", "toe_removed"])
+def test_a_batch_in_any_one_leaf_equals_its_designs(variant):
+    """Whichever leaf it is, the others staying single numbers."""
+    made = 0
+    for path in LEAVES:
+        start = np.asarray(BASE[path], float)
+        values = np.stack([start, start * 1.01 if np.any(start) else start])
+        try:
+            designs = ablate(BASE.with_values({path: values}), variant)
+        except InputError:  # a leaf at its bound
+            continue
+        if not designs.batch_shape:  # the variant sets this leaf itself
+            continue
+        made += 1
+        together = measures.evaluate(designs)
+        alone = [measures.evaluate(designs.take(i)) for i in range(2)]
+        for column, found in together.items():
+            np.testing.assert_allclose(found, [a[column][0] for a in alone], rtol=1e-12, err_msg=f"{path}: {column}")
+    assert made > 0.8 * len(LEAVES)
 
 
 def test_every_measure_has_its_columns_unit_and_meaning():

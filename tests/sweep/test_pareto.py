@@ -49,9 +49,10 @@ def test_nothing_has_no_front():
     assert not nondominated(np.full((3, 2), np.nan), ["low", "high"]).any()
 
 
-@pytest.mark.parametrize(
-    ("values", "better"), [(np.zeros(3), ["low"]), (np.zeros((3, 2)), ["low"]), (np.zeros((3, 1)), ["best"]), (np.zeros((3, 0)), [])]
-)
+MISUSE = [(np.zeros(3), ["low"]), (np.zeros((3, 2)), ["low"]), (np.zeros((3, 1)), ["best"]), (np.zeros((3, 0)), [])]
+
+
+@pytest.mark.parametrize(("values", "better"), MISUSE)
 def test_misuse_is_refused(values, better):
     with pytest.raises(ValueError, match="expects"):
         nondominated(values, better)

