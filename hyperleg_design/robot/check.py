@@ -50,7 +50,9 @@ def check_file(path: str | Path) -> list[Finding]:
     Raises:
         InputError: there is no such file, or it cannot be read.
     """
-    if Path(path).suffix.lower() not in XML:
+    if Path(path).suffix.lower() in XML:
+        parse_xml(path)  # whether it can be read
+    else:
         path = resources.find("descriptions", path)
     try:
         kind = kind_of(path)

@@ -60,9 +60,13 @@ def _model(model: Any) -> list[Finding]:
         if model.actuator_ctrllimited[index] and low >= high:
             found.append(Finding("error", f"actuator {model.actuator(index).name}", f"control range is {low:g} .. {high:g}, empty", "widen it"))
     for index in range(model.njnt):
-        joint = model.joint(index)
-        if joint.type[0] == mujoco.mjtJoint.mjJNT_HINGE and not model.jnt_limited[index]:
-            found.append(Finding("warning", f"joint {joint.name}", "has no range", "add range= if the joint has stops"))
+        place, (low, high) = f"joint {model.joint(index).name}", model.jnt_range[index]
+        if model.jnt_limited[index] or int(model.jnt_type[index]) not in (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)):
+            continue
+        if low > high:  # MuJoCo takes it for a joint without limits
+            found.append(Finding("error", place, f"range is {low:.4g} .. {high:.4g}, reversed", "swap its ends"))
+        else:
+            found.append(Finding("warning", place, "has no range", "add range= if the joint has stops"))
     return found
 
 
@@ -83,7 +87,7 @@ def _starts(model: Any) -> list[Finding]:
         if depth > DEEPEST_CONTACT:
             found.append(Finding("warning", place, f"bodies overlap by {depth:.3g} m", "move them apart, or the robot jumps"))
         for index in range(model.njnt):
-            if key < 0 or not model.jnt_limited[index] or model.jnt_type[index] not in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
+            if key < 0 or not model.jnt_limited[index] or int(model.jnt_type[index]) == int(mujoco.mjtJoint.mjJNT_BALL):
                 continue
             value, (low, high) = float(data.qpos[model.jnt_qposadr[index]]), model.jnt_range[index]
             if not low - 1e-9 <= value <= high + 1e-9:

@@ -50,8 +50,9 @@ def check_urdf(source: str | Path) -> list[Finding]:
     if not links:
         return [*found, Finding("error", "<robot>", "has no links", "add at least one <link>")]
     found += _tree(links, joints)
+    carried = {_ends(joint)[1] for joint in joints if joint.get("type") == "fixed"}
     for link in links:
-        found += _inertial(link) + _drawings(link)
+        found += _inertial(link, link.get("name") in carried) + _drawings(link)
     for joint in joints:
         found += _joint(joint, {j.get("name") for j in joints})
     found += _weightless(links, joints)
@@ -159,7 +160,8 @@ def numbers(text: str | None, count: int) -> np.ndarray | None:
     return values if len(values) == count and np.all(np.isfinite(values)) else None
 
 
-def _inertial(link: Any) -> list[Finding]:
+def _inertial(link: Any, carried: bool) -> list[Finding]:
+    """Mass and inertia; `carried` says that the link is fixed to another, where a point without inertia does no harm."""
     part = link.find("inertial")
     if part is None:
         return []
@@ -178,16 +180,24 @@ def _inertial(link: Any) -> list[Finding]:
     if any(v is None for v in values):
         return [*found, Finding("error", place, "inertia lacks a number", "expects ixx, iyy, izz, ixy, ixz, iyz in kg m^2")]
     if weight is not None and weight[0] > 0:
-        found += _tensor(np.array([float(v[0]) for v in values if v is not None]), float(weight[0]), place)
+        found += _tensor(np.array([float(v[0]) for v in values if v is not None]), float(weight[0]), place, carried)
     return found
 
 
-def _tensor(values: np.ndarray, mass: float, place: str) -> list[Finding]:
+def _tensor(values: np.ndarray, mass: float, place: str, carried: bool) -> list[Finding]:
     xx, yy, zz, xy, xz, yz = values
     principal = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     shown = ", ".join(f"{v:.4g}" for v in principal)
-    if principal[0] <= 0:
-        return [Finding("error", place, f"inertia is not positive definite (principal moments {shown} kg m^2)", "check signs and products")]
+    if principal[0] <= 1e-12 * principal[2]:
+        harmless = carried and principal[0] >= -1e-12 * principal[2]
+        return [
+            Finding(
+                "warning" if harmless else "error",
+                place,
+                f"inertia is not positive definite (principal moments {shown} kg m^2)",
+                "check signs and products",
+            )
+        ]
     if principal[2] > (principal[0] + principal[1]) * (1 + 1e-9):
         return [
             Finding(
