@@ -33,6 +33,20 @@ _HOME = {
     "mujoco_model": "robot.mjcf",
     "mujoco_spec": "robot.mjcf",
     "rigid_body_model": "robot.models",
+    "build": "robot.build",
+    "check_file": "robot.check",
+    "analyze": "sizing.analysis",
+    "motor_envelope": "sizing.envelope",
+    "torque_limits": "sizing.envelope",
+    "trajectory_margin": "sizing.margin",
+    "slice_polygon": "sizing.slices",
+    "energy_ledger": "sizing.energy",
+    "thermal_use": "sizing.thermal",
+    "leg_inertia": "sizing.inertia",
+    "demand": "sizing.demand",
+    "load_sweep": "sweep.space",
+    "run_sweep": "sweep.run",
+    "nondominated": "sweep.pareto",
 }
 """Module that each public name comes from."""
 
@@ -44,6 +58,8 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.ablation import ablate as ablate
     from hyperleg_design.robot.ablation import confound as confound
     from hyperleg_design.robot.ablation import variants as variants
+    from hyperleg_design.robot.build import build as build
+    from hyperleg_design.robot.check import check_file as check_file
     from hyperleg_design.robot.description import urdf as urdf
     from hyperleg_design.robot.design import Design as Design
     from hyperleg_design.robot.design import load_design as load_design
@@ -59,6 +75,18 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.transmission import joint_from_motor as joint_from_motor
     from hyperleg_design.robot.transmission import max_joint_torque as max_joint_torque
     from hyperleg_design.robot.transmission import single_joint_speed as single_joint_speed
+    from hyperleg_design.sizing.analysis import analyze as analyze
+    from hyperleg_design.sizing.demand import demand as demand
+    from hyperleg_design.sizing.energy import energy_ledger as energy_ledger
+    from hyperleg_design.sizing.envelope import motor_envelope as motor_envelope
+    from hyperleg_design.sizing.envelope import torque_limits as torque_limits
+    from hyperleg_design.sizing.inertia import leg_inertia as leg_inertia
+    from hyperleg_design.sizing.margin import trajectory_margin as trajectory_margin
+    from hyperleg_design.sizing.slices import slice_polygon as slice_polygon
+    from hyperleg_design.sizing.thermal import thermal_use as thermal_use
+    from hyperleg_design.sweep.pareto import nondominated as nondominated
+    from hyperleg_design.sweep.run import run_sweep as run_sweep
+    from hyperleg_design.sweep.space import load_sweep as load_sweep
 
 __all__ = ["__version__", *_HOME]
 

@@ -157,6 +157,48 @@ def envelopes(context: Context) -> Made:
     return Made(Section("Envelopes, and what a box hides", content))
 
 
+def lightness(context: Context) -> Made:
+    """The leg's mass and inertia beside those of other robots."""
+    from hyperleg_design.report.inertia_figures import leg_comparison_figure
+    from hyperleg_design.sizing.inertia import leg_inertia, rotor_swing_inertia
+    from hyperleg_design.sizing.other_robots import compare
+
+    own = {name: leg_inertia(design) for name, design in context.variants.items()}
+    others = compare()
+    rows: list[list[Any]] = [
+        [
+            name,
+            float(m.total_mass),
+            float(m.leg_mass),
+            float(m.distal_share),
+            float(m.inertia_over_leg),
+            float(m.inertia_over_total),
+            float(m.gyration_over_length),
+        ]
+        for name, m in own.items()
+    ]
+    rows += [
+        [
+            r.source.name,
+            float(r.leg.total_mass),
+            float(r.leg.leg_mass),
+            float(r.leg.distal_share),
+            float(r.leg.inertia_over_leg),
+            float(r.leg.inertia_over_total),
+            float(r.leg.gyration_over_length),
+        ]
+        for r in others
+    ]
+    toe, bare = own["toe"], own["toe_removed"]
+    content = [
+        f"Below the knee is {100 * toe.distal_share:.0f} % of the leg's mass. Swinging the straight leg about the hip takes {toe.swing_inertia:.3f} kg m² ({bare.swing_inertia:.3f} without toe and toe motor), and the rotors add {float(rotor_swing_inertia(context.design)):.3f} kg m² there.",
+        "Over the leg's own mass the swing inertia is below that of most humanoids; over the robot's total mass it is not, because the legs are half of the robot. Masses are the paper's, centres of mass and radii of gyration are assumed; the other robots' come from their URDF or SDF files.",
+        context.picture("lightness", "Share of the leg's mass below the knee, and swing inertia of the straight leg about the hip.", lambda p: save(leg_comparison_figure(list(context.variants.values()), others), p)),
+        Table(["robot", "total kg", "leg kg", "below the knee [-]", "swing inertia / (leg mass · length²)", "… / (total mass · length²)", "gyration / length"], rows),
+    ]  # fmt: skip
+    return Made(Section("How light the leg is", content), ((f"{100 * toe.distal_share:.0f} %", "of the leg's mass is below the knee"),))
+
+
 def sweeps(context: Context) -> Made:
     """Every shipped sweep."""
     from hyperleg_design import resources
@@ -218,6 +260,7 @@ STEPS: Mapping[str, Callable[[Context], Made]] = {
     "inconsistencies": inconsistencies,
     "cooperative actuation": cooperative_actuation,
     "envelopes": envelopes,
+    "lightness": lightness,
     "sweeps": sweeps,
     "motors": motors,
     "parameters": made_from,
