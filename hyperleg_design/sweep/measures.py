@@ -20,6 +20,7 @@ from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
 from hyperleg_design.sizing import zonotope
 from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
+from hyperleg_design.sizing.inertia import LegInertia, leg_inertia
 from hyperleg_design.sweep import reference_loads
 from hyperleg_design.sweep.reference_loads import StaticLoad
 
@@ -46,6 +47,11 @@ class Batch:
     def inertials(self) -> dict[str, Inertial]:
         """Of the links of the left leg, and the pelvis."""
         return inertials(self.design)
+
+    @cached_property
+    def leg(self) -> LegInertia:
+        """Mass and inertia of one leg."""
+        return leg_inertia(self.design)
 
     @cached_property
     def walking(self) -> np.ndarray:
@@ -173,32 +179,21 @@ def leg_length_straight(batch: Batch) -> np.ndarray:
 
 
 @measure("", "low")
-def distal_mass_share(batch: Batch) -> np.ndarray:
-    """Shank, foot and toe over the whole leg."""
-    table = batch.masses
-    return (table.shank + table.foot + table.toe) / table.leg
+def distal_share(batch: Batch) -> np.ndarray:
+    """Share of the leg's mass that is below the knee."""
+    return batch.leg.distal_share
 
 
 @measure("kg m^2", "low")
-def leg_inertia_hip(batch: Batch) -> np.ndarray:
+def swing_inertia(batch: Batch) -> np.ndarray:
     """Inertia of one straight leg about the hip-pitch axis, without rotors."""
-    design = batch.design
-    ankle = np.asarray(design.thigh.length) + np.asarray(design.shank.length)
-    drop = np.asarray(design.foot.ankle_height) - np.asarray(design.toe.axis_height)
-    # origin of each link: ahead of the axis, below it
-    origin = {
-        "thigh": (0.0, 0.0),
-        "shank": (0.0, np.asarray(design.thigh.length)),
-        "ankle_cross": (0.0, ankle),
-        "foot": (0.0, ankle),
-        "toe_plate": (np.asarray(design.foot.ball_length), ankle + drop),
-    }
-    total = np.zeros(())
-    for name, (ahead, below) in origin.items():
-        link = batch.inertials[name]
-        squared = (link.com[..., 0] + ahead) ** 2 + (link.com[..., 2] - below) ** 2
-        total = total + link.inertia[..., 1, 1] + link.mass * squared
-    return total
+    return batch.leg.swing_inertia
+
+
+@measure("", "low")
+def gyration_over_length(batch: Batch) -> np.ndarray:
+    """Radius of gyration of the swinging leg about the hip over its length; 0.577 for a uniform rod."""
+    return batch.leg.gyration_over_length
 
 
 @measure("kg", "low")

@@ -10,9 +10,9 @@ axes:
   toe.mass: {low: 0.1, high: 0.5, steps: 9}
   actuators.knee.motor: {values: [RI60, RI70]}
   leg length: {paths: [thigh.length, shank.length], scale: {low: 0.8, high: 1.2, steps: 5}}
-measures: [leg_inertia_hip]            # all by default
+measures: [swing_inertia]            # all by default
 objectives: [total_mass, push_off_power]
-maps: [{x: toe.mass, y: leg length, measure: leg_inertia_hip}]
+maps: [{x: toe.mass, y: leg length, measure: swing_inertia}]
 """
 
 from __future__ import annotations

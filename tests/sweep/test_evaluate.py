@@ -8,7 +8,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.sweep import evaluate, measures
 from hyperleg_design.sweep.space import sweep_from_mapping
 
-MEASURES = ["total_mass", "leg_inertia_hip", "torque_alone", "push_off_heat"]
+MEASURES = ["total_mass", "swing_inertia", "torque_alone", "push_off_heat"]
 
 # a ball 0.6 m ahead of the ankle makes the foot longer than this short leg
 SWEEP = sweep_from_mapping(

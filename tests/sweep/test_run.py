@@ -30,8 +30,8 @@ DEFINITION = {
         "actuators.knee.motor": {"values": ["RI60", "RI70"]},
         "legs": {"paths": ["thigh.length", "shank.length"], "scale": {"low": 0.8, "high": 1.2}},
     },
-    "measures": ["total_mass", "leg_inertia_hip", "push_off_heat"],
-    "objectives": ["leg_inertia_hip", "push_off_heat"],
+    "measures": ["total_mass", "swing_inertia", "push_off_heat"],
+    "objectives": ["swing_inertia", "push_off_heat"],
 }
 
 
