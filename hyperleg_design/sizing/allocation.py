@@ -14,17 +14,19 @@ base's balance, both at a price far above any heat, and what gave way is reporte
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
 
-EXCESS_PRICE = 1e2
+EXCESS_PRICE = 1e1
 """Of torque beyond an envelope: heat at peak torque of all motors, for a whole peak torque of one."""
-GAP_PRICE = 1e4
+GAP_PRICE = 1e3
 """Of a force missing at the base: the same heat, for a whole body weight."""
-RIDGE = 1e-7
+RIDGE = 1e-6
 """On pad forces over weight, squared: makes the split among pads of a rigid foot unique."""
 NEGLIGIBLE = 1e-5
 """Excess over peak torque, or gap over weight, that counts as the solver's rounding."""
@@ -106,26 +108,27 @@ def least_heat(
     share = np.tile(share / share.sum(), count)
     lowest, highest = (lower / peak).ravel(), (upper / peak).ravel()
 
-    torque, excess = cp.Variable(count * legs * motors), cp.Variable(count * legs * motors, nonneg=True)
-    short, over = cp.Variable(count * 6, nonneg=True), cp.Variable(count * 6, nonneg=True)
-    cost = cp.sum_squares(cp.multiply(np.sqrt(share), torque)) + EXCESS_PRICE * cp.sum(excess) + GAP_PRICE * cp.sum(short + over)
-    balance = torques @ torque + base @ (short - over)
-    limits = [torque <= highest + excess, torque >= lowest - excess]
+    torque = cp.Variable(count * legs * motors)
+    cost = cp.sum_squares(cp.multiply(np.sqrt(share), torque))
+    balance, cones = torques @ torque, []
     active = int(np.sum(bears))
     force = cp.Variable((active, 3)) if active else None
     if force is not None:
         balance = balance + loads @ cp.reshape(force, (3 * active,), order="C")
-        limits.append(cp.SOC(friction * force[:, 2], force[:, :2].T, axis=0))
+        cones.append(cp.SOC(friction * force[:, 2], force[:, :2].T, axis=0))
         cost = cost + RIDGE * cp.sum_squares(force)
-    problem = cp.Problem(cp.Minimize(cost), [balance == target, *limits])
-    problem.solve(solver=cp.CLARABEL)
-    if problem.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
-        raise InfeasibleError(f"the allocation has no solution: the solver ends with {problem.status}")
-
-    gap = (short.value - over.value).reshape(count, 6)
-    beyond = excess.value.reshape(count, legs, motors)
-    gap = np.where(np.abs(gap) > NEGLIGIBLE, gap, 0.0)
-    beyond = np.where(beyond > NEGLIGIBLE, beyond, 0.0) * peak
+    gap, beyond = np.zeros((count, 6)), np.zeros((count, legs, motors))
+    if not _solved(cp.Problem(cp.Minimize(cost), [balance == target, torque <= highest, torque >= lowest, *cones])):
+        excess = cp.Variable(count * legs * motors, nonneg=True)
+        short, over = cp.Variable(count * 6, nonneg=True), cp.Variable(count * 6, nonneg=True)
+        cost = cost + EXCESS_PRICE * cp.sum(excess) + GAP_PRICE * cp.sum(short + over)
+        limits = [torque <= highest + excess, torque >= lowest - excess, *cones]
+        if not _solved(cp.Problem(cp.Minimize(cost), [balance + base @ (short - over) == target, *limits])):
+            raise InfeasibleError("the allocation has no solution that the solver finds; the motion's forces are far beyond the robot")
+        gap = (short.value - over.value).reshape(count, 6)
+        gap = np.where(np.abs(gap) > NEGLIGIBLE, gap, 0.0)
+        beyond = excess.value.reshape(count, legs, motors)
+        beyond = np.where(beyond > NEGLIGIBLE, beyond, 0.0) * peak
     if not allow_excess and (np.any(gap) or np.any(beyond)):
         worst = int(np.argmax(np.abs(gap).max(1) * 1e6 + (beyond / peak).max((1, 2))))
         raise InfeasibleError(
@@ -149,6 +152,19 @@ def least_heat(
     )
 
 
+def _solved(problem: Any) -> bool:
+    """Whether the solver finds an optimum; one it calls inaccurate shows in `residual`."""
+    import cvxpy as cp
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        try:
+            problem.solve(solver=cp.CLARABEL)
+        except cp.error.SolverError:
+            return False
+    return problem.status in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE)
+
+
 def _polish(
     forces: np.ndarray, given: np.ndarray, gap: np.ndarray, bears: np.ndarray, blocks: list[np.ndarray], drives: np.ndarray, target: np.ndarray
 ) -> None:
@@ -163,9 +179,7 @@ def _polish(
         forces[n, bears[n]], given[n] = now[:count].reshape(-1, 3), now[count:]
 
 
-def _residual(
-    required: np.ndarray, jacobian: np.ndarray, forces: np.ndarray, motor_torque: np.ndarray, gap: np.ndarray, matrix: np.ndarray
-) -> float:
+def _residual(required: np.ndarray, jacobian: np.ndarray, forces: np.ndarray, motor_torque: np.ndarray, gap: np.ndarray, matrix: np.ndarray) -> float:
     found = np.einsum("npiv,npi->nv", jacobian, forces)
     found[:, :6] += gap
     found[:, 6:] += np.einsum("jm,nlm->nlj", matrix, motor_torque).reshape(len(required), -1)

@@ -161,15 +161,14 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
         allow_excess: report what lies beyond the envelopes; else it is an error.
 
     Raises:
-        InputError: a batch, a motion planned for another set of joints, or no such motion.
+        InputError: a batch, a motion planned for another design, or no such motion.
         InfeasibleError: the legs cannot do the motion, or `allow_excess` is off and the motors cannot.
     """
     if isinstance(motion, str):
         motion = reference_motion(design, motion)
-    if motion.model.design is not design and (design.batch_shape or joint_names(motion.model.design) != joint_names(design)):
-        raise InputError(design.name, "motion", motion.name, f"was planned for {motion.model.design.name} {motion.model.design.variant}; plan it anew")
-    if motion.model.design is not design:
-        raise InputError(design.name, "motion", motion.name, "was planned for another design; plan it for this one")
+    planned = motion.model.design
+    if planned is not design:
+        raise InputError(design.name, "motion", motion.name, f"was planned for {planned.name}, variant {planned.variant}; plan it for this design")
     matrix, envelope = joint_from_motor(design), motor_envelope(design)
     speed = motor_velocity(matrix, motion.joint_velocity)
     lower, upper = torque_limits(envelope, speed)

@@ -7,6 +7,7 @@ mass stays zero: the pelvis leans forward at the deepest point and swings back a
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -149,7 +150,7 @@ class _Hop:
         wanted = np.abs((time - plan.stance / 2 + period / 2) % period - period / 2)
         marks = np.unique(np.round(np.concatenate([[0.0], wanted]), 12))
         places = {0.0: self._placed(0.0, guess, touchdown)}
-        for begin, end in zip(marks[:-1], marks[1:], strict=True):
+        for begin, end in itertools.pairwise(marks):
             places[float(end)] = self._stepped(float(begin), float(end), places[float(begin)], touchdown)
         q, v, a = (np.zeros((len(time), size)) for size in (self.model.model.nq, self.model.model.nv, self.model.model.nv))
         for n, moment in enumerate(time):

@@ -50,7 +50,7 @@ def sole_middle(design: Design) -> float:
     return float(tip - design.foot.heel_length) / 2
 
 
-def squat(design: Design, plan: SquatPlan | None = None, samples: int = 80) -> Motion:
+def squat(design: Design, plan: SquatPlan | None = None, samples: int = 81) -> Motion:
     """One squat, down and up as a sinusoid.
 
     Args:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,6 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import SIDES
-from hyperleg_design.robot.tree import SIGN
 from hyperleg_design.sizing.motions.balance import Series, balanced_states, highest_pelvis
 from hyperleg_design.sizing.motions.foot_path import Step, foot_path, quintic
 from hyperleg_design.sizing.motions.motion import Motion, check_positive, contact_mask
@@ -38,7 +38,7 @@ class StairPlan:
     """Between the feet, over the distance between the hips [-]."""
     clearance: float = 0.06
     """Added height of the swinging foot in the middle [m]."""
-    pitch_off: float = 0.45
+    pitch_off: float = 0.55
     """Pitch of the rear foot as it leaves the lower floor [rad]."""
     lean: float = 0.10
     """Of the trunk over the standing foot [rad]; upright, the hips' narrow range inward (5 deg) would not let it stand there."""
@@ -46,7 +46,7 @@ class StairPlan:
     """How far inside the standing foot's middle the pressure is, over the half distance of its pads [-]."""
     upper_pressure: float = 0.2
     """Where the upper foot takes the weight, from below its ankle to its middle [-]; further ahead the ankle would bend too far."""
-    heel_rise: float = 0.2
+    heel_rise: float = 0.30
     """When in the rise the rear heel leaves the floor [-]."""
     min_knee: float = 0.30
     """Least knee flexion [rad]."""
@@ -88,13 +88,13 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
     middle, tip = sole_middle(design), design.foot.ball_length + design.toe.length - design.contact.pad_radius
     inner = y - plan.inward * max(design.foot.width / 2 - design.contact.pad_radius, 0.0)
     lower, upper = np.array([middle, -inner, 0.0]), np.array([ahead + plan.upper_pressure * middle, inner, high])
-    ready = np.array([0.5 * (middle + tip), -inner, 0.0])
+    ready = np.array([middle + 0.85 * (tip - middle), -inner, 0.0])
     stops = [
         (0.0, np.array([middle, 0.0, 0.0])), (leave, np.array([middle, 0.0, 0.0])), (up, lower), (landed, ready), (over, upper),
         (beside, upper), (centred, np.array([ahead + middle, 0.0, high])), (end, np.array([ahead + middle, 0.0, high])),
     ]  # fmt: skip
     path = np.zeros((3, samples, 3))
-    for (t0, p0), (t1, p1) in zip(stops[:-1], stops[1:], strict=True):
+    for (t0, p0), (t1, p1) in itertools.pairwise(stops):
         inside = (time >= t0) & (time <= t1)
         for axis in range(3):
             path[:, inside, axis] = quintic(time[inside], t0, t1, (p0[axis], 0, 0), (p1[axis], 0, 0))
@@ -111,7 +111,8 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
     found = balanced_states(model, feet, pressure, height, Series(end / (samples - 1), mirrored=True), roll=lean)
     assumed = {
         "step": f"{high:g} m high, {ahead:g} m ahead, {SIDES[0]} foot first, {end:.2f} s from rest to rest (assumed)",
-        "pelvis": f"leans by {np.rad2deg(plan.lean):.0f} deg over the standing foot, rises with the weight's passage, as high as a knee of {np.rad2deg(plan.min_knee):.0f} deg lets it be (assumed)",
-        "balance": f"the zero-moment point goes from foot to foot; sides {SIGN['left'] * y:g} m off the middle (assumed)",
+        "pelvis": f"leans by {np.rad2deg(plan.lean):.0f} deg over the standing foot and rises as the weight passes (assumed)",
+        "knee": f"never straighter than {np.rad2deg(plan.min_knee):.0f} deg (assumed)",
+        "balance": "the zero-moment point goes from foot to foot (assumed)",
     }
     return Motion("stair", model, time, found.q, found.v, found.a, contact_mask(model, feet), feet, pressure, False, ahead, assumed)

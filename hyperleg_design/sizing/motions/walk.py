@@ -20,34 +20,39 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class WalkPlan:
-    """What the walk looks like; only the speed is the paper's."""
+    """What the walk looks like.
+
+    Only the speed is the paper's. The rest is assumed: of the plans near human walking that a random search tried, one that
+    stays inside the motor envelopes of the paper's robot both with the active toe and without it. Straighter knees
+    or longer steps look more human and ask the knee for more than its motors have.
+    """
 
     speed: float = 1.33
     """Mean forward speed [m/s] (paper, Table III)."""
-    step_time: float = 0.40
-    """One step [s] (assumed: a short leg's cadence, 150 steps a minute; the step is 0.68 leg lengths)."""
+    step_time: float = 0.43
+    """One step [s]."""
     double_support: float = 0.20
-    """Part of a step with both feet down [-] (assumed: human walking at this Froude number)."""
+    """Part of a step with both feet down [-]."""
     step_width: float = 0.8
-    """Between the feet, over the distance between the hips [-] (assumed)."""
-    heel_rise: float = 0.05
-    """When in double support the rear heel leaves the floor [-] (assumed: just after the front heel has met it)."""
+    """Between the feet, over the distance between the hips [-]."""
+    heel_rise: float = 0.11
+    """When in double support the rear heel leaves the floor [-]; the front heel has met it before."""
     foot_flat: float = 0.70
-    """When in double support the front foot is flat [-] (assumed)."""
-    pitch_off: float = 0.50
-    """Pitch of the foot as it leaves [rad] (assumed)."""
-    pitch_land: float = -0.22
-    """Pitch of the foot as it lands, toes up [rad] (assumed: human heel strike, about 15 deg)."""
-    clearance: float = 0.02
-    """Added height of the swinging foot [m] (assumed)."""
-    load_swing: float = 0.2
-    """Amplitude of the vertical force over weight, largest in double support [-] (assumed: human walking, 0.2 .. 0.3)."""
-    min_knee: float = 0.30
-    """Least knee flexion [rad]; the pelvis is as high as this lets it be (assumed: 17 deg off straight; nearer to it knees snap)."""
-    pressure_heel: float = 0.45
-    """Where on the way to the heel pads the pressure starts in single support [-] (assumed)."""
-    pressure_toe: float = 0.90
-    """Where on the way from the toe axis to the tip the pressure ends in single support [-] (assumed)."""
+    """When in double support the front foot is flat [-]."""
+    pitch_off: float = 0.46
+    """Pitch of the foot as it leaves [rad]."""
+    pitch_land: float = -0.19
+    """Pitch of the foot as it lands, toes up [rad]."""
+    clearance: float = 0.015
+    """Height added to the swinging foot in the middle [m]."""
+    load_swing: float = 0.10
+    """Amplitude of the vertical force over weight, largest in double support [-]."""
+    min_knee: float = 0.63
+    """Least knee flexion [rad]; the pelvis is as high as this lets it be."""
+    pressure_start: float = 0.10
+    """Where on the way from below the ankle to the toe axis the pressure starts in single support [-]."""
+    pressure_end: float = 0.70
+    """Where on the way from the toe axis to the tip pads the pressure ends in single support [-]."""
 
     def __post_init__(self) -> None:
         check_positive("walk", speed=self.speed, step_time=self.step_time, step_width=self.step_width, min_knee=self.min_knee)
@@ -58,7 +63,7 @@ class WalkPlan:
             raise InputError("walk", "pitch_off, pitch_land", (self.pitch_off, self.pitch_land), "expects 0 .. 1.2 and -0.8 .. 0 rad")
 
 
-def walk(design: Design, plan: WalkPlan | None = None, samples: int = 100) -> Motion:
+def walk(design: Design, plan: WalkPlan | None = None, samples: int = 101) -> Motion:
     """One stride (two steps) of a steady walk.
 
     The feet follow their steps; the centre of pressure runs from heel to toe in single support and to the other foot in
@@ -67,7 +72,7 @@ def walk(design: Design, plan: WalkPlan | None = None, samples: int = 100) -> Mo
     Args:
         design: a robot, of any variant.
         plan: speed, timing and shape.
-        samples: in a stride.
+        samples: in a stride; an odd number leaves no harmonic uncorrected.
 
     Raises:
         InfeasibleError: the legs are too short for the step, or a joint's range ends before.
@@ -99,7 +104,8 @@ def _assumed(plan: WalkPlan) -> dict[str, str]:
         "speed": f"{plan.speed:g} m/s (paper, Table III)",
         "step": f"{plan.step_time:g} s, {plan.speed * plan.step_time:.3f} m; both feet down for {100 * plan.double_support:g} % of it (assumed)",
         "feet": f"leave pitched by {np.rad2deg(plan.pitch_off):.0f} deg, land at {np.rad2deg(plan.pitch_land):.0f} deg without impact (assumed)",
-        "pelvis": f"upright, as high as a knee of {np.rad2deg(plan.min_knee):.0f} deg lets it be; the vertical force swings by {100 * plan.load_swing:g} % of the weight (assumed)",
+        "pelvis": f"upright, as high as a knee of {np.rad2deg(plan.min_knee):.0f} deg lets it be (assumed)",
+        "load": f"the vertical force swings by {100 * plan.load_swing:g} % of the weight (assumed)",
         "balance": "the zero-moment point runs from heel to toe and on to the other foot (assumed)",
     }
 
@@ -126,8 +132,8 @@ def _foot(design: Design, plan: WalkPlan, time: np.ndarray, side: str) -> FootPa
 def _pressure(design: Design, plan: WalkPlan, time: np.ndarray) -> np.ndarray:
     """Planned centre of pressure, `(n, 3)`: steady along the foot, then across to the other in double support."""
     radius = float(design.contact.pad_radius)
-    back = -plan.pressure_heel * (design.foot.heel_length - radius)
-    front = design.foot.ball_length + plan.pressure_toe * (design.toe.length - radius)
+    back = plan.pressure_start * design.foot.ball_length
+    front = design.foot.ball_length + plan.pressure_end * (design.toe.length - radius)
     both, step = plan.double_support * plan.step_time, plan.step_time
     y = plan.step_width * design.hip.spacing / 2
     rate = (front - back) / (step - both)

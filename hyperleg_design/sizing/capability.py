@@ -1,0 +1,250 @@
+"""The largest contact force that one leg gives in a posture, inside motor envelopes and friction cones.
+
+The leg pushes quasi-statically: its pads press on the floor, its joints hold
+
+    M tau_motor = g - J^T f,        lower <= tau_motor <= upper        |f_xy| <= mu f_z at each pad
+
+with g the gravity torques of the leg's own links, f the forces of the floor on the pads and limits at zero speed or at
+given joint velocities. The pelvis is taken as held, as in a leg press: what the rest of the robot needs so as not to tip is
+asked for only with `upright`. Joint friction, which would help to hold, is left out. A second-order cone problem.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InfeasibleError, InputError
+from hyperleg_design.robot.models import RigidBodyModel, rigid_body_model
+from hyperleg_design.robot.names import SIDES
+from hyperleg_design.robot.transmission import joint_from_motor, joint_names, motor_names, motor_velocity
+from hyperleg_design.sizing.contacts import TIP, contact_kinematics, sole_pads
+from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
+from hyperleg_design.sizing.kinematics import about_y, check_range, has_toe_joint, hip_center, leg_angles, leg_reach
+from hyperleg_design.sizing.motions.foot_path import rolling
+from hyperleg_design.sizing.motions.motion import GRAVITY
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+DIRECTIONS: Mapping[str, np.ndarray] = {"vertical": np.array([0.0, 0.0, 1.0]), "forward": np.array([1.0, 0.0, 0.0])}
+"""Of the floor's force on the foot; forward is what drives the robot ahead."""
+POSTURES = ("standing", "mid_squat", "toe_off")
+"""Named postures of `posture`."""
+BINDING = 1e-4
+"""Distance to a limit, over peak torque or friction limit, at which it counts as reached."""
+ON_FLOOR = 1e-3
+"""Height above the lowest pad up to which a pad counts as on the floor [m]."""
+LARGEST = 100.0
+"""Body weights beyond which no robot pushes: there the leg carries the force by its bones alone [-]."""
+
+_KNEE = {"standing": np.deg2rad(20.0), "mid_squat": np.deg2rad(80.0), "toe_off": np.deg2rad(25.0)}
+"""Knee flexion of the named postures (assumed)."""
+_AHEAD = {"standing": 0.04, "mid_squat": 0.04, "toe_off": 0.20}
+"""Hip ahead of the ankle's place when the foot is flat [m] (assumed)."""
+_HEEL_PITCH = np.deg2rad(30.0)
+"""Pitch of the foot at toe-off (assumed: late stance of human walking)."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContactForce:
+    """The largest force in one direction, and what stops it there."""
+
+    design: str
+    variant: str
+    direction: str
+    force: np.ndarray
+    """Of the floor on the foot, summed over pads [N], `(3,)`."""
+    pad_force: np.ndarray
+    """`(pads, 3)` [N]; zero on pads off the floor."""
+    center_of_pressure: np.ndarray
+    """On the floor, from the ankle, forward and to the left [m], `(2,)`."""
+    motor_torque: np.ndarray
+    """Of the pushing leg [Nm], `(motors,)`."""
+    joint_torque: np.ndarray
+    """`(joints,)` [Nm]"""
+    binding: tuple[str, ...]
+    """Motors at a limit of their envelope."""
+    slipping: tuple[str, ...]
+    """Pads at the limit of friction."""
+    body_weights: float
+    """The force in its direction over the robot's weight [-]."""
+
+
+def posture(design: Design, name: str, model: RigidBodyModel | None = None) -> np.ndarray:
+    """A named posture of both legs alike, the lower pads on the floor: Pinocchio's `q`, `(nq,)`.
+
+    `standing`: knees bent by 20 deg, soles flat. `mid_squat`: by 80 deg. `toe_off`: heels up by 30 deg, contact on the
+    tip's pads only, the toes flat where they move. All assumed.
+
+    Raises:
+        InputError: no such posture, or a batch.
+        InfeasibleError: a joint's range ends before.
+    """
+    if name not in POSTURES:
+        raise InputError("posture", "", name, f"expects one of {', '.join(POSTURES)}")
+    model = model or rigid_body_model(design)
+    pitch = np.asarray(_HEEL_PITCH if name == "toe_off" else 0.0)
+    moved = rolling(design, TIP, np.array([[float(pitch)], [0.0], [0.0]]))[0, 0]
+    ankle = np.array([moved[0], 0.0, design.foot.ankle_height + moved[1]])
+    reach, ahead = leg_reach(design, float(_KNEE[name])), _AHEAD[name] - moved[0]
+    q = model.neutral()
+    q[0], q[2] = _AHEAD[name], ankle[2] + np.sqrt(reach**2 - ahead**2)
+    joints = len(joint_names(design))
+    for leg, side in enumerate(SIDES):
+        hip = hip_center(design, side)
+        foot = ankle + np.array([0.0, hip[1], 0.0])
+        angles = list(leg_angles(design, side, foot - q[:3] - hip, about_y(pitch)))
+        if has_toe_joint(design):
+            angles.append(-float(pitch))
+        check_range(design, side, np.array(angles))
+        q[7 + leg * joints : 7 + (leg + 1) * joints] = angles
+    return q
+
+
+def largest_force(
+    design: Design,
+    q: np.ndarray | str,
+    direction: str = "vertical",
+    *,
+    side: str = "left",
+    joint_velocity: np.ndarray | None = None,
+    upright: bool = False,
+    vertical: float | None = None,
+    model: RigidBodyModel | None = None,
+) -> ContactForce:
+    """The largest contact force of one leg in a posture.
+
+    Args:
+        design: a robot.
+        q: configuration of the floating robot in Pinocchio's coordinates, `(nq,)`, or a name of `POSTURES`.
+        direction: `vertical` or `forward`.
+        side: the leg that pushes, on those of its pads that are lowest.
+        joint_velocity: of that leg [rad/s], `(joints,)`, which narrows the envelopes; at rest by default.
+        upright: whether the force must pass through the robot's centre of mass, so as not to tip it.
+        vertical: vertical force to hold at the same time [N], for the forward direction; free by default.
+        model: the design's rigid-body model, to save making it.
+
+    Raises:
+        InputError: no such direction, side or posture, or arrays of the wrong shape.
+        InfeasibleError: no contact force holds the leg, or the bones carry any force: a straight leg has no largest one.
+    """
+    import cvxpy as cp
+
+    if direction not in DIRECTIONS:
+        raise InputError("capability", "direction", direction, f"expects one of {', '.join(DIRECTIONS)}")
+    if side not in SIDES:
+        raise InputError("capability", "side", side, f"expects one of {', '.join(SIDES)}")
+    if vertical is not None and not (np.isfinite(vertical) and vertical > 0 and direction == "forward"):
+        raise InputError("capability", "vertical", vertical, "expects a positive force in N, with the forward direction")
+    model = model or rigid_body_model(design)
+    if isinstance(q, str):
+        q = posture(design, q, model)
+    q = np.asarray(q, float)
+    joints = len(joint_names(design))
+    if q.shape != (model.model.nq,) or not np.all(np.isfinite(q)):
+        raise InputError("capability", "q", q.shape, f"expects finite numbers, shape ({model.model.nq},)")
+    speed = np.zeros(joints) if joint_velocity is None else np.asarray(joint_velocity, float)
+    if speed.shape != (joints,) or not np.all(np.isfinite(speed)):
+        raise InputError("capability", "joint_velocity", speed.shape, f"expects finite numbers, shape ({joints},)")
+
+    weight = GRAVITY * float(sum(link.mass for link in model.tree.links))
+    columns = slice(6 + SIDES.index(side) * joints, 6 + (SIDES.index(side) + 1) * joints)
+    points, jacobian = contact_kinematics(model, q)
+    pads = sole_pads(model.tree)
+    own = np.array([pad.side == side for pad in pads])
+    lowest = points[own, 2].min()
+    touching = np.flatnonzero(own & (points[:, 2] < lowest + ON_FLOOR))
+    gravity = model.inverse_dynamics(q, np.zeros(model.model.nv), np.zeros(model.model.nv))[columns]
+    matrix, envelope = joint_from_motor(design), motor_envelope(design)
+    lower, upper = torque_limits(envelope, motor_velocity(matrix, speed))
+
+    force = cp.Variable((len(touching), 3))  # over weight
+    torque = cp.Variable(len(motor_names(design)))  # over peak
+    peak, friction = envelope.peak_torque, float(design.contact.friction)
+    pushed = np.swapaxes(jacobian[touching][:, :, columns].reshape(-1, joints), 0, 1) * weight
+    scale = np.max(np.abs(matrix) @ peak)
+    constraints = [
+        (matrix * peak / scale) @ torque == (gravity - pushed @ cp.reshape(force, (3 * len(touching),), order="C")) / scale,
+        torque >= lower / peak,
+        torque <= upper / peak,
+        cp.SOC(friction * force[:, 2], force[:, :2].T, axis=0),
+    ]
+    if upright:
+        arms = points[touching] - model.center_of_mass(q)
+        turning = np.hstack([_cross(arm) for arm in arms])
+        constraints.append(turning @ cp.reshape(force, (3 * len(touching),), order="C") == 0)
+    if vertical is not None:
+        constraints.append(cp.sum(force[:, 2]) == vertical / weight)
+    towards = DIRECTIONS[direction]
+    total = cp.sum(force, axis=0) @ towards
+    problem = cp.Problem(cp.Maximize(total), [*constraints, cp.sum(force[:, 2]) <= LARGEST])
+    try:
+        problem.solve(solver=cp.CLARABEL)
+    except cp.error.SolverError:
+        raise InfeasibleError(f"{design.name}: the solver finds no largest {direction} force in this posture") from None
+    if problem.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
+        raise InfeasibleError(f"{design.name}: no contact force of the {side} foot lets its motors hold this posture ({problem.status})")
+    found = force.value * weight
+    if found[:, 2].sum() > 0.999 * LARGEST * weight:
+        raise InfeasibleError(f"{design.name}: the {side} leg is straight in this posture: its bones carry any force; bend the knee")
+    return _result(design, direction, model, q, side, touching, points, found, torque.value * peak, lower, upper, weight)
+
+
+def _result(
+    design: Design, direction: str, model: RigidBodyModel, q: np.ndarray, side: str, touching: np.ndarray, points: np.ndarray,
+    found: np.ndarray, torque: np.ndarray, lower: np.ndarray, upper: np.ndarray, weight: float,
+) -> ContactForce:  # fmt: skip
+    pads, envelope = sole_pads(model.tree), motor_envelope(design)
+    pad_force = np.zeros((len(pads), 3))
+    pad_force[touching] = found
+    total = found.sum(0)
+    ankle = model.frame_position(q, f"{side}_foot")
+    center = (points[touching] * found[:, 2:]).sum(0) / max(total[2], 1e-12) - ankle
+    near = np.minimum(upper - torque, torque - lower) / envelope.peak_torque
+    slack = float(design.contact.friction) * found[:, 2] - np.linalg.norm(found[:, :2], axis=1)
+    loaded = found[:, 2] > 1e-3 * weight
+    return ContactForce(
+        design=design.name,
+        variant=design.variant,
+        direction=direction,
+        force=total,
+        pad_force=pad_force,
+        center_of_pressure=center[:2],
+        motor_torque=torque,
+        joint_torque=joint_from_motor(design) @ torque,
+        binding=tuple(name for name, distance in zip(motor_names(design), near, strict=True) if distance < BINDING),
+        slipping=tuple(pads[p].name for p, rest, bears in zip(touching, slack, loaded, strict=True) if bears and rest < BINDING * weight),
+        body_weights=float(total @ DIRECTIONS[direction]) / weight,
+    )
+
+
+def capability_table(designs: Mapping[str, Design], postures: tuple[str, ...] = POSTURES, *, upright: bool = False) -> list[dict[str, Any]]:
+    """Largest forces of one leg, a row for each design, posture and direction.
+
+    Returns:
+        Rows of `design`, `posture`, `direction`, `force` [N] (in that direction), `body_weights` [-], `center_of_pressure` [m]
+        ahead of the ankle, `binding` motors; `force` is None with a `reason` where there is no largest force.
+    """
+    rows: list[dict[str, Any]] = []
+    for key, design in designs.items():
+        model = rigid_body_model(design)
+        for name in postures:
+            for direction in DIRECTIONS:
+                row: dict[str, Any] = {"design": key, "posture": name, "direction": direction}
+                try:
+                    found = largest_force(design, name, direction, model=model, upright=upright)
+                except InfeasibleError as error:
+                    rows.append({**row, "force": None, "reason": str(error)})
+                    continue
+                row |= {"force": float(found.force @ DIRECTIONS[direction]), "body_weights": found.body_weights}
+                rows.append({**row, "center_of_pressure": float(found.center_of_pressure[0]), "binding": found.binding})
+    return rows
+
+
+def _cross(arm: np.ndarray) -> np.ndarray:
+    x, y, z = arm
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
