@@ -167,7 +167,7 @@ def mechanical_power(torque: np.ndarray, velocity: np.ndarray) -> np.ndarray:
 
 
 def applied(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """matrix @ vector over the last axes; one product for all rows where the matrix is shared."""
+    """Product of matrix and vector over the last axes; one product for all rows where the matrix is shared."""
     if matrix.ndim == 2:
         return (vector.reshape(-1, matrix.shape[1]) @ matrix.T).reshape(*vector.shape[:-1], matrix.shape[0])
     return np.matmul(matrix, vector[..., None])[..., 0]

@@ -1,8 +1,8 @@
-"""A few simulations stepped by one thread: physics, rewards, ends, resets and observations.
+"""Some of an environment's simulations, stepped by one thread: physics, rewards, ends, resets and observations.
 
 Threads take turns in Python and run side by side in MuJoCo: left to the interpreter's own lock, which NumPy lets go of in
-every longer operation, they would hand it to and fro thousands of times a second. Everything in a chunk depends on its own simulations and its own random stream only, so a trajectory does not depend on
-how many threads work on the chunks.
+every longer operation, they would hand it to and fro thousands of times a second. Everything in a chunk depends on its own
+simulations and its own random stream only, so a trajectory does not depend on how many threads work on the chunks.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
 from hyperleg_design.simulation import model as models
 from hyperleg_design.simulation import terminations
 from hyperleg_design.simulation.actuation import smoothed_action
@@ -105,13 +104,8 @@ class Chunk:
         # A second batch finds how high to start: what is bound in the first is copied out after each of its steps.
         self._starter = batch.Batch(model, count, 1)
         if designs_models is not None:
-            if task.physics.friction == "implicit" or task.physics.posture_dependent or _varies_models(task):
-                raise InputError(
-                    "physics", "friction", task.physics.friction,
-                    "a batch of designs runs on models of its own, which needs friction: explicit, no posture dependence, no varied masses or floors",
-                )  # fmt: skip
-            self.batch.set_models(designs_models)
-            self._starter.set_models(designs_models)
+            _give_models(self.batch, designs_models)
+            _give_models(self._starter, designs_models)
         _vary_models(self.batch, task, rng)
         self.drive = Drive(design, layout, task.physics, self.batch, task.randomisation, rng)
         self._rated, self._heat = self.drive.flat(self.drive.model.rated_torque), self.drive.flat(self.drive.model.envelope.power_constant)
@@ -315,7 +309,7 @@ class Chunk:
     def _sound(self) -> bool:
         """Whether all simulations are well."""
         speed, position = self.drive.qvel, self.drive.qpos
-        bounded = -FASTEST < np.minimum.reduce(speed, None) and np.maximum.reduce(speed, None) < FASTEST
+        bounded = np.minimum.reduce(speed, None) > -FASTEST and np.maximum.reduce(speed, None) < FASTEST
         return bool(bounded and np.isfinite(np.add.reduce(position, None)) and not self.batch.warning[:, _BROKEN, 1].any())
 
     def _start(self, ids: np.ndarray) -> Motion:
@@ -366,8 +360,15 @@ class Chunk:
         return {name: np.moveaxis(values, 0, 1) for name, values in found.items()}
 
 
-def _varies_models(task: Task) -> bool:
-    return bool(task.randomisation.mass or task.randomisation.floor_friction)
+def _give_models(batch: Any, models: list[mujoco.MjModel]) -> None:
+    """Give each simulation the values of a model of its own; all are compiled from designs with the same structure."""
+    from mujoco.batch import MODEL_FIELDS
+
+    for name in sorted(MODEL_FIELDS):
+        first = getattr(models[0], name, None)
+        if isinstance(first, np.ndarray) and any(not np.array_equal(first, getattr(m, name)) for m in models[1:]):
+            own = batch.expand(name)
+            own[:] = np.stack([getattr(m, name) for m in models])[:, : own.shape[1]]
 
 
 def _vary_models(batch: Any, task: Task, rng: np.random.Generator) -> None:

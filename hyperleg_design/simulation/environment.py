@@ -257,13 +257,8 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
 
 
 def _taken(design: Design, low: int, high: int) -> Design:
-    from hyperleg_design.robot import parameters
-
-    values = {}
-    for path, rule in parameters.rules(type(design)).items():
-        value = design[path]
-        if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0):
-            values[path] = value[low:high]
+    """Some robots of a batch of designs."""
+    values = {path: design[path] if size == 1 else design[path][low:high] for path, size in design.batch_sizes().items()}
     return design.with_values(values, f"{design.name}[{low}:{high}]")
 
 

@@ -119,4 +119,6 @@ def column_names(parts: Sequence[str], layout: Layout) -> list[str]:
 def observe(groups: Mapping[str, Sequence[str]], state: State, robot: Robot) -> dict[str, np.ndarray]:
     """Observations by group, each `(n, size)` in single precision."""
     made = {part: PARTS[part].function(state, robot) for part in dict.fromkeys(p for parts in groups.values() for p in parts)}
-    return {group: np.concatenate([a for part in parts for a in made[part]], 1, dtype=np.float32, casting="same_kind") for group, parts in groups.items()}
+    return {
+        group: np.concatenate([a for part in parts for a in made[part]], 1, dtype=np.float32, casting="same_kind") for group, parts in groups.items()
+    }

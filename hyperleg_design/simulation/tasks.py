@@ -21,7 +21,7 @@ PREFIX = "task_"
 """How the presets' files in `sim/` begin."""
 GROUPS = ("policy", "critic")
 """Observation groups that every task has."""
-_SECTIONS = {
+_SECTIONS: dict[str, Any] = {
     "physics": Physics,
     "control": Control,
     "start": Start,
@@ -122,7 +122,7 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
     for key in ("name", "commands", "observations", "rewards"):
         if key not in data:
             raise InputError(where, key, None, "is missing")
-    sections = {key: parameters.from_mapping(cls, data[key], where, key) for key, cls in _SECTIONS.items() if key in data}
+    sections: dict[str, Any] = {key: parameters.from_mapping(cls, data[key], where, key) for key, cls in _SECTIONS.items() if key in data}
     observations = {}
     for group, parts in _mapping(data["observations"], where, "observations").items():
         if not isinstance(parts, list):

@@ -30,7 +30,7 @@ class ThermalState:
 
     @property
     def margin(self) -> np.ndarray:
-        """h of each motor, `(n, K)` [-]; negative where a motor is overloaded."""
+        """Margin h of each motor, `(n, K)` [-]; negative where a motor is overloaded."""
         squared = self.average if self.settings.reading == "ema_of_square" else self.average**2
         return np.asarray(self.settings.threshold - squared)
 

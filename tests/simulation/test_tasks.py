@@ -1,0 +1,85 @@
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.simulation.tasks import load_task, task_from_mapping, task_names
+
+PLAIN = {
+    "name": "mine",
+    "commands": {"kind": "velocity"},
+    "observations": {"policy": ["proprioception"], "critic": ["proprioception", "privileged"]},
+    "rewards": {"linear_velocity": {"weight": 2.0, "width": 0.2}},
+}
+
+
+def test_shipped_tasks_read():
+    assert task_names() == ["goal", "goal_paper", "walk", "walk_paper"]
+    for name in task_names():
+        assert load_task(name).name == name
+
+
+def test_paper_presets_are_table_ii():
+    walk, goal = load_task("walk_paper"), load_task("goal_paper")
+    weights = {n: r.weight for n, r in walk.rewards.items()}
+    assert weights == {"termination": -200, "power": -1e-4, "thermal": -10, "linear_velocity": 2.5, "angular_velocity": 0.5}
+    assert walk.rewards["linear_velocity"].parameters == {"width": 0.1}
+    assert walk.rewards["angular_velocity"].parameters == {"width": 0.2}
+    assert goal.rewards["goal_arrival"].weight == 150
+    assert goal.rewards["position_progress"].weight == 10
+    for task in (walk, goal):
+        assert not task.deviations
+        assert task.control.smoothing == 0.2
+        assert task.physics.policy_step == pytest.approx(0.02)
+        assert task.physics.time_step == 0.005
+        assert task.limits.duration == 20.0
+        assert task.thermal.time_constant == 3.0
+
+
+def test_deviations_are_declared():
+    walk = load_task("walk")
+    assert {"clock", "contact_match", "foot_slide"} <= set(walk.deviations)
+    assert not {"power", "linear_velocity"} & set(walk.deviations)
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        ({"rewards": {"powr": 1.0}}, "did you mean power"),
+        ({"rewards": {"power": {"weight": 1.0, "width": 2.0}}}, "width"),
+        ({"rewards": {"power": {}}}, "weight"),
+        ({"rewards": {"goal_arrival": 1.0}}, "kind waypoints"),
+        ({"rewards": {"power": "much"}}, "expects a number"),
+        ({"observations": {"policy": ["proprioception"]}}, "critic"),
+        ({"observations": {"policy": ["smell"], "critic": ["proprioception"]}}, "smell"),
+        ({"observations": {"policy": ["waypoint"], "critic": ["proprioception"]}}, "kind waypoints"),
+        ({"commands": {"kind": "dance"}}, "one of velocity, waypoints"),
+        ({"commands": {"kind": "velocity", "forwrd_low": 1}}, "did you mean forward_low"),
+        ({"commands": {"kind": "waypoints", "courses": [[1, 2]]}}, "lists of points|list of lists"),
+        ({"control": {"smoothing": 3}}, "within"),
+        ({"physics": {"friction_space": "motor"}}, "implicitfast"),
+        ({"reward": {}}, "did you mean rewards"),
+    ],
+)
+def test_bad_tasks_are_one_clear_error(change, match):
+    with pytest.raises(InputError, match=match) as caught:
+        task_from_mapping({**PLAIN, **change}, "mine.yaml")
+    assert caught.value.where == "mine.yaml" or change.get("physics")
+
+
+def test_a_missing_section_or_file_is_named(tmp_path):
+    with pytest.raises(InputError, match="commands: is missing"):
+        task_from_mapping({k: v for k, v in PLAIN.items() if k != "commands"}, "mine.yaml")
+    with pytest.raises(InputError, match="shipped: goal"):
+        load_task("stroll")
+    with pytest.raises(InputError, match="no such file"):
+        load_task(tmp_path / "none.yaml")
+
+
+def test_a_user_file_is_read(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(
+        "name: mine\ncommands: {kind: velocity}\nobservations: {policy: [proprioception], critic: [privileged]}\nrewards: {power: -1e-4}\n"
+    )
+    task = load_task(path)
+    assert task.rewards["power"].weight == -1e-4
+    assert np.isclose(task.commands.test_speed, 1.33)
