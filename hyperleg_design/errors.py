@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+from typing import Any
 
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 100
@@ -20,10 +21,11 @@ class InputError(HyperlegError):
         field: dotted path of the field, empty when the whole file is meant.
         value: the value found.
         remedy: what would be right.
+        bad: in a batch of designs, which of them are wrong in this, `(n,)` of bool; None where that is not known.
     """
 
-    def __init__(self, where: str, field: str, value: object, remedy: str) -> None:
-        self.where, self.field, self.value, self.remedy = where, field, value, remedy
+    def __init__(self, where: str, field: str, value: object, remedy: str, *, bad: Any = None) -> None:
+        self.where, self.field, self.value, self.remedy, self.bad = where, field, value, remedy, bad
         super().__init__(f"{self.place} = {shown(value)}: {remedy}" if value is not None else f"{self.place}: {remedy}")
 
     @property

@@ -30,7 +30,7 @@ def check_design(design: Design) -> None:
         value = design[field]
         if np.ndim(good) == 1 and isinstance(value, np.ndarray) and value.shape[:1] == np.shape(good):
             value = value[np.argmin(good)]
-        raise InputError(where, field, value.tolist() if isinstance(value, np.ndarray) else value, remedy)
+        raise InputError(where, field, value.tolist() if isinstance(value, np.ndarray) else value, remedy, bad=~np.asarray(good))
 
     for name in JOINTS:
         joint = getattr(design.joints, name)
@@ -88,4 +88,5 @@ def _check_inertia(design: Design, where: str) -> None:
         if not np.all(good):
             value = np.asarray(design[field])
             shown = value if value.ndim == 1 else value[np.argmin(good)]
-            raise InputError(where, field, shown.tolist(), "no body has these: the largest squared radius must not exceed the sum of the other two")
+            remedy = "no body has these: the largest squared radius must not exceed the sum of the other two"
+            raise InputError(where, field, shown.tolist(), remedy, bad=~good)

@@ -115,7 +115,7 @@ class Design:
         except InputError as error:
             if error.where == where:
                 raise
-            raise InputError(f"{self.source or self.name} with {where}", error.field, error.value, error.remedy) from None
+            raise InputError(f"{self.source or self.name} with {where}", error.field, error.value, error.remedy, bad=error.bad) from None
 
     def take(self, index: int) -> Design:
         """One robot of a batch; values keep their origins.
@@ -179,6 +179,21 @@ def load_design(
         if not np.array_equal(made[path], design[path]):
             raise InputError("--set", path, value, f"the variant {made.variant} sets this itself; use another variant or leave it out")
     return made
+
+
+def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:
+    """A whole design from what `Design.to_mapping` gives, as policies and results carry it.
+
+    Raises:
+        InputError: no mapping, an unknown or missing field, or a value that makes no sense.
+    """
+    if not isinstance(data, Mapping):
+        raise InputError(where, "", data, "expects a mapping of a design's sections")
+    variant = data.get("variant", "toe")
+    if variant not in VARIANTS:
+        raise InputError(where, "variant", variant, f"expects one of {', '.join(VARIANTS)}")
+    rest = {k: v for k, v in data.items() if k not in ("name", "variant")}
+    return _build(rest, str(data.get("name", where)), where, {}, variant)
 
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:

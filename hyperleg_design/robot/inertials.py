@@ -101,11 +101,11 @@ def _with_housed(design: Design, segment: str, table: masses.MassTable, body: In
     com = moment / mass[..., None]
     inertia = body.inertia + _shifted(body.mass, body.com - com) + sum(_shifted(np.asarray(m), p - com) for m, p in points)
     principal = np.linalg.eigvalsh(inertia)
-    if np.any(principal[..., 0] <= 0) or np.any(principal[..., 2] > principal[..., 0] + principal[..., 1] + 1e-12):
+    bad = (principal[..., 0] <= 0) | (principal[..., 2] > principal[..., 0] + principal[..., 1] + 1e-12)
+    if np.any(bad):
         field = f"{segment}.gyration_fraction" if segment != "pelvis" else "pelvis.gyration"
-        raise InputError(
-            design.source or design.name, field, None, "is too small for the actuators that leave this segment: its inertia would be no body's"
-        )
+        remedy = "is too small for the actuators that leave this segment: its inertia would be no body's"
+        raise InputError(design.source or design.name, field, None, remedy, bad=bad)
     # a body that nothing joined or left keeps its declared numbers to the bit, whatever else is in the batch
     changed = np.any(np.stack(np.broadcast_arrays(*(np.asarray(m) != 0 for m, _ in points))), 0)
     return Inertial(mass, np.where(changed[..., None], com, body.com), np.where(changed[..., None, None], inertia, body.inertia))

@@ -171,13 +171,16 @@ def check_masses(design: Design, where: str) -> None:
     for segment in ("pelvis", "thigh", "shank"):
         mass = np.asarray(getattr(table, segment))
         if np.any(mass <= 0):
-            raise InputError(where, f"{segment}.mass", float(np.min(mass)), "the actuators it houses weigh more than the segment itself")
-        if np.any(np.asarray(table.structure.get(segment, 1.0)) <= 0):
+            remedy = "the actuators it houses weigh more than the segment itself"
+            raise InputError(where, f"{segment}.mass", float(np.min(mass)), remedy, bad=mass <= 0)
+        hollow = np.asarray(table.structure.get(segment, 1.0)) <= 0
+        if np.any(hollow):
             remedy = "is less than the actuators that the reference build houses there; raise it or lower masses.gear_mass_per_torque"
-            raise InputError(where, f"{segment}.mass", float(np.min(design[f"{segment}.mass"])), remedy)
+            raise InputError(where, f"{segment}.mass", float(np.min(design[f"{segment}.mass"])), remedy, bad=hollow)
     carriers = design.hip.yaw_carrier_mass + design.hip.roll_carrier_mass
-    if np.any(np.asarray(table.thigh) <= carriers):
-        raise InputError(where, "thigh.mass", float(np.min(table.thigh)), "leaves nothing for the thigh below the hip carriers")
+    empty = np.asarray(table.thigh) <= carriers
+    if np.any(empty):
+        raise InputError(where, "thigh.mass", float(np.min(table.thigh)), "leaves nothing for the thigh below the hip carriers", bad=empty)
 
 
 def check_printed(design: Design, where: str) -> None:

@@ -151,4 +151,4 @@ def check_invertible(design: Design, where: str) -> None:
         if np.any(~(condition < 1e6)):
             worst = float(np.max(condition))
             remedy = "is the condition number of joint_from_motor, as good as singular: some joint has no drive; check reductions, scale, gears"
-            raise InputError(where, f"transmission.{posture}", worst, remedy)
+            raise InputError(where, f"transmission.{posture}", worst, remedy, bad=~(condition < 1e6))

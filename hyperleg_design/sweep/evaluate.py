@@ -47,7 +47,8 @@ def evaluate_range(sweep: Sweep, start: int, stop: int, samples: Mapping[str, np
 def evaluate_samples(sweep: Sweep, samples: Mapping[str, np.ndarray], variant: str) -> tuple[np.ndarray, np.ndarray]:
     """Measures of some samples as one variant.
 
-    A batch that holds an impossible design is refused as a whole, so it is halved until those stand alone.
+    A batch that holds an impossible design is refused as a whole. The error says which ones are impossible, and the others
+    are tried again; where it does not, the batch is halved until those stand alone.
 
     Returns:
         Measures `(columns, n)`, and reasons of rejection `(n,)`, empty where there is none.
@@ -56,28 +57,27 @@ def evaluate_samples(sweep: Sweep, samples: Mapping[str, np.ndarray], variant: s
     names = measures.columns(sweep.measures)
     values = np.full((len(names), count), np.nan)
     reasons = np.full(count, "", dtype=object)
-    waiting = [(0, count)]
+    waiting = [np.arange(count)]
     while waiting:
-        low, high = waiting.pop()
+        rows = waiting.pop()
         try:
-            design = sweep.design({name: v[low:high] for name, v in samples.items()}, variant)
+            design = sweep.design({name: v[rows] for name, v in samples.items()}, variant)
             found = measures.evaluate(design, sweep.measures)
         except InputError as error:
-            if high - low == 1:
-                reasons[low] = _reason(error)
+            bad = np.ones(1, bool) if len(rows) == 1 else _refused(error, len(rows))
+            if bad is None:
+                waiting += np.array_split(rows, 2)
             else:
-                middle = (low + high) // 2
-                waiting += [(low, middle), (middle, high)]
+                reasons[rows[bad]] = f"{error.field}: {error.remedy}"
+                if not bad.all():
+                    waiting.append(rows[~bad])
             continue
-        values[:, low:high] = [found[name] for name in names]
+        values[:, rows] = [found[name] for name in names]
     return values, reasons
 
 
-def _reason(error: InputError) -> str:
-    """Why one design is refused, without the name of its file."""
-    value = error.value
-    if isinstance(value, list) and len(value) == 1:
-        value = value[0]
-    if isinstance(value, float):
-        value = float(f"{value:.6g}")
-    return f"{error.field}: {error.remedy}" if value is None else f"{error.field} = {value}: {error.remedy}"
+def _refused(error: InputError, count: int) -> np.ndarray | None:
+    """Which designs of a batch an error refuses, at least one; None where it does not say."""
+    if error.bad is None or np.shape(error.bad) not in ((), (1,), (count,)) or not np.any(error.bad):
+        return None
+    return np.array(np.broadcast_to(error.bad, (count,)))

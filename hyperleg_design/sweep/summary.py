@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -14,9 +13,6 @@ from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.space import Sweep
 
 _SHOWN_REASONS = 10
-_VALUE = re.compile(r" = .*?: ")
-"""What differs between rejections for the same reason."""
-
 _SHOWN_FRONT = 200
 """Designs of a front that the summary names; the table has all."""
 
@@ -32,7 +28,7 @@ def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
     """
     head = table.read(path, ["sample", "variant", "rejected"])
     variant, rejected = head["variant"], head["rejected"] != ""
-    reasons = Counter(_VALUE.sub(": ", r, count=1) for r in head["rejected"][rejected])
+    reasons = Counter(map(str, head["rejected"][rejected]))
     found: dict[str, Any] = {
         "description": sweep.description,
         "seed": sweep.seed,
