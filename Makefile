@@ -12,16 +12,20 @@ $(VENV)/.ready: pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	@touch $@
 
+$(VENV)/.learning: $(VENV)/.ready  # torch and what goes with it, for training and its tests
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,learning]'
+	@touch $@
+
 study: $(VENV)/.ready  ## Analyse the paper's biped and its ablations, sweep, and write results/study/index.html
 	$(BIN)/hyperleg study --out results/study
 
-test: $(VENV)/.ready  ## All tests but the slow ones, style and types
+test: $(VENV)/.learning  ## All tests but the slow ones, style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -m "not slow" -n 2
 
-test-all: $(VENV)/.ready  ## The slow ones too
+test-all: $(VENV)/.learning  ## The slow ones too
 	$(BIN)/python -m pytest -n 2
 
 benchmark: $(VENV)/.ready  ## Speed, as ratios in one run

@@ -1,0 +1,1 @@
+"""Learning: PPO on the simulation, with `rsl-rl-lib` on torch (the `learning` extra)."""

@@ -1,0 +1,123 @@
+"""PPO of `rsl-rl-lib`, with the learning rate adapted once an iteration where asked for."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from typing import TYPE_CHECKING, Any
+
+import torch
+from rsl_rl.algorithms import PPO
+from rsl_rl.models import MLPModel
+from rsl_rl.storage import RolloutStorage
+from tensordict import TensorDict
+
+from hyperleg_design.learning.symmetry import HalfMirrored, Mirrors
+
+if TYPE_CHECKING:
+    from hyperleg_design.learning.preset import Network, Preset
+    from hyperleg_design.simulation.environment import Environment
+
+FACTOR = 1.5
+"""On the learning rate when it is adapted (as rsl-rl has it)."""
+QUIET = 0.01
+"""On the actor's last layer at the start: all robots begin about their default posture, and the policy is its own mirror
+image, without which the probability ratios of mirrored samples are mostly clipped and nothing is learnt from them."""
+GROUPS = {"actor": ["policy"], "critic": ["critic"]}
+"""Observation groups of each network."""
+
+
+class IterationPPO(PPO):  # type: ignore[misc]
+    """PPO whose learning rate is adapted once an iteration, on the divergence in the last epoch, of unmirrored samples.
+
+    Adapting on every minibatch, or on mirrored samples, crushed the rate to its floor on this biped.
+    """
+
+    bounds = (5e-5, 2e-3)
+    """Least and largest learning rate."""
+    divergence = 0.0
+    """KL divergence in the last epoch of the latest update [nat]."""
+
+    def update(self) -> dict[str, float]:
+        """One iteration's epochs, then the learning rate for the next."""
+        losses = super().update()
+        meter = self.symmetry
+        assert isinstance(meter, HalfMirrored)
+        last = meter.divergences[-self.num_mini_batches :]
+        meter.divergences = []
+        self.divergence = sum(last) / len(last)
+        if self.divergence > 2.0 * self.desired_kl:
+            self.set_rate(max(self.bounds[0], self.learning_rate / FACTOR))
+        elif self.divergence < 0.5 * self.desired_kl:
+            self.set_rate(min(self.bounds[1], self.learning_rate * FACTOR))
+        return losses
+
+    def set_rate(self, rate: float) -> None:
+        """Set the learning rate of all parameters."""
+        self.learning_rate = rate
+        for group in self.optimizer.param_groups:
+            group["lr"] = rate
+
+
+def make_algorithm(preset: Preset, environment: Environment, observations: TensorDict) -> PPO:
+    """PPO for an environment; networks are drawn from torch's random numbers."""
+    settings, network = preset.algorithm, preset.network
+    actor = make_network(network, observations, "actor", environment.action_size)
+    critic = make_network(network, observations, "critic", 1)
+    storage = RolloutStorage("rl", environment.simulations, int(preset.rollout), observations, [environment.action_size])
+    mirrors = Mirrors(environment.mirror_maps())
+    once = settings.adapted == "iteration"
+    symmetry: dict[str, Any] | None = None
+    if settings.mirror == "append":
+        symmetry = {"env": environment, "data_augmentation_func": mirrors.append_mirrored, "use_data_augmentation": True}
+    algorithm = (IterationPPO if once else PPO)(
+        actor,
+        critic,
+        storage,
+        num_learning_epochs=int(settings.epochs),
+        num_mini_batches=int(settings.minibatches),
+        clip_param=settings.clip,
+        gamma=settings.discount,
+        lam=settings.trace,
+        value_loss_coef=settings.value_weight,
+        entropy_coef=settings.entropy,
+        learning_rate=settings.learning_rate,
+        max_grad_norm=settings.gradient_norm,
+        use_clipped_value_loss=settings.value_clipped,
+        schedule="adaptive" if settings.adapted == "minibatch" else "fixed",
+        desired_kl=settings.kl_target,
+        use_mixed_precision=settings.mixed_precision,
+        symmetry_cfg=symmetry,
+    )
+    if settings.mirror == "half" or once:
+        algorithm.symmetry = HalfMirrored(mirrors, 0.5 if settings.mirrored else 0.0)
+    if isinstance(algorithm, IterationPPO):
+        algorithm.bounds = (settings.slowest, settings.fastest)
+    return algorithm
+
+
+def make_network(network: Network, observations: TensorDict, kind: str, outputs: int) -> MLPModel:
+    """Actor or critic."""
+    distribution = {"class_name": "GaussianDistribution", "init_std": network.deviation, "std_type": "log"} if kind == "actor" else None
+    with contextlib.redirect_stdout(io.StringIO()):
+        made = MLPModel(
+            observations,
+            GROUPS,
+            kind,
+            outputs,
+            hidden_dims=list(network.hidden),
+            activation=network.activation,
+            obs_normalization=network.normalised,
+            distribution_cfg=distribution,
+        )
+    if kind == "actor":
+        with torch.no_grad():
+            made.mlp[-1].weight.mul_(QUIET)
+            made.mlp[-1].bias.zero_()
+    return made
+
+
+def as_tensors(observations: dict[str, Any]) -> TensorDict:
+    """Observation groups for rsl-rl, sharing memory with the arrays."""
+    tensors = {name: torch.from_numpy(values) for name, values in observations.items()}
+    return TensorDict(tensors, batch_size=[len(next(iter(observations.values())))])

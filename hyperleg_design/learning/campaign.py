@@ -1,0 +1,238 @@
+"""Campaigns: all trainings that a comparison needs, listed in one file, run side by side, killed and resumed at will."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.learning import launch
+from hyperleg_design.learning.preset import load_preset
+from hyperleg_design.learning.status import CHECKPOINT, POLICY, read_status
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.parameters import Rule, checked, unknown
+from hyperleg_design.simulation.tasks import load_task
+from hyperleg_design.writing import MARKER, check_output_folder, write_text
+
+LOG = "training.log"
+"""What a training's process printed, in its folder."""
+STATES = ("done", "running", "stopped", "missing")
+POLL = 2.0
+"""Seconds between looks at the processes."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One training of a campaign."""
+
+    group: str
+    task: str
+    design: str
+    seed: int
+    preset: str
+
+    @property
+    def name(self) -> str:
+        """Name of its folder."""
+        return f"{self.group}-{self.design}-{self.seed}"
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Trainings in the order in which they are run."""
+
+    name: str
+    processes: int
+    """Trainings at the same time, one thread each."""
+    runs: tuple[Run, ...]
+
+
+@dataclass(frozen=True)
+class RunStatus:
+    """Where a training stands."""
+
+    run: Run
+    state: str
+    """One of `STATES`."""
+    steps: float = 0.0
+    """Policy steps done."""
+    total: float = 0.0
+    """Policy steps of the whole training."""
+    measures: Mapping[str, Any] | None = None
+    """`status.json` of the training."""
+
+
+def load_campaign(name: str | Path = "campaign") -> Campaign:
+    """Read a campaign.
+
+    Args:
+        name: a shipped name or a YAML file.
+
+    Raises:
+        InputError: names file, field, value and remedy; also for a task, design or preset that does not exist.
+    """
+    path = resources.find("sim", name)
+    data, where = read_yaml(path), short_name(path)
+    _check_keys(data, ("name", "preset", "processes", "groups"), where, "")
+    processes = _whole(data.get("processes", 2), where, "processes")
+    groups = data["groups"]
+    if not isinstance(groups, list) or not groups:
+        raise InputError(where, "groups", groups, "expects a list of groups")
+    runs: list[tuple[int, int, int, Run]] = []
+    names = set()
+    for g, group in enumerate(groups):
+        if not isinstance(group, Mapping):
+            raise InputError(where, f"groups.{g}", group, "expects a mapping")
+        _check_keys(group, ("name", "task", "designs", "seeds"), where, f"groups.{g}.")
+        if group["name"] in names:
+            raise InputError(where, f"groups.{g}.name", group["name"], "stands twice")
+        names.add(group["name"])
+        task = load_task(str(group["task"])).name
+        load_preset(str(data["preset"])).stages(task)
+        if not isinstance(group["designs"], list) or not group["designs"]:
+            raise InputError(where, f"groups.{g}.designs", group["designs"], "expects a list of designs")
+        for d, design in enumerate(group["designs"]):
+            load_design(str(design))
+            for seed in range(_whole(group["seeds"], where, f"groups.{g}.seeds")):
+                run = Run(str(group["name"]), str(group["task"]), str(design), seed, str(data["preset"]))
+                runs.append((seed, g, d, run))
+    # by seed first, so that whatever is done when time is out can be compared
+    ordered = tuple(run for *_, run in sorted(runs, key=lambda entry: entry[:3]))
+    return Campaign(str(data["name"]), processes, ordered)
+
+
+def campaign_status(campaign: Campaign, out: str | Path) -> list[RunStatus]:
+    """Where each training of a campaign stands, in the campaign's order."""
+    return [_status(run, Path(out) / run.name) for run in campaign.runs]
+
+
+def status_table(statuses: list[RunStatus]) -> str:
+    """The status as text: a line a training, and a sum."""
+    lines = [f"{'training':<34} {'state':<8} {'M steps':>12} {'speed':>6} {'falls/min':>9} {'CoT':>5} {'assist':>6} {'left':>8}"]
+    for status in statuses:
+        found = status.measures or {}
+        share = f"{status.steps / 1e6:.2f}/{status.total / 1e6:.1f}"
+        left = f"{found['left'] / 60:.0f} min" if found.get("left") else ""
+        numbers = [_shown(found.get(key), width) for key, width in (("speed", 6), ("falls", 9), ("cost_of_transport", 5), ("assist", 6))]
+        lines.append(f"{status.run.name:<34} {status.state:<8} {share:>12} {' '.join(numbers)} {left:>8}")
+    done = sum(s.state == "done" for s in statuses)
+    steps = sum(s.total if s.state == "done" else s.steps for s in statuses)
+    total = sum(s.total for s in statuses)
+    lines.append(f"{done} of {len(statuses)} done; {steps / 1e6:.1f} of {total / 1e6:.1f} M policy steps")
+    return "\n".join(lines)
+
+
+def run_campaign(
+    campaign: Campaign,
+    out: str | Path,
+    *,
+    processes: int | None = None,
+    show: Callable[[str], None] | None = None,
+    show_every: float = 60.0,
+) -> bool:
+    """Train whatever is missing, side by side; call it again after it was killed.
+
+    Args:
+        campaign: what to train.
+        out: folder of the trainings.
+        processes: at the same time; the campaign's number by default.
+        show: takes the status table now and then.
+        show_every: seconds between.
+
+    Returns:
+        Whether all is done. False after an interrupt, which stops the trainings with checkpoints, or when a training failed;
+        the others go on then, and its log says why.
+
+    Raises:
+        InputError: bad input.
+        OutputError: `out` holds somebody else's files.
+    """
+    folder = check_output_folder(out)
+    write_text(folder / MARKER, "made by hyperleg\n")
+    waiting = [s.run for s in campaign_status(campaign, folder) if s.state in ("missing", "stopped")]
+    working: dict[str, subprocess.Popen[bytes]] = {}
+    failed, shown = [], 0.0
+    try:
+        while waiting or working:
+            for name in [name for name, process in working.items() if process.poll() is not None]:
+                if working.pop(name).returncode:
+                    failed.append(name)
+            while waiting and len(working) < (processes or campaign.processes):
+                run = waiting.pop(0)
+                place = folder / run.name
+                place.mkdir(parents=True, exist_ok=True)
+                write_text(place / MARKER, "made by hyperleg\n")
+                arguments = {"task": run.task, "design": run.design, "seed": run.seed, "preset": run.preset, "out": place}
+                working[run.name] = launch.start(arguments, place / LOG)
+            if show is not None and time.monotonic() - shown > show_every:
+                shown = time.monotonic()
+                show(status_table(campaign_status(campaign, folder)))
+            time.sleep(POLL)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        _stop(list(working.values()))
+    statuses = campaign_status(campaign, folder)
+    if show is not None:
+        show(status_table(statuses))
+        for name in failed:
+            show(f"{name} failed; see {folder / name / LOG}")
+    return all(status.state == "done" for status in statuses)
+
+
+def _stop(processes: list[subprocess.Popen[bytes]]) -> None:
+    """Ask trainings to stop, and wait until they have written their checkpoints."""
+    for process in processes:
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
+    for process in processes:
+        process.wait()
+
+
+def _status(run: Run, folder: Path) -> RunStatus:
+    preset, task = load_preset(run.preset), load_task(run.task)
+    total = float(preset.total_iterations(task.name) * preset.steps_per_iteration)
+    found = read_status(folder)
+    if found is None:
+        return RunStatus(run, "stopped" if (folder / CHECKPOINT).exists() else "missing", 0.0, total)
+    if found.get("done") and (folder / POLICY).exists():
+        return RunStatus(run, "done", total, total, found)
+    return RunStatus(run, "running" if _alive(found.get("pid")) else "stopped", float(found.get("steps") or 0.0), total, found)
+
+
+def _alive(pid: int | None) -> bool:
+    if not pid:
+        return False
+    try:
+        os.kill(pid, 0)
+    except (ProcessLookupError, PermissionError):
+        return False
+    return True
+
+
+def _shown(value: Any, width: int) -> str:
+    return f"{value:>{width}.2f}" if isinstance(value, int | float) else " " * width
+
+
+def _check_keys(data: Mapping[str, Any], known: tuple[str, ...], where: str, path: str) -> None:
+    for key in data:
+        if key not in known:
+            raise InputError(where, f"{path}{key}", data[key], unknown(str(key), list(known)))
+    for key in known:
+        if key not in data and key != "processes":
+            raise InputError(where, f"{path}{key}", None, "is missing")
+
+
+def _whole(value: Any, where: str, path: str) -> int:
+    found = checked(value, Rule("number", low=1, high=1000), where, path)
+    if found != int(found):
+        raise InputError(where, path, value, "expects a whole number")
+    return int(found)

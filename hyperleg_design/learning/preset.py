@@ -1,0 +1,288 @@
+"""Training presets: size, algorithm and stages, read from `sim/preset_*.yaml` or a user's file."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters
+from hyperleg_design.robot.parameters import flag, number, text
+from hyperleg_design.simulation.rewards import TERMS
+from hyperleg_design.simulation.settings import Checked
+
+PREFIX = "preset_"
+"""How the presets' files in `sim/` begin."""
+BEGINS = ("stage", "assist_gone")
+"""From when a ramp counts: the stage's beginning, or the first iteration without assist."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Algorithm(Checked):
+    """Proximal policy optimisation; defaults as measured on this biped, not the paper's."""
+
+    epochs: Any = number("", 1, 100, default=5)
+    minibatches: Any = number("", 1, 1000, default=4)
+    discount: Any = number("", 0, 1, default=0.99)
+    """gamma (paper, Table II)."""
+    trace: Any = number("", 0, 1, default=0.95)
+    """lambda of the generalised advantage (paper, Table II)."""
+    clip: Any = number("", 0.01, 1, default=0.2)
+    """Of the probability ratio (paper, Table II)."""
+    entropy: Any = number("", 0, 1, default=0.002)
+    learning_rate: Any = number("", 1e-7, 1, default=3e-4)
+    kl_target: Any = number("", 1e-5, 1, default=0.02)
+    """Divergence of the policy in one update that the learning rate is adapted to [nat]."""
+    adapted: Any = text("iteration", "minibatch", "never", default="iteration")
+    """How often the learning rate is adapted."""
+    slowest: Any = number("", 0, 1, default=5e-5)
+    """Least learning rate when adapted once an iteration."""
+    fastest: Any = number("", 0, 1, default=2e-3)
+    """Largest learning rate when adapted once an iteration."""
+    value_weight: Any = number("", 0, 100, default=1.0)
+    """Of the value loss."""
+    value_clipped: Any = flag(default=False)
+    """Whether the value loss is clipped as the probability ratio is."""
+    gradient_norm: Any = number("", 1e-3, 1e6, default=1.0)
+    """Largest norm of the gradients of actor and critic, each."""
+    mirror: Any = text("half", "append", "never", default="half")
+    """Left-right symmetry: `half` mirrors each sample with probability one half, `append` adds every sample's mirror image."""
+    mixed_precision: Any = flag(default=True)
+    """Whether networks run in bfloat16 during updates."""
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether samples are mirrored."""
+        return bool(self.mirror != "never")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Network(Checked):
+    """Actor and critic, one multi-layer perceptron each."""
+
+    hidden: tuple[int, ...] = (512, 256, 128)
+    """Widths of the hidden layers (paper, Table II)."""
+    activation: Any = text("elu", "relu", "tanh", default="elu")
+    """(paper, Table II)"""
+    deviation: Any = number("", 1e-3, 10, default=0.8)
+    """Standard deviation of the actions at the start."""
+    normalised: Any = flag(default=True)
+    """Whether observations are normalised by their running mean and deviation."""
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """A value that changes linearly over some steps and then stays."""
+
+    target: tuple[str, str, str]
+    """`rewards`, term, `weight` or a parameter; or `commands`, setting, empty."""
+    low: float
+    """Value at its beginning."""
+    high: float
+    """Value at its end."""
+    steps: float
+    """Policy steps that it takes."""
+    begins: str
+    """One of `BEGINS`."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Stage:
+    """A part of a training; settings that it does not name stay as the task and the stages before left them."""
+
+    name: str
+    steps: float
+    """Policy steps of all simulations."""
+    assist: float | None = None
+    """Gain of the helping forces at its beginning; None leaves it as it is."""
+    assist_gone_by: float = 1.0
+    """Fraction of the stage after which the assist is off in any case."""
+    rewards: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Weights and parameters by term."""
+    commands: Mapping[str, float] = field(default_factory=dict)
+    """Settings of the commands."""
+    ramps: tuple[Ramp, ...] = ()
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Preset(Checked):
+    """How trainings are run."""
+
+    name: str
+    simulations: Any = number("", 1, 1e6, default=256)
+    rollout: Any = number("", 1, 10000, default=32)
+    """Policy steps of each simulation between updates."""
+    checkpoint_every: Any = number("", 1, 1e6, default=25)
+    """Iterations between checkpoints."""
+    trial_every: Any = number("", 1, 1e6, default=120)
+    """Iterations between trials: deterministic, without assist."""
+    late: Any = number("", 1, 100, default=3)
+    """Policies kept from the end of the training."""
+    late_apart: Any = number("", 1, 1e9, default=500_000)
+    """Policy steps between them."""
+    algorithm: Algorithm = field(default_factory=Algorithm)
+    network: Network = field(default_factory=Network)
+    tasks: Mapping[str, tuple[Stage, ...]]
+    """Stages by name of the task."""
+
+    @property
+    def steps_per_iteration(self) -> int:
+        """Policy steps of all simulations in one iteration."""
+        return int(self.simulations) * int(self.rollout)
+
+    def stages(self, task: str) -> tuple[Stage, ...]:
+        """Stages of a task.
+
+        Raises:
+            InputError: the preset has none for it.
+        """
+        if task not in self.tasks:
+            raise InputError(self.name, "tasks", task, f"has no stages for this task; it has {', '.join(self.tasks)}")
+        return self.tasks[task]
+
+    def iterations(self, stage: Stage) -> int:
+        """Iterations of a stage."""
+        return max(1, round(stage.steps / self.steps_per_iteration))
+
+    def total_iterations(self, task: str) -> int:
+        """Iterations of all stages of a task."""
+        return sum(self.iterations(stage) for stage in self.stages(task))
+
+
+def preset_names() -> list[str]:
+    """Names of the shipped presets."""
+    return [n[len(PREFIX) :] for n in resources.names("sim") if n.startswith(PREFIX)]
+
+
+def load_preset(name: str | Path) -> Preset:
+    """Read a preset.
+
+    Args:
+        name: a shipped name such as `laptop`, or a YAML file.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    known = preset_names()
+    path = resources.find("sim", f"{PREFIX}{name}") if str(name) in known else Path(name)
+    if not path.is_file():
+        raise InputError("preset", "", str(name), f"no such file; shipped: {', '.join(known)}")
+    return preset_from_mapping(read_yaml(path), short_name(path))
+
+
+def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
+    """A preset from nested mappings as YAML gives them.
+
+    Raises:
+        InputError: unknown or missing field, or a value that makes no sense.
+    """
+    rest = dict(data)
+    rest.pop("description", None)
+    name, tasks = rest.pop("name", None), rest.pop("tasks", None)
+    if not isinstance(name, str):
+        raise InputError(where, "name", name, "expects a text")
+    stages = {str(t): _stages(s, where, f"tasks.{t}") for t, s in _mapping(tasks, where, "tasks").items()}
+    network = dict(_mapping(rest.pop("network", {}), where, "network"))
+    hidden = network.pop("hidden", [512, 256, 128])
+    if not isinstance(hidden, list) or not hidden or not all(isinstance(h, int) and not isinstance(h, bool) and 0 < h <= 65536 for h in hidden):
+        raise InputError(where, "network.hidden", hidden, "expects a list of widths")
+    made = parameters.from_mapping(Network, network, where, "network")
+    algorithm = parameters.from_mapping(Algorithm, rest.pop("algorithm", {}), where, "algorithm")
+    if (algorithm.mirror, algorithm.adapted) in (("half", "minibatch"), ("append", "iteration")):
+        raise InputError(where, "algorithm.adapted", algorithm.adapted, f"with mirror: {algorithm.mirror} would judge mirrored samples")
+    sizes = ("simulations", "rollout", "checkpoint_every", "trial_every", "late", "late_apart")
+    for key in rest:
+        if key not in sizes:
+            raise InputError(where, str(key), rest[key], parameters.unknown(str(key), ["name", *sizes, "algorithm", "network", "tasks"]))
+    values = {key: _whole(rest[key], where, key) for key in rest}
+    try:
+        return Preset(name=name, algorithm=algorithm, network=dataclasses.replace(made, hidden=tuple(hidden)), tasks=stages, **values)
+    except InputError as error:
+        raise InputError(where, error.field, error.value, error.remedy) from None
+
+
+def _stages(data: Any, where: str, path: str) -> tuple[Stage, ...]:
+    if not isinstance(data, list) or not data:
+        raise InputError(where, path, data, "expects a list of stages")
+    return tuple(_stage(entry, where, f"{path}.{i}") for i, entry in enumerate(data))
+
+
+def _stage(data: Any, where: str, path: str) -> Stage:
+    known = ("name", "steps", "assist", "assist_gone_by", "rewards", "commands", "ramps")
+    data = _mapping(data, where, path)
+    for key in data:
+        if key not in known:
+            raise InputError(where, f"{path}.{key}", data[key], parameters.unknown(str(key), list(known)))
+    for key in ("name", "steps"):
+        if key not in data:
+            raise InputError(where, f"{path}.{key}", None, "is missing")
+    rewards: dict[str, Mapping[str, float]] = {}
+    for term, entry in _mapping(data.get("rewards", {}), where, f"{path}.rewards").items():
+        values = entry if isinstance(entry, Mapping) else {"weight": entry}
+        _check_term(str(term), [str(k) for k in values], where, f"{path}.rewards.{term}")
+        rewards[str(term)] = {str(k): _number(v, where, f"{path}.rewards.{term}.{k}") for k, v in values.items()}
+    commands = {str(k): _number(v, where, f"{path}.commands.{k}") for k, v in _mapping(data.get("commands", {}), where, f"{path}.commands").items()}
+    ramps = data.get("ramps", [])
+    if not isinstance(ramps, list):
+        raise InputError(where, f"{path}.ramps", ramps, "expects a list of ramps")
+    return Stage(
+        name=str(data["name"]),
+        steps=_number(data["steps"], where, f"{path}.steps", 1, 1e12),
+        assist=None if data.get("assist") is None else _number(data["assist"], where, f"{path}.assist", 0, 1),
+        assist_gone_by=_number(data.get("assist_gone_by", 1.0), where, f"{path}.assist_gone_by", 0, 1),
+        rewards=rewards,
+        commands=commands,
+        ramps=tuple(_ramp(entry, where, f"{path}.ramps.{i}") for i, entry in enumerate(ramps)),
+    )
+
+
+def _ramp(data: Any, where: str, path: str) -> Ramp:
+    data = _mapping(data, where, path)
+    for key in data:
+        if key not in ("set", "from", "to", "steps", "begins"):
+            raise InputError(where, f"{path}.{key}", data[key], parameters.unknown(str(key), ["set", "from", "to", "steps", "begins"]))
+    for key in ("set", "from", "to", "steps"):
+        if key not in data:
+            raise InputError(where, f"{path}.{key}", None, "is missing")
+    kind, _, rest = str(data["set"]).partition(".")
+    name, _, parameter = rest.partition(".")
+    if kind == "rewards" and name:
+        parameter = parameter or "weight"
+        _check_term(name, [parameter], where, f"{path}.set")
+    elif kind != "commands" or not name or parameter:
+        raise InputError(where, f"{path}.set", data["set"], "expects rewards.TERM, rewards.TERM.PARAMETER or commands.SETTING")
+    begins = data.get("begins", "stage")
+    if begins not in BEGINS:
+        raise InputError(where, f"{path}.begins", begins, f"expects one of {', '.join(BEGINS)}")
+    low, high = (_number(data[key], where, f"{path}.{key}") for key in ("from", "to"))
+    return Ramp((kind, name, parameter), low, high, _number(data["steps"], where, f"{path}.steps", 1, 1e12), begins)
+
+
+def _check_term(term: str, settings: list[str], where: str, path: str) -> None:
+    if term not in TERMS:
+        raise InputError(where, path, term, parameters.unknown(term, sorted(TERMS)).replace("field", "term"))
+    for name in settings:
+        if name != "weight" and name not in TERMS[term].parameters:
+            raise InputError(where, path, name, parameters.unknown(name, ["weight", *TERMS[term].parameters]))
+
+
+def _number(value: Any, where: str, path: str, low: float = -1e12, high: float = 1e12) -> float:
+    return float(parameters.checked(value, parameters.Rule("number", low=low, high=high), where, path))
+
+
+def _whole(value: Any, where: str, path: str) -> float:
+    found = _number(value, where, path)
+    if found != int(found):
+        raise InputError(where, path, value, "expects a whole number")
+    return found
+
+
+def _mapping(data: Any, where: str, path: str) -> Mapping[str, Any]:
+    if not isinstance(data, Mapping):
+        raise InputError(where, path, data, "expects a mapping")
+    return data

@@ -1,0 +1,61 @@
+"""Tasks and presets as plain mappings, every value written out, so that a file says by itself what was trained."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from hyperleg_design.robot import parameters
+from hyperleg_design.simulation.commands import WaypointCommands
+from hyperleg_design.simulation.tasks import _SECTIONS
+
+if TYPE_CHECKING:
+    from hyperleg_design.learning.preset import Preset, Ramp, Stage
+    from hyperleg_design.simulation.tasks import Task
+
+
+def task_mapping(task: Task) -> dict[str, Any]:
+    """A task such that `task_from_mapping` gives it back."""
+    commands: dict[str, Any] = {"kind": "waypoints" if isinstance(task.commands, WaypointCommands) else "velocity"}
+    commands.update(parameters.leaves(task.commands))
+    if isinstance(task.commands, WaypointCommands):
+        commands["courses"] = [[list(point) for point in course] for course in task.commands.courses]
+    return {
+        "name": task.name,
+        "commands": commands,
+        "observations": {group: list(parts) for group, parts in task.observations.items()},
+        "rewards": {term: {"weight": r.weight, **r.parameters} for term, r in task.rewards.items()},
+        **{section: parameters.leaves(getattr(task, section)) for section in _SECTIONS},
+    }
+
+
+def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:
+    """A preset with the stages of one task, such that `preset_from_mapping` gives it back."""
+    found: dict[str, Any] = {"name": preset.name}
+    for field in dataclasses.fields(preset):
+        if parameters.is_leaf(field):
+            found[field.name] = getattr(preset, field.name)
+    found["algorithm"] = parameters.leaves(preset.algorithm)
+    found["network"] = {"hidden": list(preset.network.hidden), **parameters.leaves(preset.network)}
+    found["tasks"] = {task: [_stage(stage) for stage in preset.stages(task)]}
+    return found
+
+
+def _stage(stage: Stage) -> dict[str, Any]:
+    found: dict[str, Any] = {"name": stage.name, "steps": stage.steps, "assist_gone_by": stage.assist_gone_by}
+    if stage.assist is not None:
+        found["assist"] = stage.assist
+    found["rewards"] = {term: _plain(values) for term, values in stage.rewards.items()}
+    found["commands"] = _plain(stage.commands)
+    found["ramps"] = [_ramp(ramp) for ramp in stage.ramps]
+    return found
+
+
+def _ramp(ramp: Ramp) -> dict[str, Any]:
+    target = ".".join(part for part in ramp.target if part)
+    return {"set": target, "from": ramp.low, "to": ramp.high, "steps": ramp.steps, "begins": ramp.begins}
+
+
+def _plain(values: Mapping[str, float]) -> dict[str, float]:
+    return dict(values)

@@ -1,0 +1,119 @@
+"""What changes while a policy is trained: stages, ramps and the assist that goes away, as a function of steps and progress."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from hyperleg_design.simulation.assist import Assist
+
+if TYPE_CHECKING:
+    from hyperleg_design.learning.preset import Preset, Ramp, Stage
+    from hyperleg_design.simulation.environment import Environment
+
+DECAY_EVERY = 5
+"""Iterations between two decays of the assist, where the robots do well enough; assumed."""
+LONG_ENOUGH = 350.0
+"""Mean episode from which the assist decays [policy steps]; assumed."""
+FAST_ENOUGH = 0.6
+"""Share of the best velocity reward, or of the speed cap, from which the assist decays [-]; assumed."""
+
+
+class Schedule:
+    """Where a training stands in its stages, and what that sets in the environment."""
+
+    def __init__(self, preset: Preset, task: str) -> None:
+        self.preset, self.stages = preset, preset.stages(task)
+        self.iteration = 0
+        """Iterations done, over all stages."""
+        self.gain = 0.0
+        """Of the assist."""
+        self.gone: list[int | None] = []
+        """For each stage begun, its iteration from which there was no assist; None while there is."""
+        self._update_assist()
+
+    @property
+    def total(self) -> int:
+        """Iterations of all stages."""
+        return sum(self.preset.iterations(stage) for stage in self.stages)
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Index of the present stage, and iterations done in it; the last one's end when all is done."""
+        left = self.iteration
+        for index, stage in enumerate(self.stages):
+            length = self.preset.iterations(stage)
+            if left < length:
+                return index, left
+            left -= length
+        return len(self.stages) - 1, self.preset.iterations(self.stages[-1])
+
+    @property
+    def stage(self) -> Stage:
+        """The present stage."""
+        return self.stages[self.place[0]]
+
+    def apply(self, environment: Environment) -> None:
+        """Set what the next iteration runs with; stages before the present one leave their last values."""
+        environment.assist = Assist(self.gain) if self.gain > 0.0 else None
+        index, done = self.place
+        for i, stage in enumerate(self.stages[: index + 1]):
+            for term, values in stage.rewards.items():
+                environment.set_reward(term, values.get("weight"), **{k: v for k, v in values.items() if k != "weight"})
+            if stage.commands:
+                environment.set_commands(**stage.commands)
+            for ramp in stage.ramps:
+                set_value(environment, ramp, self._progress(ramp, i, done if i == index else self.preset.iterations(stage)))
+
+    def advance(self, mean_episode: float, share: float) -> None:
+        """An iteration is done.
+
+        Args:
+            mean_episode: length of episodes of late [policy steps].
+            share: of the best velocity reward or of the speed cap reached of late [-].
+        """
+        done = self.place[1] + 1
+        if self.gain > 0.0 and done % DECAY_EVERY == 0 and mean_episode > LONG_ENOUGH and share > FAST_ENOUGH:
+            assist = Assist(self.gain)
+            assist.decay()
+            self.gain = assist.gain
+        self.iteration += 1
+        self._update_assist()
+
+    def state(self) -> dict[str, Any]:
+        """What `put` needs."""
+        return {"iteration": self.iteration, "gain": self.gain, "gone": list(self.gone)}
+
+    def put(self, state: dict[str, Any]) -> None:
+        """Back to a state."""
+        self.iteration, self.gain, self.gone = state["iteration"], state["gain"], list(state["gone"])
+
+    def _update_assist(self) -> None:
+        index, done = self.place
+        stage = self.stages[index]
+        if index == len(self.gone):
+            self.gain = self.gain if stage.assist is None else stage.assist
+            self.gone.append(None)
+        if done >= stage.assist_gone_by * self.preset.iterations(stage):
+            self.gain = 0.0
+        if self.gain == 0.0 and self.gone[index] is None:
+            self.gone[index] = done
+
+    def _progress(self, ramp: Ramp, index: int, done: int) -> float:
+        if ramp.begins == "assist_gone":
+            gone = self.gone[index]
+            if gone is None:
+                return 0.0
+            done -= gone
+        return min(max(done * self.preset.steps_per_iteration / ramp.steps, 0.0), 1.0)
+
+
+def set_value(environment: Environment, ramp: Ramp, progress: float) -> None:
+    """Set what a ramp changes, at its progress 0 .. 1."""
+    kind, name, parameter = ramp.target
+    value = ramp.low + progress * (ramp.high - ramp.low)
+    if kind == "commands":
+        environment.set_commands(**{name: value})
+    elif parameter == "weight":
+        environment.set_reward(name, value)
+    else:
+        environment.set_reward(name, **{parameter: value})

@@ -1,0 +1,24 @@
+"""Files of a training's folder that others read, without torch."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+RUN, CHECKPOINT, STATUS, PROGRESS, POLICY = "run.json", "checkpoint.pt", "status.json", "progress.jsonl", "policy.onnx"
+
+
+def read_status(folder: Path) -> dict[str, Any] | None:
+    """`status.json` of a training; None before its first lines of progress."""
+    try:
+        found: dict[str, Any] = json.loads((folder / STATUS).read_text())
+    except (OSError, ValueError):
+        return None
+    return found
+
+
+def policies(folder: Path) -> list[Path]:
+    """ONNX files of a training, earliest first; the last one is the final policy if the training is done."""
+    final = folder / POLICY
+    return [*sorted(folder.glob("late_*.onnx")), *([final] if final.exists() else [])]

@@ -1,0 +1,375 @@
+"""Trainings: PPO around the environment, killed and resumed at will.
+
+A training lives in a folder:
+
+| file | holds |
+|---|---|
+| `run.json` | what is trained: task, design, preset (all resolved), seed, command, versions, commit |
+| `checkpoint.pt` | all that its future depends on; written whole or not at all |
+| `status.json` | how far it is, with the latest measures |
+| `progress.jsonl` | measures of every iteration, and trials |
+| `late_*.onnx`, `policy.onnx` | late policies, and the last one; `policy.onnx` is there when the training is done |
+| `events.*` | the same for TensorBoard |
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import json
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from hyperleg_design import provenance
+from hyperleg_design.errors import InputError
+from hyperleg_design.learning.algorithm import IterationPPO, as_tensors, make_algorithm
+from hyperleg_design.learning.checkpoint import load_checkpoint, save_checkpoint
+from hyperleg_design.learning.export import export_policy
+from hyperleg_design.learning.meter import Meter
+from hyperleg_design.learning.preset import Preset, load_preset
+from hyperleg_design.learning.resolved import preset_mapping, task_mapping
+from hyperleg_design.learning.schedule import Schedule
+from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, STATUS
+from hyperleg_design.learning.trial import trial
+from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
+from hyperleg_design.simulation.tasks import Task, load_task
+from hyperleg_design.writing import MARKER, check_output_folder, write_json, write_text
+
+PACKAGES = (*provenance.PACKAGES, "torch", "rsl-rl-lib")
+SHOW_EVERY = 5.0
+"""Seconds between two lines of progress."""
+TRIAL_SEED = 20_000
+"""Of the trials' starting states, other than any training's."""
+
+
+def train(
+    task: str | Path | Task,
+    design: str | Path | Design,
+    seed: int,
+    preset: str | Path | Preset,
+    out: str | Path,
+    *,
+    threads: int = 1,
+    iterations: int | None = None,
+    show: Callable[[str], None] | None = None,
+) -> bool:
+    """Train a policy, or go on with a training from its last checkpoint.
+
+    Args:
+        task: a task, its shipped name or file.
+        design: a robot, its shipped name (`hyperleg`, `toe_removed`, ...) or file.
+        seed: of all randomness.
+        preset: a preset, its shipped name or file.
+        out: folder of the training.
+        threads: of physics and learning. One by default: trainings side by side use processors best. Resuming is bit for
+            bit with the same number only.
+        iterations: stop, with a checkpoint, after so many more; all by default.
+        show: takes lines of progress.
+
+    Returns:
+        Whether the training is done; False after a signal to stop, or `iterations`.
+
+    Raises:
+        InputError: bad input, or `out` holds another training or is at work already.
+        OutputError: something cannot be written; the training can go on from its last checkpoint.
+    """
+    task = task if isinstance(task, Task) else load_task(task)
+    design = design if isinstance(design, Design) else load_design(design)
+    preset = preset if isinstance(preset, Preset) else load_preset(preset)
+    preset.stages(task.name)
+    folder = check_output_folder(out)
+    description = describe(task, design, seed, preset)
+    _check_same(folder, description)
+    write_text(folder / MARKER, "made by hyperleg\n")
+    with _alone(folder), _limited_threads(threads):
+        if not (folder / RUN).exists():
+            write_json(folder / RUN, description)
+        training = Training(task, design, seed, preset, folder, threads, description)
+        return training.run(iterations, show or (lambda line: None))
+
+
+def describe(task: Task, design: Design, seed: int, preset: Preset) -> dict[str, Any]:
+    """What a training is, as JSON takes it."""
+    return {
+        "task": task_mapping(task),
+        "design": design.to_mapping(),
+        "variant": design.variant,
+        "seed": seed,
+        "preset": preset_mapping(preset, task.name),
+        "deviations": task.deviations,
+        "command": " ".join(["hyperleg", *sys.argv[1:]]),
+        "commit": provenance.git_commit(),
+        "versions": provenance.versions(PACKAGES),
+    }
+
+
+class Training:
+    """A training at work."""
+
+    def __init__(self, task: Task, design: Design, seed: int, preset: Preset, folder: Path, threads: int, description: dict[str, Any]) -> None:
+        self.task, self.design, self.preset, self.folder, self.description = task, design, preset, folder, description
+        self.schedule = Schedule(preset, task.name)
+        self.environment = Environment(design, task, simulations=int(preset.simulations), seed=seed, threads=threads)
+        self.schedule.apply(self.environment)
+        torch.manual_seed(seed)
+        self.observations = as_tensors(self.environment.reset())
+        self.environment.episode_step = np.random.default_rng(seed).integers(
+            round(task.limits.duration / task.physics.policy_step), size=self.environment.simulations
+        )  # so that not all episodes end together
+        self.algorithm = make_algorithm(preset, self.environment, self.observations)
+        self.algorithm.train_mode()
+        self.meter = Meter(self.environment)
+        self.latest_trial: dict[str, float] = {}
+        self.seconds = 0.0
+        """Spent on training so far [s]."""
+        self._stop = False
+        if (folder / CHECKPOINT).exists():
+            self._load()
+
+    def run(self, iterations: int | None, show: Callable[[str], None]) -> bool:
+        """Train to the end, to a signal, or for some iterations; whether it is done."""
+        first, schedule, preset = self.schedule.iteration, self.schedule, self.preset
+        last = schedule.total if iterations is None else min(schedule.total, first + iterations)
+        if (self.folder / POLICY).exists():
+            return True
+        writer = self._writer(first)
+        shown, began = 0.0, time.monotonic()
+        with self._stoppable():
+            while schedule.iteration < last and not self._stop:
+                started = time.monotonic()
+                measures = self._iterate()
+                self.seconds += time.monotonic() - started
+                if schedule.iteration % int(preset.trial_every) == 0 or schedule.iteration == schedule.total:
+                    self._try()
+                    measures["trial"] = self.latest_trial
+                self._log(writer, measures)
+                if self._is_late():
+                    self._export(f"late_{schedule.iteration:06d}.onnx")
+                if schedule.iteration % int(preset.checkpoint_every) == 0:
+                    self.save()
+                if time.monotonic() - shown > SHOW_EVERY or schedule.iteration == last:
+                    shown = time.monotonic()
+                    left = (shown - began) / (schedule.iteration - first) * (schedule.total - schedule.iteration)
+                    write_json(self.folder / STATUS, _finite({**measures, "left": left, "pid": os.getpid(), "done": False}))
+                    show(self.line(measures, left))
+        done = schedule.iteration >= schedule.total
+        self.save()
+        if done:
+            self._export(POLICY)
+            write_json(self.folder / STATUS, _finite({**measures, "left": 0.0, "pid": None, "done": True}))
+        writer.close()
+        self.environment.close()
+        return done
+
+    def policy(self, observation: np.ndarray) -> np.ndarray:
+        """The deterministic policy so far, `(n, size)` to `(n, J)`."""
+        actor = self.algorithm.get_policy()
+        with torch.inference_mode():
+            return actor.mlp(actor.obs_normalizer(torch.from_numpy(observation))).numpy()
+
+    def save(self) -> None:
+        """Write the checkpoint."""
+        save_checkpoint(
+            self.folder / CHECKPOINT,
+            {
+                "networks": self.algorithm.save(),
+                "environment": take_snapshot(self.environment),
+                "observations": {name: values.numpy() for name, values in self.observations.items()},
+                "schedule": self.schedule.state(),
+                "meter": self.meter.state(),
+                "trial": self.latest_trial,
+                "seconds": self.seconds,
+                "random": torch.get_rng_state().numpy(),
+            },
+        )
+
+    def line(self, measures: dict[str, Any], left: float) -> str:
+        """One line of progress."""
+        total = self.schedule.total * self.preset.steps_per_iteration
+        terms = " ".join(f"{name} {value:+.2f}" for name, value in measures["terms"].items() if value)
+        parts = [
+            f"{self.task.name} {self.design.variant} seed {self.description['seed']}",
+            f"{measures['steps'] / 1e6:.2f}/{total / 1e6:.1f} M steps, {measures['rate']:.0f}/s",
+            f"stage {measures['stage']}, assist {measures['assist']:.2f}",
+            f"reward {measures['reward']:.2f} ({terms})",
+            f"speed {measures['speed']:.2f} m/s, falls {measures['falls']:.1f}/min, CoT {measures['cost_of_transport']:.2f}",
+            f"rate {measures['learning_rate']:.1e}",
+        ]
+        if self.latest_trial:
+            parts.append("trial " + " ".join(f"{k} {v:.2f}" for k, v in self.latest_trial.items()))
+        return " | ".join([*parts, f"left {left / 60:.0f} min"])
+
+    def _iterate(self) -> dict[str, Any]:
+        """Roll out, learn, and go on in the schedule."""
+        algorithm, environment, began = self.algorithm, self.environment, time.monotonic()
+        self.schedule.apply(environment)
+        stage, gain = self.schedule.place[0], self.schedule.gain
+        with torch.inference_mode():
+            for _ in range(int(self.preset.rollout)):
+                action = algorithm.act(self.observations)
+                step = environment.step(action.numpy())
+                self.meter.note(step)
+                reward = torch.from_numpy(step.reward.astype(np.float32))
+                self._bootstrap(step, reward)
+                self.observations = as_tensors(step.observations)
+                algorithm.process_env_step(self.observations, reward, torch.from_numpy(step.ending != 0), {})
+            algorithm.compute_returns(self.observations)
+        losses = algorithm.update()
+        measures = self.meter.read()
+        self.schedule.advance(measures["episode"], measures["share"])
+        steps = self.preset.steps_per_iteration
+        return {
+            "iteration": self.schedule.iteration,
+            "steps": self.schedule.iteration * steps,
+            "total": self.schedule.total * steps,
+            "stage": stage + 1,
+            "assist": gain,
+            **measures,
+            "rate": steps / (time.monotonic() - began),
+            "learning_rate": algorithm.learning_rate,
+            "divergence": algorithm.divergence if isinstance(algorithm, IterationPPO) else float("nan"),
+            "deviation": float(algorithm.get_policy().distribution.log_std_param.detach().exp().mean()),
+            "losses": losses,
+            "diverged": environment.divergence_count,
+        }
+
+    def _bootstrap(self, step: Any, reward: torch.Tensor) -> None:
+        """An episode that was cut, not lost, goes on in value: add what the critic expects of its last state."""
+        cut = step.truncated[step.ended]
+        if cut.any():
+            final = as_tensors({name: values[cut] for name, values in step.final_observations.items()})
+            reward[torch.from_numpy(step.ended[cut])] += self.preset.algorithm.discount * self.algorithm.critic(final).squeeze(-1)
+
+    def _try(self) -> None:
+        commands = self.environment.chunks[0].commander.settings
+        self.latest_trial = trial(self.design, self.task.changed(commands=commands), self.policy, seed=TRIAL_SEED)
+
+    def _is_late(self) -> bool:
+        """Whether the policy is one of the last to be kept besides the very last."""
+        apart = max(1, round(self.preset.late_apart / self.preset.steps_per_iteration))
+        left = self.schedule.total - self.schedule.iteration
+        return left > 0 and left % apart == 0 and left // apart < int(self.preset.late)
+
+    def _export(self, name: str) -> None:
+        chosen = ("variant", "seed", "task", "design", "preset", "deviations", "command", "commit", "versions")
+        metadata = {key: self.description[key] for key in chosen}
+        metadata |= {"seed": str(self.description["seed"]), "steps": str(self.schedule.iteration * self.preset.steps_per_iteration)}
+        metadata |= {"columns": self.environment.observation_columns["policy"], "joints": list(self.environment.layout.joints)}
+        export_policy(self.folder / name, self.algorithm.get_policy(), metadata)
+
+    def _load(self) -> None:
+        content = load_checkpoint(self.folder / CHECKPOINT)
+        try:
+            self.algorithm.load(content["networks"], None, True)
+        except (RuntimeError, KeyError, ValueError) as error:
+            reason = " ".join(str(error).split())[:100]
+            raise InputError(f"{self.folder.name}/{CHECKPOINT}", "networks", None, f"do not fit this task, design and preset ({reason})") from None
+        self.schedule.put(content["schedule"])
+        self.schedule.apply(self.environment)
+        put_snapshot(self.environment, content["environment"])
+        self.observations = as_tensors(content["observations"])
+        self.meter.put(content["meter"])
+        self.latest_trial, self.seconds = content["trial"], content["seconds"]
+        torch.set_rng_state(torch.from_numpy(content["random"]))
+
+    def _writer(self, first: int) -> Any:
+        """TensorBoard's; what was logged after the checkpoint is taken back."""
+        from torch.utils.tensorboard import SummaryWriter
+
+        path = self.folder / PROGRESS
+        if path.exists():
+            kept = [line for line in path.read_text().splitlines() if line and _iteration(line) <= first]
+            write_text(path, "".join(f"{line}\n" for line in kept))
+        return SummaryWriter(str(self.folder), purge_step=(first + 1) * self.preset.steps_per_iteration)
+
+    def _log(self, writer: Any, measures: dict[str, Any]) -> None:
+        for name, value in _flat(measures):
+            writer.add_scalar(name, value, measures["steps"])
+        with (self.folder / PROGRESS).open("a") as stream:
+            stream.write(json.dumps(_finite(measures)) + "\n")
+
+    @contextlib.contextmanager
+    def _stoppable(self) -> Iterator[None]:
+        """On an interrupt or a request to end, finish the iteration and write a checkpoint."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+
+        def stop(*_: Any) -> None:
+            self._stop = True
+
+        old = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield
+        finally:
+            for number, handler in old.items():
+                signal.signal(number, handler)
+
+
+def _check_same(folder: Path, description: dict[str, Any]) -> None:
+    """Whether the folder is free for this training, or holds just this one."""
+    path = folder / RUN
+    if not path.exists():
+        return
+    try:
+        found = json.loads(path.read_text())
+    except (OSError, ValueError):
+        raise InputError(f"{folder.name}/{RUN}", "", None, "cannot be read; choose another folder, or delete this one") from None
+    for key in ("variant", "seed", "task", "design", "preset"):
+        if found.get(key) != json.loads(json.dumps(description[key])):
+            remedy = "the folder holds another training; choose another, or delete it"
+            raise InputError(str(folder), key, found.get(key) if key in ("variant", "seed") else None, remedy)
+
+
+@contextlib.contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Hold the folder; the system lets go of it however the process ends."""
+    with (folder / ".lock").open("w") as stream:
+        try:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise InputError(str(folder), "", None, "a training is at work in this folder; wait for it or stop it") from None
+        yield
+
+
+@contextlib.contextmanager
+def _limited_threads(threads: int) -> Iterator[None]:
+    before = torch.get_num_threads()
+    torch.set_num_threads(threads)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
+
+def _flat(measures: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, float]]:
+    for name, value in measures.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{name}/")
+        elif np.isfinite(value):
+            yield prefix + name, value
+
+
+def _finite(value: Any) -> Any:
+    """Numbers that are not finite as None, as JSON needs it."""
+    if isinstance(value, dict):
+        return {k: _finite(v) for k, v in value.items()}
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _iteration(line: str) -> int:
+    try:
+        return int(json.loads(line)["iteration"])
+    except (ValueError, KeyError, TypeError):  # cut off when the process was killed
+        return 1 << 62

@@ -1,0 +1,118 @@
+"""A short test of a policy while it is trained: deterministic, without assist, from standing.
+
+The evaluation protocols judge policies; this only shows how a training gets on.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.learning.meter import mean_speed
+from hyperleg_design.simulation.commands import WaypointCommands
+from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.model import pad_loads
+from hyperleg_design.simulation.rewards import TOUCH
+from hyperleg_design.simulation.tasks import Reward, Task
+from hyperleg_design.simulation.terminations import COURSE_FINISHED
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+Policy = Callable[[np.ndarray], np.ndarray]
+"""From observations `(n, size)` of the group `policy` to actions `(n, J)`."""
+WALK = 12.0
+"""Length of a walking trial [s]; its second half is measured."""
+COURSE = 30.0
+"""Time given to a course [s]."""
+
+
+def trial(design: Design, task: Task, policy: Policy, *, simulations: int = 32, seed: int = 0) -> dict[str, float]:
+    """Try a policy: on the test's speed, or on the task's courses.
+
+    Args:
+        design: the robot.
+        task: it was trained on.
+        policy: deterministic.
+        simulations: robots that try, once each.
+        seed: of the starting states.
+
+    Returns:
+        Walking: `survival`, `speed` [m/s], `speed_error` (RMS over robots and time [m/s]), `cost_of_transport`,
+        `cadence` [steps/s], `double_support` and `flight` (fractions of time). Courses: `finished` (fraction), `time`
+        (mean of the finished [s]), `survival`, `speed`.
+    """
+    goal = isinstance(task.commands, WaypointCommands)
+    return _course(design, task, policy, simulations, seed) if goal else _walk(design, task, policy, simulations, seed)
+
+
+def _walk(design: Design, task: Task, policy: Policy, simulations: int, seed: int) -> dict[str, float]:
+    given: Any = task.commands
+    commands = dataclasses.replace(given, test_share=1.0, standing_share=0.0)
+    task = task.changed(commands=commands, rewards={**task.rewards, "power": Reward(1.0)})
+    environment = Environment(design, task, simulations=simulations, seed=seed, threads=1)
+    duration, steps = task.physics.policy_step, round(WALK / task.physics.policy_step)
+    observations, alive = environment.reset(), np.ones(simulations, bool)
+    speeds, powers, stands = [], [], []
+    for _ in range(steps):
+        step = environment.step(policy(observations["policy"]))
+        observations = step.observations
+        alive[step.ended] = False
+        speeds.append(np.concatenate([c.motion.walking_velocity[:, 0] for c in environment.chunks]))
+        powers.append(step.reward_terms[:, environment.reward_names.index("power")] / duration)
+        stands.append(_stands(environment))
+    environment.close()
+    second = slice(steps // 2, None)
+    speed, power, stand = (np.array(values)[second][:, alive] for values in (speeds, powers, stands))
+    if not alive.any():
+        nothing = ("speed", "speed_error", "cost_of_transport", "cadence", "double_support", "flight")
+        return {"survival": 0.0, **dict.fromkeys(nothing, float("nan"))}
+    touchdowns = (stand[1:] & ~stand[:-1]).sum((0, 2))
+    return {
+        "survival": float(alive.mean()),
+        "speed": float(speed.mean()),
+        "speed_error": float(np.sqrt(np.mean((speed - commands.test_speed) ** 2))),
+        "cost_of_transport": float(power.mean() / (environment.layout.weight * max(speed.mean(), 1e-3))),
+        "cadence": float(touchdowns.mean() / (len(stand) * duration)),
+        "double_support": float(stand.all(-1).mean()),
+        "flight": float((~stand.any(-1)).mean()),
+    }
+
+
+def _stands(environment: Environment) -> np.ndarray:
+    """Whether each foot stands, `(n, 2)`."""
+    load = np.concatenate([pad_loads(chunk.sensors[-1]) for chunk in environment.chunks])
+    left = environment.layout.pad_foot == 0
+    return np.stack([load[:, left].sum(-1), load[:, ~left].sum(-1)], -1) > TOUCH
+
+
+def _course(design: Design, task: Task, policy: Policy, simulations: int, seed: int) -> dict[str, float]:
+    limits = dataclasses.replace(task.limits, duration=2 * COURSE)
+    given: Any = task.commands
+    task = task.changed(commands=dataclasses.replace(given, course_share=1.0), limits=limits)
+    environment = Environment(design, task, simulations=simulations, seed=seed, threads=1)
+    duration = task.physics.policy_step
+    observations, running = environment.reset(), np.ones(simulations, bool)
+    times, finished = np.full(simulations, np.nan), np.zeros(simulations, bool)
+    fallen, speeds = np.zeros(simulations, bool), []
+    for k in range(round(COURSE / duration)):
+        step = environment.step(policy(observations["policy"]))
+        observations = step.observations
+        ended = step.ended[running[step.ended]]
+        done = ended[step.ending[ended] == COURSE_FINISHED]
+        times[done], finished[done] = (k + 1) * duration, True
+        fallen[ended] |= step.terminated[ended]
+        running[ended] = False
+        speeds.append(mean_speed(environment, goal=True))
+        if not running.any():
+            break
+    environment.close()
+    return {
+        "finished": float(finished.mean()),
+        "time": float(times[finished].mean()) if finished.any() else float("nan"),
+        "survival": float(1.0 - fallen.mean()),
+        "speed": float(np.mean(speeds)),
+    }
