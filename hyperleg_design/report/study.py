@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 from hyperleg_design import provenance
 from hyperleg_design.errors import HyperlegError
 from hyperleg_design.report import page as pages
+from hyperleg_design.report import study_motion as motion
 from hyperleg_design.report import study_sections as sections
 from hyperleg_design.report.page import Missing, Page, Picture, Section
 from hyperleg_design.robot.ablation import variants
@@ -17,6 +18,21 @@ from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.writing import output_folder, write_text
 
 FIGURES = "figures"
+
+STEPS: Mapping[str, Callable[..., sections.Made]] = {
+    "robot": sections.robot,
+    "table I": sections.table_i,
+    "inconsistencies": sections.inconsistencies,
+    "cooperative actuation": sections.cooperative_actuation,
+    "envelopes": sections.envelopes,
+    "capability": motion.capability,
+    "demand": motion.demand,
+    "lightness": sections.lightness,
+    "sweeps": sections.sweeps,
+    "motors": sections.motors,
+    "parameters": sections.made_from,
+}
+"""Parts in the order of the page."""
 
 
 @dataclass(frozen=True)
@@ -55,14 +71,13 @@ def run_study(out: str | Path, *, design: Design | None = None, progress: bool =
     from tqdm import tqdm
 
     design = design or load_design("hyperleg")
-    steps = sections.STEPS
     with output_folder(out) as folder:
         context = Context(design, variants(design), folder)
         (folder / FIGURES).mkdir()
         found: list[Section] = []
         facts: list[tuple[str, str]] = []
-        with tqdm(total=len(steps), disable=not progress, desc="study", unit="part") as bar:
-            for name, step in steps.items():
+        with tqdm(total=len(STEPS), disable=not progress, desc="study", unit="part") as bar:
+            for name, step in STEPS.items():
                 bar.set_postfix_str(name)
                 made = step(context)
                 found.append(made.section)

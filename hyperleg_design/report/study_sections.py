@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +13,7 @@ from hyperleg_design.report.comparison import Row, motor_rows, table_one
 from hyperleg_design.report.page import Cell, Details, Heading, Section, Table
 from hyperleg_design.report.style import save
 from hyperleg_design.robot import ablation, parameters, transmission
+from hyperleg_design.robot.design import Design
 from hyperleg_design.robot.names import JOINTS, POSTURES
 from hyperleg_design.sizing.analysis import analyze
 from hyperleg_design.writing import write_json
@@ -239,7 +239,7 @@ def made_from(context: Context) -> Made:
     design = context.design
     labels: dict[str, int] = {}
     rows = []
-    for path, rule in parameters.rules(type(design)).items():
+    for path, rule in parameters.rules(Design).items():
         origin = design.origins.get(path)
         label = origin.label if origin else ""
         labels[label] = labels.get(label, 0) + 1
@@ -252,17 +252,3 @@ def made_from(context: Context) -> Made:
         Details("All parameters", [Table(["parameter", "value", "unit", "label", "source"], rows)]),
     ]
     return Made(Section("What this page was made from", content))
-
-
-STEPS: Mapping[str, Callable[[Context], Made]] = {
-    "robot": robot,
-    "table I": table_i,
-    "inconsistencies": inconsistencies,
-    "cooperative actuation": cooperative_actuation,
-    "envelopes": envelopes,
-    "lightness": lightness,
-    "sweeps": sweeps,
-    "motors": motors,
-    "parameters": made_from,
-}
-"""Parts in the order of the page."""
