@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
 
 
+ALIGNED = 1e-9
+"""Cosine of the hip's roll below which its yaw and pitch axes count as one."""
+
+
 def hip_center(design: Design, side: str) -> np.ndarray:
     """Where the hip axes meet, in the pelvis's frame [m], `(3,)`."""
     return np.array([0.0, SIGN[side] * design.hip.spacing / 2, 0.0])
@@ -72,8 +76,10 @@ def leg_angles(design: Design, side: str, hip_to_ankle: np.ndarray, foot_rotatio
     ankle_pitch = np.arctan2(-seen[..., 0], in_plane) - np.arctan2(thigh * np.sin(knee), shank + thigh * np.cos(knee))
     rest = rotation @ about_x(-roll)
     hip_roll = np.arcsin(np.clip(rest[..., 2, 1], -1.0, 1.0))
-    hip_yaw = np.arctan2(-rest[..., 0, 1], rest[..., 1, 1])
-    together = np.arctan2(-rest[..., 2, 0], rest[..., 2, 2])
+    # with the hip rolled by a right angle, yaw and pitch turn about one axis: all of it is pitch then
+    aligned = np.hypot(rest[..., 0, 1], rest[..., 1, 1]) < ALIGNED
+    hip_yaw = np.where(aligned, 0.0, np.arctan2(-rest[..., 0, 1], rest[..., 1, 1]))
+    together = np.where(aligned, np.arctan2(rest[..., 0, 2], rest[..., 0, 0]), np.arctan2(-rest[..., 2, 0], rest[..., 2, 2]))
     hip_pitch = _wrapped(together - knee - ankle_pitch)
     angles = np.stack([-sign * hip_yaw, sign * hip_roll, hip_pitch, knee, ankle_pitch, sign * roll], -1)
     if check_limits:

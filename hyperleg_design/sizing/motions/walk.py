@@ -23,35 +23,35 @@ class WalkPlan:
     """What the walk looks like.
 
     Only the speed is the paper's. The rest is assumed: of the plans near human walking that a random search tried, one that
-    stays inside the motor envelopes of the paper's robot both with the active toe and without it. Straighter knees
-    or longer steps look more human and ask the knee for more than its motors have.
+    keeps every motor of the paper's robot inside its envelope, with the active toe and without it. Knees as straight as
+    a human's would have to turn faster, as the heel rises, than their motors can.
     """
 
     speed: float = 1.33
     """Mean forward speed [m/s] (paper, Table III)."""
-    step_time: float = 0.43
+    step_time: float = 0.42
     """One step [s]."""
-    double_support: float = 0.20
+    double_support: float = 0.22
     """Part of a step with both feet down [-]."""
     step_width: float = 0.8
     """Between the feet, over the distance between the hips [-]."""
-    heel_rise: float = 0.11
+    heel_rise: float = 0.20
     """When in double support the rear heel leaves the floor [-]; the front heel has met it before."""
-    foot_flat: float = 0.70
+    foot_flat: float = 0.57
     """When in double support the front foot is flat [-]."""
-    pitch_off: float = 0.46
+    pitch_off: float = 0.49
     """Pitch of the foot as it leaves [rad]."""
-    pitch_land: float = -0.19
+    pitch_land: float = -0.25
     """Pitch of the foot as it lands, toes up [rad]."""
-    clearance: float = 0.015
+    clearance: float = 0.013
     """Height added to the swinging foot in the middle [m]."""
-    load_swing: float = 0.10
+    load_swing: float = 0.20
     """Amplitude of the vertical force over weight, largest in double support [-]."""
-    min_knee: float = 0.63
+    min_knee: float = 0.65
     """Least knee flexion [rad]; the pelvis is as high as this lets it be."""
-    pressure_start: float = 0.10
+    pressure_start: float = 0.0
     """Where on the way from below the ankle to the toe axis the pressure starts in single support [-]."""
-    pressure_end: float = 0.70
+    pressure_end: float = 0.82
     """Where on the way from the toe axis to the tip pads the pressure ends in single support [-]."""
 
     def __post_init__(self) -> None:
