@@ -150,7 +150,7 @@ class Training:
                 started = time.monotonic()
                 measures = self._iterate()
                 self.seconds += time.monotonic() - started
-                if schedule.iteration % int(preset.trial_every) == 0 or schedule.iteration == schedule.total:
+                if schedule.iteration % int(preset.trial_every) == 0 or preset.trial_every < schedule.iteration == schedule.total:
                     self._try()
                     measures["trial"] = self.latest_trial
                 self._log(writer, measures)

@@ -1,0 +1,120 @@
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.learning import campaign as module
+from hyperleg_design.learning.campaign import campaign_status, load_campaign, run_campaign, status_table
+
+from .conftest import tiny_mapping
+
+DATA = {"name": "mine", "preset": "laptop", "groups": [{"name": "walk", "task": "walk", "designs": ["toe", "toe_removed"], "seeds": 2}]}
+
+
+def test_the_shipped_campaign_holds_what_the_study_compares() -> None:
+    runs = load_campaign().runs
+    designs = ("toe", "toe_locked", "toe_removed_matched", "toe_removed")
+    count = {
+        (group, design): sum((r.group, r.design) == (group, design) for r in runs) for group in ("walk", "walk_paper", "t_test") for design in designs
+    }
+    walk = {design: count["walk", design] for design in designs}
+    assert set(walk.values()) == {5}
+    assert {count["walk_paper", d] for d in ("toe", "toe_removed_matched")} == {3}
+    assert {count["t_test", d] for d in ("toe", "toe_removed_matched")} == {5}
+    assert len({r.name for r in runs}) == len(runs) == 36
+    assert len({r.preset for r in runs}) == 1  # equal budgets and stages
+    assert [r.seed for r in runs] == sorted(r.seed for r in runs)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"preset": "desktop"}, ""),
+        ({"runs": 3}, "runs"),
+        ({"processes": 0}, "processes"),
+        ({"groups": []}, "groups"),
+        ({"groups": [{"name": "a", "task": "walk", "designs": ["toe"]}]}, "groups.0.seeds"),
+        ({"groups": [{"name": "a", "task": "walk", "designs": ["toes"], "seeds": 1}]}, ""),
+        ({"groups": [{"name": "a", "task": "swim", "designs": ["toe"], "seeds": 1}]}, ""),
+        ({"groups": [{"name": "a", "task": "goal_paper", "designs": ["toe"], "seeds": 1}]}, "tasks"),
+        ({"groups": [DATA["groups"][0], DATA["groups"][0]]}, "groups.1.name"),
+    ],
+)
+def test_bad_campaigns(change: dict, field: str, write) -> None:
+    with pytest.raises(InputError) as caught:
+        load_campaign(write("c.yaml", yaml.safe_dump({**DATA, **change})))
+    assert caught.value.field == field
+
+
+def test_status_of_each_training(write, tmp_path: Path) -> None:
+    campaign = load_campaign(write("c.yaml", yaml.safe_dump(DATA)))
+    out = tmp_path / "out"
+    assert {s.state for s in campaign_status(campaign, out)} == {"missing"}
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    for run, status in zip(campaign.runs, ({"pid": 1, "done": False}, {"pid": gone.pid, "done": False}, {"pid": None, "done": True}), strict=False):
+        (out / run.name).mkdir(parents=True)
+        (out / run.name / "status.json").write_text(json.dumps({"steps": 2e6, "speed": 1.3, "left": 60.0, **status}))
+    (out / campaign.runs[2].name / "policy.onnx").write_bytes(b"x")
+    statuses = campaign_status(campaign, out)
+    assert [s.state for s in statuses][1:] == ["stopped", "done", "missing"]
+    table = status_table(statuses).splitlines()
+    assert len(table) == 1 + 4 + 1
+    assert table[-1].startswith("1 of 4 done; ")
+    assert "1.30" in table[1]
+
+
+def test_foreign_folders_stay(write, tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "thesis.tex").write_text("years of work")
+    with pytest.raises(OutputError):
+        run_campaign(load_campaign(write("c.yaml", yaml.safe_dump(DATA))), tmp_path / "out")
+
+
+def test_trains_what_is_missing_with_processes_of_its_own(write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("torch")
+    pytest.importorskip("rsl_rl")
+    pytest.importorskip("tensorboard")
+    monkeypatch.setattr(module, "POLL", 0.1)
+    tiny = tiny_mapping()
+    tiny["tasks"]["walk"] = [{"name": "all", "steps": 64}]
+    preset = write("tiny.yaml", yaml.safe_dump(tiny))
+    data = {**DATA, "preset": str(preset), "groups": [{**DATA["groups"][0], "designs": ["toe"], "seeds": 1}]}
+    campaign = load_campaign(write("c.yaml", yaml.safe_dump(data)))
+    shown: list[str] = []
+    assert run_campaign(campaign, tmp_path / "out", processes=2, show=shown.append)
+    assert shown[-1].splitlines()[-1].startswith("1 of 1 done")
+    before = {p: p.stat().st_mtime_ns for p in (tmp_path / "out").glob("*/policy.onnx")}
+    assert len(before) == 1
+    assert run_campaign(campaign, tmp_path / "out")
+    assert {p: p.stat().st_mtime_ns for p in before} == before
+
+
+def test_a_failed_training_is_reported(write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "POLL", 0.05)
+    monkeypatch.setattr(module.launch, "command", lambda arguments: [sys.executable, "-c", "raise SystemExit('no such luck')"])
+    campaign = load_campaign(write("c.yaml", yaml.safe_dump(DATA)))
+    shown: list[str] = []
+    assert not run_campaign(campaign, tmp_path / "out", show=shown.append)
+    assert sum("failed" in text for text in shown) == 4
+    assert "no such luck" in (tmp_path / "out" / campaign.runs[0].name / module.LOG).read_text()
+
+
+def test_an_interrupt_stops_the_trainings(write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[subprocess.Popen] = []
+
+    def start(arguments: dict, log: Path) -> subprocess.Popen:
+        started.append(subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"]))
+        return started[-1]
+
+    monkeypatch.setattr(module.launch, "start", start)
+    monkeypatch.setattr(module.time, "sleep", lambda seconds: (_ for _ in ()).throw(KeyboardInterrupt))
+    assert not run_campaign(load_campaign(write("c.yaml", yaml.safe_dump(DATA))), tmp_path / "out")
+    assert [p.poll() for p in started] == [-signal.SIGTERM] * 2

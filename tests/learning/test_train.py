@@ -1,0 +1,143 @@
+from __future__ import annotations
+
+import json
+import os
+import signal
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.learning.preset import Preset
+from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, policies, read_status
+
+torch = pytest.importorskip("torch")
+onnxruntime = pytest.importorskip("onnxruntime")
+pytest.importorskip("rsl_rl")
+pytest.importorskip("tensorboard")
+
+from hyperleg_design.learning import train as module  # noqa: E402
+from hyperleg_design.learning.checkpoint import load_checkpoint  # noqa: E402
+from hyperleg_design.learning.train import train  # noqa: E402
+
+
+@pytest.fixture(autouse=True)
+def short_trials(monkeypatch: pytest.MonkeyPatch) -> None:
+    from hyperleg_design.learning import trial
+
+    monkeypatch.setattr(trial, "WALK", 0.2)
+    monkeypatch.setattr(trial, "COURSE", 0.2)
+
+
+def networks(folder: Path) -> dict[str, np.ndarray]:
+    saved = load_checkpoint(folder / CHECKPOINT)["networks"]
+    return {f"{kind}.{name}": value.numpy() for kind in ("actor_state_dict", "critic_state_dict") for name, value in saved[kind].items()}
+
+
+def test_resuming_changes_not_a_bit(tiny: Preset, tmp_path: Path) -> None:
+    assert train("walk", "toe", 7, tiny, tmp_path / "straight")
+    assert not train("walk", "toe", 7, tiny, tmp_path / "parts", iterations=3)
+    assert not (tmp_path / "parts" / POLICY).exists()
+    torch.manual_seed(123)  # whatever happens between
+    assert train("walk", "toe", 7, tiny, tmp_path / "parts")
+    straight, parts = networks(tmp_path / "straight"), networks(tmp_path / "parts")
+    assert straight.keys() == parts.keys()
+    for name, value in straight.items():
+        np.testing.assert_array_equal(parts[name], value, err_msg=name)
+    assert (tmp_path / "straight" / POLICY).read_bytes() == (tmp_path / "parts" / POLICY).read_bytes()
+    lines = [[json.loads(x) for x in (tmp_path / n / PROGRESS).read_text().splitlines()] for n in ("straight", "parts")]
+    assert [x["iteration"] for x in lines[1]] == [1, 2, 3, 4, 5, 6]
+    for one, other in zip(*lines, strict=True):
+        one.pop("rate"), other.pop("rate")
+        assert one == other
+
+
+def test_seeds_differ(tiny: Preset, tmp_path: Path) -> None:
+    for seed in (0, 1):
+        train("walk", "toe", seed, tiny, tmp_path / str(seed), iterations=1)
+    zero, one = networks(tmp_path / "0"), networks(tmp_path / "1")
+    assert any(not np.array_equal(zero[name], one[name]) for name in zero)
+
+
+def test_a_policy_says_what_it_is(tiny: Preset, tmp_path: Path) -> None:
+    from hyperleg_design.simulation.tasks import task_from_mapping
+
+    shown: list[str] = []
+    folder = tmp_path / "run"
+    assert train("goal", "toe_removed_matched", 2, tiny, folder, show=shown.append)
+    assert "goal toe_removed_matched seed 2" in shown[-1]
+    assert "falls" in shown[-1]
+    assert read_status(folder)["done"]
+    assert [p.name for p in policies(folder)] == ["late_000001.onnx", POLICY]
+    assert any(p.name.startswith("events.") for p in folder.iterdir())
+    session = onnxruntime.InferenceSession(str(folder / POLICY))
+    said = session.get_modelmeta().custom_metadata_map
+    assert (said["variant"], said["seed"], said["steps"]) == ("toe_removed_matched", "2", "96")
+    assert len(json.loads(said["joints"])) == 12
+    assert session.get_inputs()[0].shape[1] == len(json.loads(said["columns"])) == 57 + 4
+    assert task_from_mapping(json.loads(said["task"]), "onnx").name == "goal"
+    assert "goal_speed" in json.loads(said["deviations"])
+    assert json.loads(said["design"])["variant"] == "toe_removed_matched"
+    assert json.loads(said["preset"])["tasks"].keys() == {"goal"}
+    assert {"commit", "command", "versions"} <= said.keys()
+
+
+def test_a_finished_training_is_left_alone(tiny: Preset, tmp_path: Path) -> None:
+    train("walk", "toe", 0, tiny, tmp_path / "run")
+    before = {p.name: p.read_bytes() for p in (tmp_path / "run").iterdir()}
+    assert train("walk", "toe", 0, tiny, tmp_path / "run")
+    after = {p.name: p.read_bytes() for p in (tmp_path / "run").iterdir()}
+    assert after == before
+
+
+def test_a_signal_stops_with_a_checkpoint(tiny: Preset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "SHOW_EVERY", 0.0)
+    assert not train("walk", "toe", 0, tiny, tmp_path / "run", show=lambda line: os.kill(os.getpid(), signal.SIGTERM))
+    assert load_checkpoint(tmp_path / "run" / CHECKPOINT)["schedule"]["iteration"] == 1
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+    assert train("walk", "toe", 0, tiny, tmp_path / "run")
+
+
+def test_another_training_is_not_gone_on_with(tiny: Preset, tmp_path: Path) -> None:
+    train("walk", "toe", 0, tiny, tmp_path / "run", iterations=1)
+    for seed, design, preset, field in (
+        (1, "toe", tiny, "seed"),
+        (0, "toe_removed", tiny, "variant"),
+        (0, "toe", replace(tiny, rollout=5.0), "preset"),
+    ):
+        with pytest.raises(InputError) as caught:
+            train("walk", design, seed, preset, tmp_path / "run")
+        assert caught.value.field == field
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.tex").write_text("years of work")
+    with pytest.raises(OutputError, match="did not write"):
+        train("walk", "toe", 0, tiny, tmp_path / "mine")
+
+
+def test_two_at_once_in_one_folder(tiny: Preset, tmp_path: Path) -> None:
+    train("walk", "toe", 0, tiny, tmp_path / "run", iterations=1)
+    with module._alone(tmp_path / "run"), pytest.raises(InputError, match="at work"):
+        train("walk", "toe", 0, tiny, tmp_path / "run")
+
+
+def test_a_truncated_checkpoint_is_named_and_a_full_disk_costs_nothing(tiny: Preset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "run"
+    train("walk", "toe", 0, tiny, folder, iterations=2)
+    content = (folder / CHECKPOINT).read_bytes()
+
+    def full(*_: object) -> None:
+        raise OutputError("disk full")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "save_checkpoint", full)
+        with pytest.raises(OutputError):
+            train("walk", "toe", 0, tiny, folder)
+    assert (folder / CHECKPOINT).read_bytes() == content
+    (folder / CHECKPOINT).write_bytes(content[: len(content) // 2])
+    with pytest.raises(InputError, match="truncated"):
+        train("walk", "toe", 0, tiny, folder)
+    (folder / CHECKPOINT).write_bytes(content)
+    assert train("walk", "toe", 0, tiny, folder)
+    assert json.loads((folder / RUN).read_text())["seed"] == 0
