@@ -20,7 +20,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_part_is_on_the_page(page):
     html = page.read_text()
     assert html.count("<h2 ") == len(study.STEPS)
-    for word in ("32 kg", "13.0 %", "212 → 166 Nm", "75.9 Nm", "Cassie", "RI70", "toe_removed_matched"):
+    for word in ("32.00 kg", "13.0 %", "212 → 166 Nm", "75.9 Nm", "Cassie", "RI70", "toe_removed_matched"):
         assert word in html
 
 
