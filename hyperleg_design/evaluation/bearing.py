@@ -1,0 +1,57 @@
+"""How a robot carries itself: upright or leaning, joints at their stops, vibration."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+STOP = np.deg2rad(1.0)
+"""Distance from the end of a joint's range within which it rests on the stop [rad]."""
+VIBRATION = 15.0
+"""Frequency above which motion counts as vibration [Hz]; a walk's own harmonics lie below."""
+
+
+def headings(orientation: Any) -> np.ndarray:
+    """Cosine and sine of the yaw of quaternions w x y z, `(..., 4)` -> `(..., 2)`."""
+    w, x, y, z = np.moveaxis(np.asarray(orientation, float), -1, 0)
+    forward = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z)], -1)
+    return np.asarray(forward / np.maximum(np.linalg.norm(forward, axis=-1, keepdims=True), 1e-9))
+
+
+def tilt(orientation: Any) -> np.ndarray:
+    """Angle between the body's and the world's vertical [rad], quaternions w x y z `(..., 4)` -> `(...)`."""
+    _, x, y, _ = np.moveaxis(np.asarray(orientation, float), -1, 0)
+    return np.arccos(np.clip(1 - 2 * (x * x + y * y), -1.0, 1.0))
+
+
+def turned(heading: Any) -> float:
+    """Angle turned between the first and the last heading, counterclockwise, whole turns counted [rad], `(t, 2)`."""
+    heading = np.asarray(heading, float)
+    angle = np.unwrap(np.arctan2(heading[:, 1], heading[:, 0]))
+    return float(angle[-1] - angle[0])
+
+
+def stop_share(joint_position: Any, lower: Any, upper: Any) -> np.ndarray:
+    """Share of time that each joint rests on a stop or is pressed past it [-].
+
+    Args:
+        joint_position: [rad], `(t, J)`.
+        lower: lower ends of the ranges of motion [rad], `(J,)`.
+        upper: upper ends [rad], `(J,)`.
+
+    Returns:
+        `(J,)`
+    """
+    position = np.asarray(joint_position, float)
+    return np.asarray(np.mean((position < np.asarray(lower) + STOP) | (position > np.asarray(upper) - STOP), 0))
+
+
+def vibration(joint_velocity: Any, time_step: float, above: float = VIBRATION) -> np.ndarray:
+    """Root mean square of the joints' velocities above a frequency [rad/s], `(t, J)` -> `(J,)`."""
+    from scipy.signal import butter, sosfiltfilt
+
+    velocity = np.asarray(joint_velocity, float)
+    sections = butter(2, above, "highpass", fs=1 / time_step, output="sos")
+    fast = sosfiltfilt(sections, velocity, axis=0, padlen=min(9, len(velocity) - 1))
+    return np.asarray(np.sqrt(np.mean(fast**2, 0)))

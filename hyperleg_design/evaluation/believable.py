@@ -1,0 +1,66 @@
+"""Whether walks are ones that a person would believe: what is asked, what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.result import Evaluation
+
+
+@dataclass(frozen=True)
+class Demand:
+    """A range that a measure's mean over walks should lie in."""
+
+    measure: str
+    low: float
+    high: float
+    why: str
+
+
+DEMANDS = (
+    Demand("fell", 0.0, 0.0, "no fall"),
+    Demand("arrived", 1.0, 1.0, "every walk reaches the distance"),
+    Demand("cadence", 1.4, 2.4, "steps a second as people make them"),
+    Demand("alternation", 0.98, 1.0, "left and right by turns, no hopping"),
+    Demand("double_support", 0.02, 0.6, "walking, neither running nor shuffling"),
+    Demand("flight", 0.0, 0.02, "no flight"),
+    Demand("heel_or_flat", 0.9, 1.0, "heel or flat touchdown"),
+    Demand("slip_per_step", 0.0, 0.02, "feet that do not slide [m]"),
+    Demand("mean_tilt", 0.0, 0.2, "upright torso [rad]"),
+    Demand("stop_share", 0.0, 0.3, "no joint that rests on a stop"),
+    Demand("vibration", 0.0, 1.0, "nothing vibrates [rad/s]"),
+)
+"""Cadence, slip, falls and speed are the study's demands; the other bounds are assumed."""
+SPEED_SHARE = 0.05
+"""Largest relative difference of the steady speed from the command."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A demand and what was found."""
+
+    demand: Demand
+    found: float
+    """Mean over the walks that have the measure; NaN where none has."""
+
+    @property
+    def met(self) -> bool:
+        """Whether it lies in the range."""
+        return bool(self.demand.low <= self.found <= self.demand.high)
+
+
+def walk_findings(evaluations: Sequence[Evaluation]) -> list[Finding]:
+    """Each demand against the mean over all walks of some evaluations under one protocol."""
+    speed = evaluations[0].protocol.speed
+    near = Demand("steady_speed", speed * (1 - SPEED_SHARE), speed * (1 + SPEED_SHARE), "speed within 5 % of the command [m/s]")
+    found = []
+    for demand in (*DEMANDS, near):
+        values = np.concatenate([one.values(demand.measure) for one in evaluations])
+        values = values[np.isfinite(values)]
+        found.append(Finding(demand, float(values.mean()) if len(values) else np.nan))
+    return found

@@ -1,0 +1,108 @@
+"""A course of straight legs between waypoints, and how a path keeps to it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+def segment_distances(points: Any, course: Any) -> np.ndarray:
+    """Distance of points from each leg of a course [m].
+
+    Args:
+        points: `(..., 2)` [m].
+        course: waypoints, `(k, 2)` [m].
+
+    Returns:
+        `(..., k - 1)`
+    """
+    points, course = np.asarray(points, float), np.asarray(course, float)
+    begin, along = course[:-1], np.diff(course, axis=0)
+    offset = points[..., None, :] - begin
+    square = np.maximum(np.einsum("ki,ki->k", along, along), 1e-18)
+    portion = np.clip(np.einsum("...ki,ki->...k", offset, along) / square, 0.0, 1.0)
+    return np.asarray(np.linalg.norm(offset - portion[..., None] * along, axis=-1))
+
+
+def course_deviation(points: Any, course: Any) -> np.ndarray:
+    """Distance of points from the nearest point of any leg of the course [m], `(..., 2)` -> `(...)`."""
+    return np.asarray(segment_distances(points, course).min(-1))
+
+
+def leg_deviation(points: Any, course: Any, leg: Any) -> np.ndarray:
+    """Distance of points from the leg that is being run [m], `(t, 2)` and indices `(t,)` -> `(t,)`."""
+    return np.asarray(np.take_along_axis(segment_distances(points, course), np.asarray(leg, int)[:, None], 1)[:, 0])
+
+
+def course_length(course: Any) -> float:
+    """Sum of the legs' lengths [m]."""
+    return path_length(course)
+
+
+def path_length(points: Any) -> float:
+    """Length of the way through points [m], `(t, 2)`."""
+    return float(np.linalg.norm(np.diff(np.asarray(points, float), axis=0), axis=-1).sum())
+
+
+def arrivals(points: Any, course: Any, radius: float) -> np.ndarray:
+    """First samples within the radius of each waypoint after the start, one after the other; -1 where never.
+
+    A waypoint counts only from the sample after that at which the one before was reached.
+
+    Args:
+        points: `(t, 2)` [m].
+        course: waypoints, the first where the run starts, `(k, 2)` [m].
+        radius: [m]
+
+    Returns:
+        `(k - 1,)`
+    """
+    points, course = np.asarray(points, float), np.asarray(course, float)
+    found = np.full(len(course) - 1, -1)
+    begin = 0
+    for i, waypoint in enumerate(course[1:]):
+        near = np.flatnonzero(np.linalg.norm(points[begin:] - waypoint, axis=-1) < radius)
+        if not len(near):
+            break
+        found[i] = begin + near[0]
+        begin = found[i] + 1
+    return found
+
+
+def legs_run(reached: Any, samples: int) -> np.ndarray:
+    """Leg being run at each sample, from the samples at which waypoints were reached (-1: never), `(samples,)`."""
+    reached = np.asarray(reached, int)
+    changes = reached[:-1][reached[:-1] >= 0]
+    return np.searchsorted(changes, np.arange(samples), side="right")
+
+
+def crossing_time(distance: Any, length: float, time_step: float) -> float:
+    """Time at which a distance first reaches a length, linear between samples [s]; NaN where it never does.
+
+    Args:
+        distance: of each sample, `(t,)` [m].
+        length: [m]
+        time_step: between samples [s].
+    """
+    distance = np.asarray(distance, float)
+    beyond = np.flatnonzero(distance >= length)
+    if not len(beyond):
+        return np.nan
+    i = int(beyond[0])
+    if i == 0:
+        return 0.0
+    return float((i - 1 + (length - distance[i - 1]) / (distance[i] - distance[i - 1])) * time_step)
+
+
+def in_start_frame(position: Any, start: Any, heading: Any) -> np.ndarray:
+    """World points in the frame of the start, x ahead, y to the left [m].
+
+    Args:
+        position: `(..., 2)` [m].
+        start: origin, `(2,)` [m].
+        heading: cosine and sine of the yaw at the start, `(2,)`.
+    """
+    offset = np.asarray(position, float) - np.asarray(start, float)
+    cosine, sine = np.asarray(heading, float)
+    return np.stack([cosine * offset[..., 0] + sine * offset[..., 1], cosine * offset[..., 1] - sine * offset[..., 0]], -1)

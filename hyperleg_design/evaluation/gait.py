@@ -1,0 +1,221 @@
+"""Gait events and what follows from them, from the vertical forces on the feet of one walk.
+
+A foot stands from the sample at which its load rises above a first threshold to that at which it falls below a second,
+lower one (hysteresis); contacts and gaps shorter than a least time are not counted. Samples are indices; arrays have time
+first unless stated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+CYCLE_POINTS = 101
+"""Of a normalised gait cycle: 0 .. 100 %, touchdown to next touchdown of the same foot."""
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Touchdowns after a swing, in order of time, of both feet; `(k,)` each."""
+
+    foot: np.ndarray
+    """0 left, 1 right."""
+    touchdown: np.ndarray
+    """First sample of the contact."""
+    heel_off: np.ndarray
+    """First sample without load on the heel for the rest of the contact; `toe_off` where the heel stays loaded, `touchdown` where it never is."""
+    toe_off: np.ndarray
+    """First sample after the contact; -1 where the record ends before."""
+    heel_lead: np.ndarray
+    """Time from the first load on the heel to the first on the forefoot [s]: positive for a heel strike, 0 for a flat
+    landing, negative for one on the toes; of one that is never loaded, as if it were at `toe_off`."""
+
+    def __len__(self) -> int:
+        return len(self.touchdown)
+
+    def within(self, first: int, last: int) -> Steps:
+        """Those with `first <= touchdown < last`."""
+        kept = (self.touchdown >= first) & (self.touchdown < last)
+        return Steps(**{name: values[kept] for name, values in vars(self).items()})
+
+
+def stance(load: Any, on: float, off: float, shortest: int = 1) -> np.ndarray:
+    """Whether feet stand.
+
+    Args:
+        load: vertical force [N], `(t, ...)`.
+        on: force above which a contact begins [N].
+        off: force below which it ends [N].
+        shortest: contacts and gaps of fewer samples are not counted, unless cut by an end of the record.
+
+    Returns:
+        `(t, ...)`; before the first crossing, whether the first load is at least `off`.
+    """
+    load = np.asarray(load, float)
+    known = (load > on) | (load < off)
+    known[0] = True
+    decided = np.where(known, load >= off, False)
+    latest = np.where(known, np.arange(len(load)).reshape(-1, *[1] * (load.ndim - 1)), 0)
+    found = np.take_along_axis(decided, np.maximum.accumulate(latest, 0), 0)
+    if shortest > 1:
+        flat = found.reshape(len(load), -1)
+        for column in flat.T:
+            _fill_short(column, False, shortest)
+            _fill_short(column, True, shortest)
+    return np.asarray(found)
+
+
+def _fill_short(values: np.ndarray, kind: bool, shortest: int) -> None:
+    """Turn inner runs of `kind` with fewer samples than `shortest` around, in place; `(t,)`."""
+    edges = np.flatnonzero(np.diff(values)) + 1
+    for begin, end in pairwise(edges):
+        if values[begin] == kind and end - begin < shortest:
+            values[begin:end] = not kind
+
+
+def find_steps(feet: np.ndarray, heel: np.ndarray, forefoot: np.ndarray, time_step: float) -> Steps:
+    """Steps from the contacts of whole feet, heels and forefeet.
+
+    Args:
+        feet: whether each foot stands, `(t, 2)`.
+        heel: whether its heel is loaded, `(t, 2)`.
+        forefoot: whether the rest of it is, `(t, 2)`.
+        time_step: between samples [s].
+    """
+    rows = []
+    for foot in (0, 1):
+        change = np.diff(feet[:, foot].astype(int))
+        downs, ups = np.flatnonzero(change == 1) + 1, np.flatnonzero(change == -1) + 1
+        for down in downs:
+            later = ups[ups > down]
+            up = int(later[0]) if len(later) else -1
+            end = up if up > 0 else len(feet)
+            loaded = np.flatnonzero(heel[down:end, foot])
+            ahead = np.flatnonzero(forefoot[down:end, foot])
+            heel_off = down + loaded[-1] + 1 if len(loaded) else down
+            lead = (ahead[0] if len(ahead) else end - down) - (loaded[0] if len(loaded) else end - down)
+            rows.append((foot, int(down), int(heel_off), up, lead * time_step))
+    table = np.array(sorted(rows, key=lambda row: row[1]), float).reshape(-1, 5).T
+    which, touchdown, off, toe = table[:4].astype(int)
+    return Steps(which, touchdown, off, toe, table[4])
+
+
+def whole_strides(steps: Steps, first: int, last: int, foot: int = 0) -> tuple[int, int] | None:
+    """The longest stretch of whole strides of one foot between two samples, as `(first, last)`; None where there is none."""
+    downs = steps.touchdown[(steps.foot == foot) & (steps.touchdown >= first) & (steps.touchdown <= last)]
+    return (int(downs[0]), int(downs[-1])) if len(downs) > 1 else None
+
+
+def strides(steps: Steps, foot: int) -> tuple[np.ndarray, np.ndarray]:
+    """First sample and sample after the last of each stride of a foot, `(k,)` each."""
+    downs = steps.touchdown[steps.foot == foot]
+    return downs[:-1], downs[1:]
+
+
+def cadence(steps: Steps, time_step: float) -> float:
+    """Steps over time, between the first and the last touchdown [1/s]; NaN where there is no time between."""
+    if len(steps) < 2 or steps.touchdown[-1] == steps.touchdown[0]:
+        return np.nan
+    return float((len(steps) - 1) / ((steps.touchdown[-1] - steps.touchdown[0]) * time_step))
+
+
+def alternation(steps: Steps) -> float:
+    """Share of steps made by the other foot than the one before [-]; 1 for walking, 0 for hopping on one leg."""
+    return float(np.mean(np.diff(steps.foot) != 0)) if len(steps) > 1 else np.nan
+
+
+def event_shares(steps: Steps) -> dict[str, float]:
+    """Means over whole strides of both feet [-]: `duty_factor` (toe-off over stride) and `heel_off` (heel-off over stride)."""
+    duty, heel = [], []
+    for foot in (0, 1):
+        mine = np.flatnonzero(steps.foot == foot)
+        for i, following in pairwise(mine):
+            stride = steps.touchdown[following] - steps.touchdown[i]
+            duty.append((steps.toe_off[i] - steps.touchdown[i]) / stride)
+            heel.append((steps.heel_off[i] - steps.touchdown[i]) / stride)
+    return {"duty_factor": float(np.mean(duty)) if duty else np.nan, "heel_off": float(np.mean(heel)) if heel else np.nan}
+
+
+def support_shares(feet: np.ndarray) -> dict[str, float]:
+    """Shares of time [-] with both feet, one foot and none on the floor, from `(t, 2)`: `double_support`, `single_support`, `flight`."""
+    standing = feet.sum(-1)
+    names = ("flight", "single_support", "double_support")
+    return {name: float(np.mean(standing == count)) if len(feet) else np.nan for count, name in enumerate(names)}
+
+
+def step_vectors(steps: Steps, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Length and width of steps that follow one of the other foot [m].
+
+    The direction of travel is from the place of the same foot's touchdown before to that after, so a walk may curve.
+
+    Args:
+        steps: k steps.
+        places: of the stepping foot at its touchdown, on the floor, `(k, 2)` [m].
+
+    Returns:
+        Length along the direction of travel and width across it, of each step that has both neighbours of the other foot.
+    """
+    length, width = [], []
+    for i in range(1, len(steps) - 1):
+        if steps.foot[i - 1] == steps.foot[i] or steps.foot[i + 1] == steps.foot[i]:
+            continue
+        travel = places[i + 1] - places[i - 1]
+        stride = np.hypot(*travel)
+        if stride < 1e-6:
+            continue
+        along = travel / stride
+        step = places[i] - places[i - 1]
+        length.append(float(step @ along))
+        width.append(float(abs(step[0] * along[1] - step[1] * along[0])))
+    return np.array(length), np.array(width)
+
+
+def slip_per_step(steps: Steps, pad_load: np.ndarray, pad_slip: np.ndarray, pad_foot: np.ndarray, time_step: float) -> np.ndarray:
+    """Way that the foot slides over the floor in each whole contact [m], `(k,)`; NaN where the record ends before toe-off.
+
+    The integral of the pads' sliding speed, their mean weighted by load.
+
+    Args:
+        steps: k steps.
+        pad_load: vertical force on each pad [N], `(t, P)`.
+        pad_slip: sliding speed of each touching pad [m/s], `(t, P)`.
+        pad_foot: foot of each pad, `(P,)`.
+        time_step: between samples [s].
+    """
+    found = np.full(len(steps), np.nan)
+    for foot in (0, 1):
+        mine = pad_foot == foot
+        load = pad_load[:, mine]
+        total = load.sum(-1)
+        weighted = np.einsum("tp,tp->t", load, pad_slip[:, mine])
+        speed = np.divide(weighted, total, out=np.zeros(len(total)), where=total > 0)
+        way = np.concatenate([[0.0], np.cumsum(speed) * time_step])
+        for i in np.flatnonzero((steps.foot == foot) & (steps.toe_off > 0)):
+            found[i] = way[steps.toe_off[i]] - way[steps.touchdown[i]]
+    return found
+
+
+def cycles(signal: np.ndarray, steps: Steps, foot: int, points: int = CYCLE_POINTS) -> np.ndarray:
+    """A signal over each stride of a foot, touchdown to touchdown, at equal shares of the stride.
+
+    Args:
+        signal: `(t, m)`.
+        steps: steps.
+        foot: 0 left, 1 right.
+        points: from 0 to 100 %.
+
+    Returns:
+        `(strides, points, m)`
+    """
+    begins, ends = strides(steps, foot)
+    share = np.linspace(0.0, 1.0, points)
+    found = np.empty((len(begins), points, signal.shape[1]))
+    for i, (begin, end) in enumerate(zip(begins, ends, strict=True)):
+        at = begin + share * (end - begin)
+        low = np.minimum(at.astype(int), len(signal) - 2)
+        part = (at - low)[:, None]
+        found[i] = (1 - part) * signal[low] + part * signal[low + 1]
+    return found

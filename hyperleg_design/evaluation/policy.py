@@ -1,0 +1,247 @@
+"""Policies: plain callables from observations `(n, size)` to actions `(n, J)`, or ONNX files that say what they are.
+
+An ONNX file has the input `observation` `(n, size)` and the output `action` `(n, J)`, single precision, its normaliser
+inside the graph, and metadata (`metadata_props`; JSON where not plain text):
+
+| key | holds |
+|---|---|
+| `format` | `hyperleg-policy-1` |
+| `columns` | names of the numbers of the observation |
+| `joints` | names of the numbers of the action |
+| `task`, `design` | resolved, as `task_from_mapping` and `design_from_mapping` take them |
+| `variant`, `seed`, `steps`, `deviations`, `command`, `commit`, `versions`, `preset` | how it was made; shown, not needed |
+
+A callable with a method `reset(n)` is told before each evaluation that n trials begin.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.design import design_from_mapping
+from hyperleg_design.simulation.tasks import task_from_mapping
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.environment import Environment
+    from hyperleg_design.simulation.tasks import Task
+
+FORMAT = "hyperleg-policy-1"
+"""Of the metadata."""
+INPUT, OUTPUT = "observation", "action"
+NEEDED = ("columns", "joints", "task", "design")
+"""Metadata without which a file is not evaluated."""
+SUFFIX = ".onnx"
+
+Policy = Callable[[np.ndarray], np.ndarray]
+"""From observations `(n, size)` to actions `(n, J)`."""
+
+
+@dataclass(eq=False)
+class OnnxPolicy:
+    """A policy from an ONNX file, run by ONNX Runtime on one thread, so that results do not depend on the machine's load."""
+
+    name: str
+    """Of the file, without its ending."""
+    columns: tuple[str, ...]
+    """Names of the numbers of the observation."""
+    joints: tuple[str, ...]
+    """Names of the numbers of the action."""
+    design: Design
+    """The robot that it was trained on."""
+    task: Task
+    """The task that it was trained on, as it began."""
+    metadata: Mapping[str, Any]
+    """All that the file says of itself."""
+    session: Any = field(repr=False)
+    """Of ONNX Runtime."""
+
+    def __call__(self, observation: np.ndarray) -> np.ndarray:
+        """Actions `(n, J)` for observations `(n, size)`."""
+        (action,) = self.session.run([OUTPUT], {INPUT: np.asarray(observation, np.float32)})
+        return np.asarray(action)
+
+    @property
+    def seed(self) -> int:
+        """Training seed; -1 where the file does not say."""
+        return _whole(self.metadata.get("seed"))
+
+    @property
+    def steps(self) -> int:
+        """Policy steps that it was trained for; -1 where the file does not say."""
+        return _whole(self.metadata.get("steps"))
+
+    @property
+    def variant(self) -> str:
+        """Ablation that it was trained on."""
+        return self.design.variant
+
+
+def load_policy(name: str | Path) -> OnnxPolicy:
+    """Read a policy.
+
+    Args:
+        name: a shipped name, or an ONNX file.
+
+    Raises:
+        InputError: missing, truncated or foreign file, or metadata that does not fit its graph.
+    """
+    path = resources.find("sim", name, SUFFIX)
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(str(path), "", None, f"cannot be read ({error.strerror})") from None
+    session = _session(content, path.name)
+    metadata = _metadata(session, path.name)
+    columns, joints = (_names(metadata[key], path.name, key) for key in ("columns", "joints"))
+    _check_graph(session, path.name, len(columns), len(joints))
+    return OnnxPolicy(
+        name=path.stem,
+        columns=columns,
+        joints=joints,
+        design=design_from_mapping(metadata["design"], f"{path.name}: design"),
+        task=task_from_mapping(metadata["task"], f"{path.name}: task"),
+        metadata=metadata,
+        session=session,
+    )
+
+
+def standing(joints: int) -> Policy:
+    """Policy that holds the default posture: all actions zero."""
+    return lambda observation: np.zeros((len(observation), joints))
+
+
+@dataclass(eq=False)
+class Scripted:
+    """Policy that plays a sequence of actions, the same in all trials, and holds the last."""
+
+    actions: np.ndarray
+    """`(steps, J)`"""
+    step: int = 0
+    """Next row."""
+
+    def reset(self, trials: int) -> None:
+        """Begin anew."""
+        self.step = 0
+
+    def __call__(self, observation: np.ndarray) -> np.ndarray:
+        """The next row for every trial, `(n, J)`."""
+        row = self.actions[min(self.step, len(self.actions) - 1)]
+        self.step += 1
+        return np.broadcast_to(row, (len(observation), len(row)))
+
+
+def policy_name(policy: Policy) -> str:
+    """Name of a policy for messages and tables."""
+    return str(getattr(policy, "name", None) or getattr(policy, "__name__", type(policy).__name__)).replace("<lambda>", "policy")
+
+
+def check_layout(policy: Policy, environment: Environment) -> None:
+    """Whether a policy that knows its layout was made for this robot and task.
+
+    Raises:
+        InputError: names the first number that is another one.
+    """
+    if not isinstance(policy, OnnxPolicy):
+        return
+    pairs = (("columns", policy.columns, environment.observation_columns["policy"]), ("joints", policy.joints, environment.layout.joints))
+    for key, own, needed in pairs:
+        difference = _first_difference(own, needed)
+        if difference:
+            raise InputError(policy.name, key, None, f"is made for another layout than this robot and task have: {difference}")
+
+
+def checked_action(policy: Policy, observation: np.ndarray, step: int, duration: float, running: np.ndarray, size: int) -> np.ndarray:
+    """Actions of a policy for the trials that still run, zero for the others, `(n, size)`.
+
+    Args:
+        policy: the policy.
+        observation: `(n, k)`.
+        step: policy step, for messages.
+        duration: of a policy step [s].
+        running: trials that count, `(n,)`.
+        size: numbers in an action.
+
+    Raises:
+        InputError: wrong shape, or values that are not finite; names step and trial.
+    """
+    action = np.asarray(policy(observation), float)
+    if action.shape != (len(observation), size):
+        expected = (len(observation), size)
+        raise InputError(policy_name(policy), OUTPUT, action.shape, f"must have the shape {expected}; is the policy made for another robot?")
+    bad = np.flatnonzero(~np.isfinite(action).all(-1) & running)
+    if len(bad):
+        place = f"in policy step {step} ({step * duration:.2f} s) of trial {bad[0]}"
+        raise InputError(policy_name(policy), OUTPUT, action[bad[0]].tolist(), f"is not finite {place}")
+    return np.where(running[:, None], action, 0.0)
+
+
+def _session(content: bytes, where: str) -> Any:
+    import onnxruntime
+
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.log_severity_level = 4
+    try:
+        return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
+    except Exception as error:  # ONNX Runtime's errors share no base of their own
+        reason = " ".join(str(error).split())[:120]
+        raise InputError(where, "", None, f"is no whole ONNX file ({reason}); export it again") from None
+
+
+def _metadata(session: Any, where: str) -> dict[str, Any]:
+    raw = dict(session.get_modelmeta().custom_metadata_map)
+    if raw.get("format") != FORMAT:
+        remedy = f"expects {FORMAT}; export with `hyperleg train`, or wrap a foreign network in a callable"
+        raise InputError(where, "format", raw.get("format"), remedy)
+    found: dict[str, Any] = {}
+    for key, text in raw.items():
+        try:
+            found[key] = json.loads(text)
+        except ValueError:
+            found[key] = text
+    for key in NEEDED:
+        if key not in found:
+            raise InputError(where, key, None, "is missing in the metadata; export the policy again")
+    for key in ("task", "design"):
+        if not isinstance(found[key], dict):
+            raise InputError(where, key, found[key], "expects a mapping in the metadata; export the policy again")
+    return found
+
+
+def _check_graph(session: Any, where: str, columns: int, joints: int) -> None:
+    places = ((INPUT, session.get_inputs(), columns, "columns"), (OUTPUT, session.get_outputs(), joints, "joints"))
+    for name, found, size, key in places:
+        if [f.name for f in found] != [name]:
+            raise InputError(where, name, [f.name for f in found], f"expects one tensor named {name}")
+        shape = found[0].shape
+        if len(shape) != 2 or (isinstance(shape[1], int) and shape[1] != size):
+            raise InputError(where, name, list(shape), f"does not fit the metadata: {size} {key}")
+
+
+def _names(value: Any, where: str, key: str) -> tuple[str, ...]:
+    if not isinstance(value, list) or not value or not all(isinstance(v, str) for v in value):
+        raise InputError(where, key, value, "expects a list of names in the metadata; export the policy again")
+    return tuple(value)
+
+
+def _first_difference(own: Sequence[str], needed: Sequence[str]) -> str:
+    for i, (a, b) in enumerate(zip(own, needed, strict=False)):
+        if a != b:
+            return f"number {i} is {a} instead of {b}"
+    return f"{len(own)} numbers instead of {len(needed)}" if len(own) != len(needed) else ""
+
+
+def _whole(value: Any) -> int:
+    try:
+        return int(value)
+    except (TypeError, ValueError):
+        return -1

@@ -1,0 +1,97 @@
+"""Power of recorded trials: the whole robot's ledger, joint by joint, motor by motor, and over the gait cycle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.evaluation.gait import CYCLE_POINTS, Steps, cycles
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.sizing.energy import EnergyLedger, energy_ledger, joint_power
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.rollout import Trial
+
+GROUPS = {"hip": ("hip_yaw", "hip_roll", "hip_pitch"), "knee": ("knee",), "ankle": ("ankle_pitch", "ankle_roll"), "toe": ("toe",)}
+"""Joints of each part of Fig. 6."""
+FLOWS = ("motor_side", "joule", "mechanical", "mechanical_positive", "mechanical_negative", "driver_loss", "battery")
+"""Of `EnergyLedger`, summed over all motors, in `flows`."""
+
+
+def ledger(trial: Trial, first: int = 0, last: int | None = None) -> EnergyLedger:
+    """Ledger of all motors between two samples, `(t, K)`."""
+    part = slice(first, last)
+    legs = trial.layout.leg_motors
+    constants = np.tile(motor_arrays(trial.design).power_constant[:legs], 2)
+    electrical = trial.design.electrical
+    return energy_ledger(
+        trial.motor_torque[part], trial.motor_velocity[part], trial.time_step, constants, electrical.efficiency_out, electrical.efficiency_regen
+    )
+
+
+def flows(entries: EnergyLedger) -> dict[str, float]:
+    """Mean power of the whole robot in each of `FLOWS` [W]; `motor_side` is the paper's total."""
+    total = entries.mean_power().total()
+    return {name: float(getattr(total, name)) for name in FLOWS}
+
+
+@dataclass(frozen=True, eq=False)
+class CyclePower:
+    """Power of one leg over the normalised gait cycle, one row a stride; q joints, m motors of the leg."""
+
+    joints: tuple[str, ...]
+    """Without the side, `(q,)`."""
+    motors: tuple[str, ...]
+    """Without the side, `(m,)`."""
+    mechanical: np.ndarray
+    """Given by the motors to each joint, signed [W], `(strides, points, q)`."""
+    joule: np.ndarray
+    """Heat of each motor [W], `(strides, points, m)`."""
+
+    def of_group(self, group: str) -> np.ndarray:
+        """Mechanical power of a part of `GROUPS` [W], `(strides, points)`; zero for a toe that is not there."""
+        kept = [i for i, joint in enumerate(self.joints) if joint in GROUPS[group]]
+        return np.asarray(self.mechanical[..., kept].sum(-1))
+
+    def means(self) -> dict[str, float]:
+        """Means over strides and cycle [W]: `{group}`, `{group}_positive`, `{group}_absolute` mechanical, `joule`, `total`.
+
+        Positive and absolute are taken joint by joint. Signed groups and `joule` add up to `total`.
+        """
+        found: dict[str, float] = {}
+        for group, names in GROUPS.items():
+            part = self.mechanical[..., [i for i, joint in enumerate(self.joints) if joint in names]]
+            found[group] = _over_cycle(part.sum(-1))
+            found[f"{group}_positive"] = _over_cycle(np.maximum(part, 0.0).sum(-1))
+            found[f"{group}_absolute"] = _over_cycle(np.abs(part).sum(-1))
+        found["joule"] = _over_cycle(self.joule.sum(-1))
+        found["total"] = found["joule"] + sum(found[group] for group in GROUPS)
+        return found
+
+
+def _over_cycle(values: np.ndarray) -> float:
+    """Mean over strides and cycle, whose two ends are one point, `(strides, points)`; NaN without strides."""
+    return float(np.trapezoid(values.mean(0), dx=1.0 / (values.shape[1] - 1))) if len(values) else np.nan
+
+
+def cycle_power(trial: Trial, steps: Steps, foot: int = 1, points: int = CYCLE_POINTS) -> CyclePower:
+    """Power of one leg over its strides.
+
+    Args:
+        trial: the trial.
+        steps: those whose strides count.
+        foot: 0 left, 1 right (the paper's Fig. 6).
+        points: of the normalised cycle.
+    """
+    layout = trial.layout
+    joints, motors = (slice(foot * n, (foot + 1) * n) for n in (layout.leg_joints, layout.leg_motors))
+    constants = motor_arrays(trial.design).power_constant[: layout.leg_motors]
+    mechanical = joint_power(trial.driven_joint_torque[:, joints], trial.joint_velocity[:, joints])
+    return CyclePower(
+        joints=tuple(name.split("_", 1)[1] for name in layout.joints[joints]),
+        motors=tuple(name.split("_", 1)[1] for name in layout.motors[motors]),
+        mechanical=cycles(mechanical, steps, foot, points),
+        joule=cycles(constants * trial.motor_torque[:, motors] ** 2, steps, foot, points),
+    )

@@ -1,0 +1,263 @@
+"""Evaluation protocols: what is run and how it is measured, read from `sim/protocol_*.yaml` or a user's file."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.course import course_length
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters
+from hyperleg_design.robot.parameters import number
+from hyperleg_design.simulation.settings import Checked, Randomisation, Start
+
+PREFIX = "protocol_"
+"""How the shipped files in `sim/` begin."""
+MOST_TRIALS = 4096
+T_TEST_POINTS = {"A": (0.0, 0.0), "B": (9.14, 0.0), "C": (9.14, 4.57), "D": (9.14, -4.57)}
+"""Of the human agility T-test, A where the run starts, x ahead [m]; the paper does not print its course's size."""
+T_TEST_ORDER = ("A", "B", "C", "D", "B", "A")
+"""(paper, Section IV.B)"""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Events(Checked):
+    """How gait events are told; all assumed."""
+
+    touchdown_load: Any = number("", 0.001, 1, default=0.05)
+    """Vertical force, in body weights, above which a foot, its heel or its forefoot is loaded [-]."""
+    lift_load: Any = number("", 0.0005, 1, default=0.02)
+    """Vertical force, in body weights, below which it is unloaded [-]."""
+    shortest: Any = number("s", 0, 0.5, default=0.04)
+    """Contacts and gaps shorter than this are not counted [s]."""
+
+    def __post_init__(self) -> None:
+        Checked.__post_init__(self)
+        if self.lift_load > self.touchdown_load:
+            raise InputError("events", "events.lift_load", self.lift_load, f"must not be above touchdown_load, {self.touchdown_load}")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Impact(Checked):
+    """How impacts are measured; the paper states neither window nor filter."""
+
+    window: Any = number("s", 0.005, 0.5, default=0.05)
+    """After touchdown, in which peak and impulse are taken [s]."""
+    cutoff: Any = number("Hz", 0, 1000, default=50.0)
+    """Of the low-pass filter [Hz]; 0 for none."""
+    order: Any = number("", 2, 8, default=4)
+    """Of the Butterworth filter, forwards and backwards together: 2, 4, 6 or 8."""
+
+    def __post_init__(self) -> None:
+        Checked.__post_init__(self)
+        if self.order not in (2, 4, 6, 8):
+            raise InputError("impact", "impact.order", self.order, "expects 2, 4, 6 or 8")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Steady(Checked):
+    """Part of a walk that counts as steady."""
+
+    begin: Any = number("m", 0, 1e5, default=4.0)
+    """From so far away from the start [m]."""
+    end: Any = number("m", 0, 1e5, default=20.0)
+    """Up to so far [m]."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Protocol(Checked):
+    """What all protocols have."""
+
+    name: str
+    trials: Any = number("", 1, MOST_TRIALS, default=10)
+    """Side by side, each from its own starting state."""
+    seed: Any = number("", 0, 2**31, default=0)
+    """Of the starting states; the same seed gives the same trials."""
+    time_limit: Any = number("s", 0.5, 3600, default=40.0)
+    """After which a trial ends without arrival [s]."""
+    start: Start = field(default_factory=Start)
+    """Spread of the starting states."""
+    randomisation: Randomisation = field(default_factory=Randomisation)
+    """Differences between the trials' robots; none by default."""
+    events: Events = field(default_factory=Events)
+    impact: Impact = field(default_factory=Impact)
+
+    def __post_init__(self) -> None:
+        Checked.__post_init__(self)
+        for name in ("trials", "seed"):
+            value = getattr(self, name)
+            if value != int(value):
+                raise InputError(self.name, name, value, "expects a whole number")
+
+    def changed(self: P, **fields: Any) -> P:
+        """A copy with other fields.
+
+        Raises:
+            InputError: a field that makes no sense.
+        """
+        return dataclasses.replace(self, **fields)
+
+
+P = TypeVar("P", bound=Protocol)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class WalkProtocol(Protocol):
+    """Straight walks from standing, at a commanded speed, until a distance from the start."""
+
+    name: str = "walk"
+    speed: Any = number("m/s", 0.05, 10, default=1.33)
+    """Commanded [m/s] (paper, Table III)."""
+    distance: Any = number("m", 0.5, 1e4, default=20.0)
+    """From the start, straight, at which a trial has arrived [m] (paper, Table III)."""
+    heading_gain: Any = number("1/s", 0, 5, default=0.0)
+    """Turning command over heading error; 0 leaves the policy to keep its heading by itself."""
+    steady: Steady = field(default_factory=Steady)
+
+    def __post_init__(self) -> None:
+        Protocol.__post_init__(self)
+        if self.distance > self.speed * self.time_limit:
+            least = self.distance / self.speed
+            raise InputError(self.name, "distance", self.distance, f"cannot be reached at {self.speed:g} m/s in time_limit; that takes {least:.1f} s")
+        if not self.steady.begin < self.steady.end <= self.distance:
+            remedy = f"expects begin below end, and end within distance, {self.distance:g} m"
+            raise InputError(self.name, "steady", [self.steady.begin, self.steady.end], remedy)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TTestProtocol(Protocol):
+    """Runs over a course of waypoints, given one after the other; the torso may turn as it likes."""
+
+    name: str = "t_test"
+    arrival: Any = number("m", 0.01, 5, default=0.5)
+    """Distance that counts as reached [m]; the paper does not print it."""
+    speed_cap: Any = number("m/s", 0.1, 10, default=3.4)
+    """Speed that is asked for [m/s]."""
+    lost: Any = number("m", 0.1, 1000, default=4.0)
+    """Farther than this from the leg being run a trial ends [m]."""
+    points: Mapping[str, tuple[float, float]] = field(default_factory=lambda: dict(T_TEST_POINTS))
+    """Places by name, x ahead of the robot at the start, y to its left [m]."""
+    order: tuple[str, ...] = T_TEST_ORDER
+    """Points one after the other; the robot starts on the first."""
+
+    def __post_init__(self) -> None:
+        Protocol.__post_init__(self)
+        if len(self.order) < 2:
+            raise InputError(self.name, "order", list(self.order), "expects at least two points")
+        for name in self.order:
+            if name not in self.points:
+                raise InputError(self.name, "order", name, f"is not among points: {', '.join(self.points)}")
+        for before, after in zip(self.order[:-1], self.order[1:], strict=True):
+            length = float(np.hypot(*np.subtract(self.points[after], self.points[before])))
+            if length <= self.arrival:
+                remedy = f"is unreachable: its leg of {length:g} m is no longer than arrival, {self.arrival:g} m"
+                raise InputError(self.name, "order", f"{before} to {after}", remedy)
+        least = (course_length(self.course) - self.arrival * (len(self.order) - 1)) / self.speed_cap
+        if least > self.time_limit:
+            raise InputError(self.name, "time_limit", self.time_limit, f"is too short to reach all points; {least:.1f} s are needed at speed_cap")
+
+    @property
+    def course(self) -> np.ndarray:
+        """Waypoints from the start on, the first at the origin, `(k, 2)` [m]."""
+        places = np.array([self.points[name] for name in self.order], float)
+        return places - places[0]
+
+
+_KINDS: dict[str, type[Protocol]] = {"walk": WalkProtocol, "t_test": TTestProtocol}
+
+
+def protocol_names() -> list[str]:
+    """Names of the shipped protocols."""
+    return [n[len(PREFIX) :] for n in resources.names("sim") if n.startswith(PREFIX)]
+
+
+def load_protocol(name: str | Path) -> Protocol:
+    """Read a protocol.
+
+    Args:
+        name: a shipped name, `walk` or `t_test`, or a YAML file.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    known = protocol_names()
+    path = resources.find("sim", f"{PREFIX}{name}") if str(name) in known else Path(name)
+    if not path.is_file():
+        raise InputError("protocol", "", str(name), f"no such file; shipped: {', '.join(known)}")
+    return protocol_from_mapping(read_yaml(path), short_name(path))
+
+
+def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:
+    """A protocol from nested mappings as YAML gives them; `kind` is `walk` or `t_test`.
+
+    Raises:
+        InputError: unknown or missing field, or a value that makes no sense, such as a waypoint that cannot be reached.
+    """
+    rest = dict(data)
+    rest.pop("description", None)
+    kind = rest.pop("kind", None)
+    if kind not in _KINDS:
+        raise InputError(where, "kind", kind, f"expects one of {', '.join(_KINDS)}")
+    cls = _KINDS[kind]
+    given: dict[str, Any] = {"name": rest.pop("name", kind)}
+    if not isinstance(given["name"], str):
+        raise InputError(where, "name", given["name"], "expects a text")
+    if cls is TTestProtocol:
+        if "points" in rest:
+            given["points"] = _points(rest.pop("points"), where)
+        if "order" in rest:
+            given["order"] = _order(rest.pop("order"), where)
+    sections = parameters.section_types(cls)
+    fields = {f.name: f for f in dataclasses.fields(cls)}
+    known = [*(n for n, f in fields.items() if n in sections or parameters.is_leaf(f)), *(("points", "order") if cls is TTestProtocol else ())]
+    try:
+        for key, value in rest.items():
+            if key not in known:
+                raise InputError(where, str(key), value, parameters.unknown(str(key), sorted(known)))
+            if key in sections:
+                given[key] = parameters.from_mapping(sections[key], value, where, key)
+            else:
+                plain, _ = parameters.labelled(value, where, key)
+                given[key] = parameters.checked(plain, parameters.rule_of(fields[key]), where, key)
+        return cls(**given)
+    except InputError as error:
+        raise InputError(where, error.field, error.value, error.remedy) from None
+
+
+def protocol_mapping(protocol: Protocol) -> dict[str, Any]:
+    """A protocol such that `protocol_from_mapping` gives it back, every value written out."""
+    kind = next(k for k, cls in _KINDS.items() if type(protocol) is cls)
+    found: dict[str, Any] = {"kind": kind, "name": protocol.name}
+    for item in dataclasses.fields(protocol):
+        value = getattr(protocol, item.name)
+        if parameters.is_leaf(item):
+            found[item.name] = value
+        elif dataclasses.is_dataclass(value):
+            found[item.name] = parameters.leaves(value)
+    if isinstance(protocol, TTestProtocol):
+        found |= {"points": {name: list(place) for name, place in protocol.points.items()}, "order": list(protocol.order)}
+    return found
+
+
+def _points(data: Any, where: str) -> dict[str, tuple[float, float]]:
+    if not isinstance(data, Mapping) or not data:
+        raise InputError(where, "points", data, "expects names with places [x, y] in metres")
+    rule = parameters.Rule("number", "m", -1e4, 1e4, size=2)
+    found = {}
+    for name, value in data.items():
+        x, y = parameters.checked(value, rule, where, f"points.{name}")
+        found[str(name)] = (float(x), float(y))
+    return found
+
+
+def _order(data: Any, where: str) -> tuple[str, ...]:
+    if not isinstance(data, list) or not all(isinstance(name, str) for name in data):
+        raise InputError(where, "order", data, "expects a list of names of points")
+    return tuple(data)

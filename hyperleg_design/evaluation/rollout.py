@@ -1,0 +1,216 @@
+"""Trials of a policy, side by side, with every signal that measures need."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, check_layout, checked_action, policy_name
+from hyperleg_design.simulation import terminations
+from hyperleg_design.simulation.layout import GRAVITY
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.chunk import Divergence
+    from hyperleg_design.simulation.environment import Environment
+    from hyperleg_design.simulation.layout import Layout
+    from hyperleg_design.simulation.tasks import Task
+
+ARRIVED, TIMED_OUT, FELL, LOST, DIVERGED = "arrived", "timed_out", "fell", "lost", "diverged"
+OUTCOMES = (ARRIVED, TIMED_OUT, FELL, LOST, DIVERGED)
+"""How a trial can end."""
+_OF_ENDING = {
+    terminations.LOW: FELL,
+    terminations.TILTED: FELL,
+    terminations.TIME_OUT: TIMED_OUT,
+    terminations.OFF_PATH: LOST,
+    terminations.COURSE_FINISHED: ARRIVED,
+    terminations.DIVERGED: DIVERGED,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """One trial's signals at the start of each simulation step; time first."""
+
+    design: Design
+    layout: Layout
+    model: mujoco.MjModel
+    """Of MuJoCo, as simulated."""
+    time_step: float
+    """Between samples [s]."""
+    substeps: int
+    """Samples in a policy step."""
+    outcome: str
+    """One of `OUTCOMES`."""
+    end_time: float
+    """At which it ended [s]; a fall's or an arrival's policy step is counted, its samples are not kept."""
+    base_position: np.ndarray
+    """Of the pelvis [m], `(t, 3)`."""
+    base_orientation: np.ndarray
+    """w x y z, `(t, 4)`."""
+    base_velocity: np.ndarray
+    """In the world [m/s], `(t, 3)`."""
+    joint_position: np.ndarray
+    """[rad], `(t, J)`."""
+    joint_velocity: np.ndarray
+    """[rad/s], `(t, J)`."""
+    driven_joint_torque: np.ndarray
+    """M times the motor torque, before friction [Nm], `(t, J)`."""
+    motor_torque: np.ndarray
+    """[Nm], `(t, K)`."""
+    motor_velocity: np.ndarray
+    """[rad/s], `(t, K)`."""
+    pad_force: np.ndarray
+    """Of the floor on each pad, in the world [N], `(t, P, 3)`."""
+    pad_slip: np.ndarray
+    """Sliding speed of each touching pad [m/s], `(t, P)`."""
+    divergence: Divergence | None = None
+    """State from which it diverged, where it did."""
+
+    @property
+    def samples(self) -> int:
+        """In each signal."""
+        return len(self.base_position)
+
+    @property
+    def mass(self) -> float:
+        """Of the robot [kg]."""
+        return self.layout.weight / GRAVITY
+
+    @property
+    def pad_load(self) -> np.ndarray:
+        """Vertical force on each pad [N], `(t, P)`."""
+        return self.pad_force[..., 2]
+
+    @property
+    def foot_load(self) -> np.ndarray:
+        """Vertical force on the left and the right foot [N], `(t, 2)`."""
+        return np.stack([self.pad_load[:, self.layout.pad_foot == foot].sum(-1) for foot in (0, 1)], -1)
+
+
+SIGNALS = (
+    "base_position",
+    "base_orientation",
+    "base_velocity",
+    "joint_position",
+    "joint_velocity",
+    "driven_joint_torque",
+    "motor_torque",
+    "motor_velocity",
+    "pad_force",
+    "pad_slip",
+)
+"""Of `Environment.signals` that a `Trial` keeps."""
+
+
+def record(
+    policy: Policy,
+    environment: Environment,
+    time_limit: float,
+    *,
+    arrived: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
+    before_step: Callable[[Environment], None] | None = None,
+) -> list[Trial]:
+    """Run every simulation of an environment once, without assist, to its end or the time limit.
+
+    Args:
+        policy: from observations of the group `policy` to actions.
+        environment: without assist; its episodes must not time out before the limit.
+        time_limit: [s]
+        arrived: from first and latest pelvis positions `(n, 3)` to whether each trial is done; a trial may also end by itself.
+        before_step: called before each policy step, to set commands.
+
+    Raises:
+        InputError: a policy for another layout, or whose output has a wrong shape or is not finite.
+    """
+    check_layout(policy, environment)
+    count, substeps, duration = environment.simulations, int(environment.task.physics.substeps), environment.task.physics.policy_step
+    limit = round(time_limit / duration)
+    environment.assist = None
+    environment.recording = True
+    observation = environment.reset()["policy"]
+    if hasattr(policy, "reset"):
+        policy.reset(count)
+    running = np.ones(count, bool)
+    length, ended_at = np.zeros(count, int), np.zeros(count)
+    outcomes = [TIMED_OUT] * count
+    divergences: dict[int, Divergence] = {}
+    store: dict[str, np.ndarray] = {}
+    step_index = 0
+    for step_index in range(limit):
+        action = checked_action(policy, observation, step_index, duration, running, environment.action_size)
+        if before_step is not None:
+            before_step(environment)
+        step = environment.step(action)
+        observation = step.observations["policy"]
+        signals = environment.signals()
+        if not store:
+            # pages of the part that is never reached are never claimed
+            store = {n: np.empty((count, limit * substeps, *signals[n].shape[2:])) for n in SIGNALS}
+        now = slice(step_index * substeps, (step_index + 1) * substeps)
+        for name in SIGNALS:
+            store[name][:, now] = signals[name]
+        divergences.update({d.simulation: d for d in step.divergences if running[d.simulation]})
+        ended = step.ended[running[step.ended]]
+        for trial in ended:
+            outcomes[trial] = _OF_ENDING[int(step.ending[trial])]
+            length[trial], ended_at[trial] = now.start, (step_index + 1) * duration
+        running[ended] = False
+        if arrived is not None:
+            done = np.flatnonzero(running & arrived(store["base_position"][:, 0], store["base_position"][:, now.stop - 1]))
+            for trial in done:
+                outcomes[trial] = ARRIVED
+            length[done], ended_at[done] = now.stop, (step_index + 1) * duration
+            running[done] = False
+        if not running.any():
+            break
+    length[running], ended_at[running] = limit * substeps, limit * duration
+    return [
+        Trial(
+            design=environment.design,
+            layout=environment.layout,
+            model=environment.model,
+            time_step=environment.task.physics.time_step,
+            substeps=substeps,
+            outcome=outcomes[i],
+            end_time=float(ended_at[i]),
+            divergence=divergences.get(i),
+            **{name: store[name][i, : length[i]] for name in SIGNALS},
+        )
+        for i in range(count)
+    ]
+
+
+def resolved(policy: Policy, design: Design | None, task: Task | None) -> tuple[Design, Task]:
+    """Robot and task of an evaluation: those given, else an ONNX policy's own.
+
+    Raises:
+        InputError: a plain callable without either.
+    """
+    own = policy if isinstance(policy, OnnxPolicy) else None
+    design, task = design or (own.design if own else None), task or (own.task if own else None)
+    for name, value in (("design", design), ("task", task)):
+        if value is None:
+            raise InputError(policy_name(policy), name, None, "is needed with a policy that is not an ONNX file of this package")
+    assert design is not None
+    assert task is not None
+    return design, task
+
+
+def under_protocol(task: Task, protocol: Any) -> Task:
+    """A task with a protocol's starting states, differences between robots and time."""
+    limits = dataclasses.replace(task.limits, duration=2 * protocol.time_limit)
+    return task.changed(start=protocol.start, randomisation=protocol.randomisation, limits=limits)
+
+
+def outcome_measures(trial: Trial) -> dict[str, float]:
+    """`fell`, `lost`, `timed_out` and `diverged`, each 0 or 1."""
+    return {name: float(trial.outcome == name) for name in (FELL, LOST, TIMED_OUT, DIVERGED)}

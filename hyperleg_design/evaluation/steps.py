@@ -1,0 +1,90 @@
+"""Steps of a recorded trial, from the loads on its sole pads, and what is measured on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.evaluation import gait
+from hyperleg_design.evaluation.feet import foot_places
+from hyperleg_design.evaluation.impact import impacts, low_pass
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.protocol import Events, Impact
+    from hyperleg_design.evaluation.rollout import Trial
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """What stands on the floor, `(t, 2)` each, left and right."""
+
+    feet: np.ndarray
+    """Whole foot."""
+    heel: np.ndarray
+    """Pads behind the ankle."""
+    forefoot: np.ndarray
+    """Pads before the ankle, toe included."""
+
+
+def foot_contacts(trial: Trial, events: Events) -> Contacts:
+    """Contacts by the thresholds of a protocol, in body weights; gaps and short contacts are filled for whole feet only."""
+    on, off = events.touchdown_load * trial.layout.weight, events.lift_load * trial.layout.weight
+    behind = trial.layout.pad_position[:, 0] < 0
+    shortest = max(1, round(events.shortest / trial.time_step))
+
+    def loads(chosen: np.ndarray) -> np.ndarray:
+        return np.stack([trial.pad_load[:, chosen & (trial.layout.pad_foot == foot)].sum(-1) for foot in (0, 1)], -1)
+
+    return Contacts(
+        feet=gait.stance(trial.foot_load, on, off, shortest),
+        heel=gait.stance(loads(behind), on, off),
+        forefoot=gait.stance(loads(~behind), on, off),
+    )
+
+
+def measured_steps(trial: Trial, events: Events) -> gait.Steps:
+    """All steps of a trial."""
+    contacts = foot_contacts(trial, events)
+    return gait.find_steps(contacts.feet, contacts.heel, contacts.forefoot, trial.time_step)
+
+
+def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[str, float]:
+    """Means over the touchdowns of both feet: `grf_peak` and the others of `Impacts`."""
+    filtered = low_pass(trial.foot_load, trial.time_step, settings.cutoff, int(settings.order))
+    each = [impacts(trial.foot_load[:, f], filtered[:, f], steps.touchdown[steps.foot == f], trial.time_step, settings.window) for f in (0, 1)]
+    mean = {name: mean_of(np.concatenate([getattr(e, name) for e in each])) for name in ("peak", "raw_peak", "loading_rate", "impulse")}
+    return {
+        "grf_peak": mean["peak"],
+        "grf_peak_body_weights": mean["peak"] / trial.layout.weight,
+        "grf_raw_peak": mean["raw_peak"],
+        "grf_loading_rate": mean["loading_rate"],
+        "grf_impulse": mean["impulse"],
+    }
+
+
+def step_measures(trial: Trial, steps: gait.Steps, window: tuple[int, int], events: Events) -> dict[str, float]:
+    """Gait measures of some steps and the stretch of samples that they lie in."""
+    contacts = foot_contacts(trial, events)
+    slip = gait.slip_per_step(steps, trial.pad_load, trial.pad_slip, trial.layout.pad_foot, trial.time_step)
+    places = foot_places(trial, steps.touchdown)[np.arange(len(steps)), steps.foot]
+    length, width = gait.step_vectors(steps, places)
+    return {
+        "cadence": gait.cadence(steps, trial.time_step),
+        "step_length": mean_of(length),
+        "step_width": mean_of(width),
+        **gait.event_shares(steps),
+        **gait.support_shares(contacts.feet[slice(*window)]),
+        "alternation": gait.alternation(steps),
+        "heel_lead": mean_of(steps.heel_lead),
+        "heel_or_flat": mean_of((steps.heel_lead >= 0).astype(float)),
+        "slip_per_step": mean_of(slip),
+        "largest_slip": float(np.nanmax(slip)) if np.isfinite(slip).any() else np.nan,
+    }
+
+
+def mean_of(values: np.ndarray) -> float:
+    """Mean of what could be measured; NaN where nothing could."""
+    values = values[np.isfinite(values)]
+    return float(values.mean()) if len(values) else np.nan

@@ -1,0 +1,162 @@
+"""The Robot T-test: runs over a course of waypoints, and what is measured on them."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation import bearing, course, rollout
+from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
+from hyperleg_design.evaluation.policy import Policy
+from hyperleg_design.evaluation.power import flows, ledger
+from hyperleg_design.evaluation.protocol import TTestProtocol, load_protocol
+from hyperleg_design.evaluation.result import Evaluation, evaluation_of
+from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
+from hyperleg_design.simulation.commands import WaypointCommands
+from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.sizing.energy import cost_of_transport
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.rollout import Trial
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.tasks import Task
+
+
+def evaluate_t_test(
+    policy: Policy,
+    protocol: TTestProtocol | str = "t_test",
+    *,
+    design: Design | None = None,
+    task: Task | None = None,
+    threads: int | None = None,
+) -> Evaluation:
+    """Run the T-test protocol on a policy: deterministic, without assist.
+
+    Args:
+        policy: an `OnnxPolicy`, or any callable from observations `(n, k)` to actions `(n, J)`.
+        protocol: a protocol, a shipped name, or a file.
+        design: the robot; an ONNX policy's own by default.
+        task: which gives observations, physics and control; an ONNX policy's own by default.
+        threads: of the simulation; the result does not depend on it.
+
+    Raises:
+        InputError: another kind of protocol or task, a policy for another layout, or one whose output is not finite.
+    """
+    chosen = load_protocol(protocol) if isinstance(protocol, str) else protocol
+    if not isinstance(chosen, TTestProtocol):
+        raise InputError("t_test", "protocol", chosen.name, "expects a protocol of kind t_test")
+    robot, task = rollout.resolved(policy, design, task)
+    environment = Environment(robot, t_test_task(task, chosen), simulations=int(chosen.trials), seed=int(chosen.seed), threads=threads)
+    try:
+        trials = rollout.record(policy, environment, chosen.time_limit)
+    finally:
+        environment.close()
+    found = [measure_t_test(trial, chosen) for trial in trials]
+    return evaluation_of(policy, robot, chosen, trials, [f[0] for f in found], [f[1] for f in found])
+
+
+def t_test_task(task: Task, protocol: TTestProtocol) -> Task:
+    """A policy's task on the protocol's course.
+
+    Raises:
+        InputError: a task without waypoints.
+    """
+    if not isinstance(task.commands, WaypointCommands):
+        raise InputError(task.name, "commands.kind", "velocity", "expects waypoints; this policy walks at a speed")
+    commands = dataclasses.replace(
+        task.commands,
+        arrival=protocol.arrival,
+        speed_cap=protocol.speed_cap,
+        courses=(tuple((float(x), float(y)) for x, y in protocol.course[1:]),),
+        course_share=1.0,
+    )
+    made = rollout.under_protocol(task, protocol)
+    return made.changed(commands=commands, limits=dataclasses.replace(made.limits, deviation=protocol.lost))
+
+
+def measure_t_test(trial: Trial, protocol: TTestProtocol) -> tuple[dict[str, float], MotorUse | None]:
+    """Measures of one run and the use of its motors; NaN where a trial cannot give one, all of a diverged trial.
+
+    `time`, `mean_speed` and `waypoint_*` come from arrivals; deviations, peak speed and power from all that was run, so a
+    run that ends in a fall has them up to the fall.
+    """
+    waypoints = tuple(f"waypoint_{i}" for i in range(1, len(protocol.order)))
+    found = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(trial)
+    if trial.outcome == rollout.DIVERGED or trial.samples < 2:
+        return found | dict.fromkeys((*_MEASURES, *waypoints), np.nan), None
+    heading = bearing.headings(trial.base_orientation)
+    place = course.in_start_frame(trial.base_position[:, :2], trial.base_position[0, :2], heading[0])
+    reached = reached_samples(trial, place, protocol)
+    leg = course.legs_run(reached, trial.samples)
+    beside, aside = course.course_deviation(place, protocol.course), course.leg_deviation(place, protocol.course, leg)
+    speed = np.linalg.norm(trial.base_velocity[:, :2], axis=-1)
+    arrived = trial.outcome == rollout.ARRIVED
+    way = course.path_length(place)
+    duration = trial.samples * trial.time_step
+    power = flows(ledger(trial))
+    times = [s * trial.time_step if s >= 0 else np.nan for s in reached]
+    if arrived:
+        times[-1] = trial.end_time
+    steps = measured_steps(trial, protocol.events)
+    use = motor_use(trial)
+    stepped = step_measures(trial, steps, (0, trial.samples), protocol.events)
+    found |= {
+        "time": trial.end_time if arrived else np.nan,
+        "waypoints_reached": float(np.sum(np.isfinite(times))),
+        "distance": way,
+        "mean_speed": way / duration if arrived else np.nan,
+        "peak_speed": float(speed.max()),
+        "mean_deviation": float(beside.mean()),
+        "peak_deviation": float(beside.max()),
+        "mean_leg_deviation": float(aside.mean()),
+        "peak_leg_deviation": float(aside.max()),
+        "turned": bearing.turned(heading),
+        "power": power["motor_side"],
+        "joule_power": power["joule"],
+        "mechanical_power": power["mechanical"],
+        "positive_power": power["mechanical_positive"],
+        "negative_power": power["mechanical_negative"],
+        "battery_power": power["battery"],
+        "energy": power["motor_side"] * duration,
+        "cost_of_transport": float(cost_of_transport(power["motor_side"] * duration, trial.mass, way)) if way > 1.0 else np.nan,
+        **impact_measures(trial, steps, protocol.impact),
+        **{name: stepped[name] for name in _OF_STEPS},
+        "largest_tilt": float(bearing.tilt(trial.base_orientation).max()),
+        "stop_share": float(bearing.stop_share(trial.joint_position, trial.layout.lower, trial.layout.upper).max()),
+        "vibration": float(bearing.vibration(trial.joint_velocity, trial.time_step).max()),
+        "limit_share": float(use.limit_share.max()),
+        "continuous_use": float(use.continuous_use.max()),
+        "thermal_peak": float(use.thermal_peak.max()),
+        **dict(zip(waypoints, times, strict=True)),
+    }
+    return found, use
+
+
+def reached_samples(trial: Trial, place: np.ndarray, protocol: TTestProtocol) -> np.ndarray:
+    """Samples at which the waypoints were reached, as the simulation judges it: at the ends of policy steps; -1 where never.
+
+    Args:
+        trial: the run.
+        place: of the pelvis in the frame of the start at each sample, `(t, 2)` [m].
+        protocol: the course.
+
+    Returns:
+        `(waypoints,)`; the last one ends the trial and lies one sample past it.
+    """
+    found = course.arrivals(place[:: trial.substeps], protocol.course, protocol.arrival)
+    found = np.where(found >= 0, found * trial.substeps, -1)
+    if trial.outcome == rollout.ARRIVED:
+        found[-1] = trial.samples
+    return found
+
+
+_OF_STEPS = ("cadence", "step_length", "duty_factor", "double_support", "flight", "slip_per_step", "largest_slip")
+_MEASURES = (
+    "time", "waypoints_reached", "distance", "mean_speed", "peak_speed", "mean_deviation", "peak_deviation", "mean_leg_deviation",
+    "peak_leg_deviation", "turned", "power", "joule_power", "mechanical_power", "positive_power", "negative_power", "battery_power", "energy",
+    "cost_of_transport", "grf_peak", "grf_peak_body_weights", "grf_raw_peak", "grf_loading_rate", "grf_impulse", *_OF_STEPS, "largest_tilt",
+    "stop_share", "vibration", "limit_share", "continuous_use", "thermal_peak",
+)  # fmt: skip

@@ -1,0 +1,243 @@
+"""The walk protocol: straight walks from standing, and what is measured on them."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation import bearing, course, gait, rollout
+from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
+from hyperleg_design.evaluation.policy import Policy
+from hyperleg_design.evaluation.power import CyclePower, cycle_power, flows, ledger
+from hyperleg_design.evaluation.protocol import WalkProtocol, load_protocol
+from hyperleg_design.evaluation.result import Evaluation, evaluation_of
+from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
+from hyperleg_design.simulation.commands import VelocityCommands
+from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.sizing.energy import cost_of_transport
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.rollout import Trial
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.tasks import Task
+
+NO_NEW_COMMAND = 10_000.0
+"""Time between commands that no trial lasts for [s]."""
+STRIDES = 2
+"""Whole strides that a steady part needs at least."""
+
+
+def evaluate_walk(
+    policy: Policy,
+    protocol: WalkProtocol | str = "walk",
+    *,
+    design: Design | None = None,
+    task: Task | None = None,
+    threads: int | None = None,
+) -> Evaluation:
+    """Run the walk protocol on a policy: deterministic, without assist.
+
+    Args:
+        policy: an `OnnxPolicy`, or any callable from observations `(n, k)` to actions `(n, J)`.
+        protocol: a protocol, a shipped name, or a file.
+        design: the robot; an ONNX policy's own by default.
+        task: which gives observations, physics and control; an ONNX policy's own by default.
+        threads: of the simulation; the result does not depend on it.
+
+    Raises:
+        InputError: another kind of protocol or task, a policy for another layout, or one whose output is not finite.
+    """
+    chosen = load_protocol(protocol) if isinstance(protocol, str) else protocol
+    if not isinstance(chosen, WalkProtocol):
+        raise InputError("walk", "protocol", chosen.name, "expects a protocol of kind walk")
+    robot, task = rollout.resolved(policy, design, task)
+    environment = Environment(robot, walk_task(task, chosen), simulations=int(chosen.trials), seed=int(chosen.seed), threads=threads)
+    try:
+        trials = rollout.record(
+            policy,
+            environment,
+            chosen.time_limit,
+            arrived=lambda first, now: np.linalg.norm(now[:, :2] - first[:, :2], axis=-1) >= chosen.distance,
+            before_step=_heading_keeper(chosen.heading_gain) if chosen.heading_gain else None,
+        )
+    finally:
+        environment.close()
+    found = [measure_walk(trial, chosen) for trial in trials]
+    return evaluation_of(policy, robot, chosen, trials, [f[0] for f in found], [f[1] for f in found], [f[2] for f in found])
+
+
+def walk_task(task: Task, protocol: WalkProtocol) -> Task:
+    """A policy's task under the protocol's command, starting states and time.
+
+    Raises:
+        InputError: a task without velocity commands, or `heading_gain` for a policy that never had to turn.
+    """
+    if not isinstance(task.commands, VelocityCommands):
+        raise InputError(task.name, "commands.kind", "waypoints", "expects velocity commands; this policy runs the T-test")
+    if protocol.heading_gain and not task.commands.turning:
+        raise InputError(protocol.name, "heading_gain", protocol.heading_gain, f"must be 0: the task {task.name} was trained without turning")
+    commands = dataclasses.replace(
+        task.commands, test_share=1.0, standing_share=0.0, test_speed=protocol.speed, interval=NO_NEW_COMMAND,
+    )  # fmt: skip
+    return rollout.under_protocol(task, protocol).changed(commands=commands)
+
+
+def measure_walk(trial: Trial, protocol: WalkProtocol) -> tuple[dict[str, float], MotorUse | None, CyclePower | None]:
+    """Measures of one walk, the use of its motors in steady state, and its right-leg power over the gait cycle.
+
+    A measure that a trial cannot give is NaN: all of a diverged trial; those of the steady state where it fell or has
+    fewer than `STRIDES` whole strides.
+
+    Returns:
+        Names of the measures end in their unit where they have one; see `measures`.
+    """
+    found = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(trial)
+    if trial.outcome == rollout.DIVERGED or not trial.samples:
+        return found | dict.fromkeys((*_RUN, *_STEADY), np.nan), None, None
+    away = np.linalg.norm(trial.base_position[:, :2] - trial.base_position[0, :2], axis=-1)
+    found |= _run_measures(trial, away, protocol)
+    window = steady_window(trial, away, protocol)
+    if window is None:
+        return found | dict.fromkeys(_STEADY, np.nan), None, None
+    steady, steps = _steady_measures(trial, window, protocol)
+    return found | steady, motor_use(trial, *window), cycle_power(trial, steps)
+
+
+def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tuple[int, int] | None:
+    """First and last sample of the whole strides of the left foot in the steady part; None for a fall or too few strides.
+
+    Args:
+        trial: the walk.
+        away: distance from the start at each sample [m], `(t,)`.
+        protocol: which says where the steady part begins and ends.
+    """
+    beyond = np.flatnonzero(away >= protocol.steady.begin)
+    if trial.outcome == rollout.FELL or not len(beyond):
+        return None
+    past = np.flatnonzero(away >= protocol.steady.end)
+    steps = measured_steps(trial, protocol.events)
+    window = gait.whole_strides(steps, int(beyond[0]), int(past[0]) if len(past) else trial.samples)
+    if window is None or len(steps.within(*window).foot) < 2 * STRIDES:
+        return None
+    return window
+
+
+def impact_band(
+    policy: Policy, time_constants: Sequence[float], protocol: WalkProtocol | str = "walk", *, design: Design | None = None, task: Task | None = None
+) -> dict[float, Evaluation]:
+    """The walk protocol over a band of contact stiffness, because much of an impact is the stiffness of the sole's contact.
+
+    Args:
+        policy: as in `evaluate_walk`.
+        time_constants: of the contact's spring and damper [s]; stiffness goes with their inverse square.
+        protocol: as in `evaluate_walk`.
+        design: as in `evaluate_walk`.
+        task: as in `evaluate_walk`.
+
+    Returns:
+        Evaluations by time constant.
+    """
+    robot, task = rollout.resolved(policy, design, task)
+    return {
+        value: evaluate_walk(policy, protocol, design=robot.with_values({"contact.time_constant": value}, "impact band"), task=task)
+        for value in time_constants
+    }
+
+
+_RUN = (
+    "time", "distance", "path", "mean_speed", "sideways", "turned", "power", "joule_power", "mechanical_power", "positive_power",
+    "negative_power", "driver_loss", "battery_power", "energy", "battery_energy", "cost_of_transport", "battery_cost_of_transport",
+    "largest_tilt",
+)  # fmt: skip
+_STEADY = (
+    "steady_speed", "steady_power", "steady_joule_power", "steady_mechanical_power", "steady_positive_power", "steady_negative_power",
+    "steady_battery_power", "steady_cost_of_transport", "steady_battery_cost_of_transport", "grf_peak", "grf_peak_body_weights",
+    "grf_raw_peak", "grf_loading_rate", "grf_impulse", "cadence", "step_length", "step_width", "duty_factor", "heel_off", "double_support",
+    "single_support", "flight", "alternation", "heel_lead", "heel_or_flat", "slip_per_step", "largest_slip", "mean_tilt", "stop_share",
+    "vibration", "limit_share", "continuous_use", "thermal_peak",
+)  # fmt: skip
+
+
+def _run_measures(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> dict[str, float]:
+    """From the start to the arrival, the fall or the time limit."""
+    time = course.crossing_time(away, protocol.distance, trial.time_step) if trial.outcome == rollout.ARRIVED else np.nan
+    duration = trial.samples * trial.time_step
+    power = flows(ledger(trial))
+    heading = bearing.headings(trial.base_orientation)
+    end = course.in_start_frame(trial.base_position[-1, :2], trial.base_position[0, :2], heading[0])
+    way = float(away[-1])
+    transport = {}
+    for name, flow in (("cost_of_transport", "motor_side"), ("battery_cost_of_transport", "battery")):
+        # falling on the spot transports nothing, so it has no cost of transport
+        transport[name] = float(cost_of_transport(power[flow] * duration, trial.mass, way)) if way > 1.0 else np.nan
+    return {
+        "time": time,
+        "distance": way,
+        "path": course.path_length(trial.base_position[:, :2]),
+        "mean_speed": protocol.distance / time,
+        "sideways": float(end[1]),
+        "turned": bearing.turned(heading),
+        "power": power["motor_side"],
+        "joule_power": power["joule"],
+        "mechanical_power": power["mechanical"],
+        "positive_power": power["mechanical_positive"],
+        "negative_power": power["mechanical_negative"],
+        "driver_loss": power["driver_loss"],
+        "battery_power": power["battery"],
+        "energy": power["motor_side"] * duration,
+        "battery_energy": power["battery"] * duration,
+        **transport,
+        "largest_tilt": float(bearing.tilt(trial.base_orientation).max()),
+    }
+
+
+def _steady_measures(trial: Trial, window: tuple[int, int], protocol: WalkProtocol) -> tuple[dict[str, float], gait.Steps]:
+    first, last = window
+    part = slice(first, last)
+    duration = (last - first) * trial.time_step
+    power = flows(ledger(trial, first, last))
+    way = float(np.linalg.norm(trial.base_position[last, :2] - trial.base_position[first, :2]))
+    transport = {flow: float(cost_of_transport(power[flow] * duration, trial.mass, way)) for flow in ("motor_side", "battery")}
+    steps = measured_steps(trial, protocol.events).within(first, last + 1)
+    use = motor_use(trial, first, last)
+    layout = trial.layout
+    found = {
+        "steady_speed": way / duration,
+        "steady_power": power["motor_side"],
+        "steady_joule_power": power["joule"],
+        "steady_mechanical_power": power["mechanical"],
+        "steady_positive_power": power["mechanical_positive"],
+        "steady_negative_power": power["mechanical_negative"],
+        "steady_battery_power": power["battery"],
+        "steady_cost_of_transport": transport["motor_side"],
+        "steady_battery_cost_of_transport": transport["battery"],
+        **impact_measures(trial, steps, protocol.impact),
+        **step_measures(trial, steps, window, protocol.events),
+        "mean_tilt": float(bearing.tilt(trial.base_orientation[part]).mean()),
+        "stop_share": float(bearing.stop_share(trial.joint_position[part], layout.lower, layout.upper).max()),
+        "vibration": float(bearing.vibration(trial.joint_velocity[part], trial.time_step).max()),
+        "limit_share": float(use.limit_share.max()),
+        "continuous_use": float(use.continuous_use.max()),
+        "thermal_peak": float(use.thermal_peak.max()),
+    }
+    return found, steps
+
+
+def _heading_keeper(gain: float) -> Any:
+    start: list[np.ndarray] = []
+
+    def keep(environment: Environment) -> None:
+        heading = np.concatenate([c.motion.heading for c in environment.chunks])
+        if not start:
+            start.append(heading)
+        cross = heading[:, 0] * start[0][:, 1] - heading[:, 1] * start[0][:, 0]
+        turning = environment.task.commands.turning  # type: ignore[union-attr]
+        wanted = np.clip(gain * np.arctan2(cross, np.einsum("ni,ni->n", heading, start[0])), -turning, turning)
+        for chunk in environment.chunks:
+            chunk.commander.values[:, 2] = wanted[chunk.first : chunk.first + chunk.count]  # type: ignore[union-attr]
+
+    return keep
