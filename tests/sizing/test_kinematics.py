@@ -31,7 +31,8 @@ def test_inverse_of_forward_kinematics(share, side, pitch, roll):
         angles[1] = 0.3
     q = MODEL.neutral()
     base = about_x(np.array(roll)) @ about_y(np.array(pitch))
-    q[3:7] = [np.sin(roll / 2) * np.cos(pitch / 2), np.cos(roll / 2) * np.sin(pitch / 2), np.sin(roll / 2) * np.sin(pitch / 2), np.cos(roll / 2) * np.cos(pitch / 2)]  # fmt: skip
+    (a, b), (c, d) = (np.sin([roll / 2, pitch / 2]), np.cos([roll / 2, pitch / 2]))
+    q[3:7] = [a * d, c * b, a * b, c * d]
     start = 7 + 7 * SIDES.index(side)
     q[start : start + 6] = angles
     position, rotation = _foot(q, side)

@@ -47,7 +47,7 @@ def test_feet_bear_without_slipping_or_sinking(motion):
         points, jacobian = contact_kinematics(motion.model, motion.q[n])
         bears = motion.contact[n]
         assert points[:, 2].min() > -1e-9
-        assert np.abs((jacobian[bears] @ motion.v[n])).max(initial=0) < 1e-8
+        assert np.abs(jacobian[bears] @ motion.v[n]).max(initial=0) < 1e-8
         assert np.abs(points[bears, 2, None] - levels).min(-1).max(initial=0) < 1e-9
 
 

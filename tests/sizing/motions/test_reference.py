@@ -14,7 +14,7 @@ def test_plan_fields_reach_the_planner():
 def test_unknown_motion_and_field():
     with pytest.raises(InputError, match="walk, stair, squat, hop"):
         reference_motion(load_design(), "dance")
-    with pytest.raises(InputError, match="sped.*speed"):
+    with pytest.raises(InputError, match=r"sped.*speed"):
         reference_motion(load_design(), "walk", sped=1.0)
 
 
