@@ -1,4 +1,4 @@
-"""Some of an environment's simulations, stepped by one thread: physics, rewards, ends, resets and observations.
+"""Some of an environment's simulations, stepped together: physics, rewards, ends, resets and observations.
 
 Threads take turns in Python and run side by side in MuJoCo: left to the interpreter's own lock, which NumPy lets go of in
 every longer operation, they would hand it to and fro thousands of times a second. Everything in a chunk depends on its own
@@ -94,13 +94,14 @@ class Chunk:
         count: int,
         rng: np.random.Generator,
         turn: threading.Lock,
+        threads: int,
     ) -> None:
         from mujoco import batch
 
         self._turn = turn
 
         self.task, self.layout, self.first, self.count, self.rng = task, layout, first, count, rng
-        self.batch = batch.Batch(model, count, 1)
+        self.batch = batch.Batch(model, count, threads)
         # A second batch finds how high to start: what is bound in the first is copied out after each of its steps.
         self._starter = batch.Batch(model, count, 1)
         if designs_models is not None:
@@ -304,6 +305,8 @@ class Chunk:
             found.append(Divergence(self.first + int(i), int(self.episode_step[i]), reason, position[i], velocity[i], self.action[i].copy()))
         if len(ids):
             self._start(ids)
+            for values in (self.motor_torque, self.motor_velocity, self.sensors, self.states):
+                values[:, ids] = 0.0
         return found
 
     def _sound(self) -> bool:
@@ -332,7 +335,6 @@ class Chunk:
         self.thermal.reset(ids)
         for values in (self.action, self.previous_action, self.smoothed):
             values[ids] = 0.0
-        self.motor_torque[:, ids] = self.motor_velocity[:, ids] = self.sensors[:, ids] = 0.0
         return read_motion(position, velocity)
 
     def signals(self) -> Mapping[str, Any]:

@@ -4,8 +4,8 @@
     observations = environment.reset()
     step = environment.step(policy(observations["policy"]))
 
-Simulations are worked on in chunks of fixed size, each with its own random stream and its own one-threaded
-`mujoco.batch.Batch`; threads take chunks as they come. The same seed gives the same bytes with any number of threads.
+Simulations are worked on in chunks, each with its own random stream and its own `mujoco.batch.Batch`; while one chunk is in
+Python, for its actuators, rewards and observations, others are in MuJoCo. The same seed gives the same bytes with any number of threads.
 """
 
 from __future__ import annotations
@@ -22,10 +22,11 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.simulation import mirror, observations
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.chunk import Chunk, Divergence, Step
+from hyperleg_design.simulation.commands import WaypointCommands
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.model import simulation_model
 from hyperleg_design.simulation.settings import Limits
-from hyperleg_design.simulation.tasks import Reward, Task, _check_reward
+from hyperleg_design.simulation.tasks import Reward, Task, check_reward
 
 if TYPE_CHECKING:
     import mujoco
@@ -75,13 +76,17 @@ class Environment:
         count = max(-(-simulations // CHUNK), 2 if simulations >= SMALLEST_SPLIT else 1)
         bounds = np.linspace(0, simulations, count + 1).astype(int)
         streams = np.random.SeedSequence(seed).spawn(count)
+        threads = threads or os.cpu_count() or 1
+        workers = min(threads, count)
+        # Twice as many threads in MuJoCo as workers: while one chunk is in Python, another's physics has the whole machine.
+        each_threads = min(threads, -(-2 * threads // workers))
         self._turn = threading.Lock()
         self.chunks = []
         for low, high, stream in zip(bounds[:-1], bounds[1:], streams, strict=True):
             part = _taken(design, int(low), int(high)) if batched else design
             own = each[low:high] if each else None
-            self.chunks.append(Chunk(part, task, self.layout, self.model, own, int(low), int(high - low), np.random.default_rng(stream), self._turn))
-        workers = min(threads or os.cpu_count() or 1, count)
+            rng = np.random.default_rng(stream)
+            self.chunks.append(Chunk(part, task, self.layout, self.model, own, int(low), int(high - low), rng, self._turn, each_threads))
         self._pool = ThreadPoolExecutor(workers) if workers > 1 else None
         self.divergences: list[Divergence] = []
         """Simulations that diverged, the latest `DIVERGENCES_KEPT`."""
@@ -146,7 +151,7 @@ class Environment:
         if old is None:
             raise InputError(self.task.name, f"rewards.{name}", weight, f"is not in the task; it has {', '.join(self.reward_names)}")
         new = Reward(old.weight if weight is None else float(weight), {**old.parameters, **parameters})
-        _check_reward(self.task.name, name, new, self.chunks[0].goal is not None or not parameters)
+        check_reward(self.task.name, name, new, isinstance(self.task.commands, WaypointCommands))
         for chunk in self.chunks:
             chunk.rewards[name] = new
 
@@ -212,7 +217,7 @@ class Environment:
             `(n, substeps, ...)` each: `base_position`, `base_velocity` (world), `base_orientation` (w x y z),
             `base_angular_velocity` (pelvis frame), `joint_position`, `joint_velocity`, `driven_joint_torque` (M times the
             motor torque, before friction), `joint_friction`, `motor_torque`, `motor_velocity`, `pad_force` (of the floor
-            on each pad, world), `pad_slip`. Zero for an episode's first step's rows that were started anew since.
+            on each pad, world), `pad_slip`. Zero for a simulation that diverged; for others that ended, of the episode that did.
         """
         if not self.recording:
             raise InputError("environment", "recording", False, "must be set before the step whose signals are read")

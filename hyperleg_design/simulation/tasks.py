@@ -64,7 +64,7 @@ class Task:
     def __post_init__(self) -> None:
         goal = isinstance(self.commands, WaypointCommands)
         for name, reward in self.rewards.items():
-            _check_reward(self.name, name, reward, goal)
+            check_reward(self.name, name, reward, goal)
         for group, parts in self.observations.items():
             for part in parts:
                 if part not in PARTS:
@@ -165,7 +165,12 @@ def _reward(entry: Any, where: str, path: str) -> Reward:
     return Reward(values.pop("weight"), values)
 
 
-def _check_reward(where: str, name: str, reward: Reward, goal: bool) -> None:
+def check_reward(where: str, name: str, reward: Reward, goal: bool) -> None:
+    """Whether a reward can stand in a task, with waypoints (`goal`) or without.
+
+    Raises:
+        InputError: no such term or parameter, or a term that needs waypoints where there are none.
+    """
     if name not in TERMS:
         raise InputError(where, f"rewards.{name}", reward.weight, parameters.unknown(name, sorted(TERMS)).replace("field", "term"))
     term = TERMS[name]

@@ -287,6 +287,21 @@ def test_signals_agree_with_the_reward_of_power(make, design):
     np.testing.assert_allclose(joints, (torque * speed).sum(-1), rtol=1e-9, atol=1e-9)
 
 
+def test_signals_of_a_step_that_ends_an_episode_are_of_that_episode(make):
+    environment = make(simulations=4)
+    environment.recording = True
+    environment.reset()
+    for _ in range(200):
+        step = environment.step(np.full((4, 14), 2.0))
+        signals = environment.signals()
+        for simulation in step.ended:
+            assert signals["base_position"][simulation, -1, 2] < 0.7
+            assert np.all(np.abs(signals["motor_torque"][simulation]).sum(-1) > 0)
+        if len(step.ended):
+            return
+    pytest.fail("no episode ended")
+
+
 def test_signals_need_recording(make):
     environment = make()
     environment.reset()
