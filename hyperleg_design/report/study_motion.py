@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.errors import InfeasibleError
-from hyperleg_design.report.page import Cell, Details, Heading, Missing, Section, Table
+from hyperleg_design.report.page import Cell, Details, Missing, Section, Table
 from hyperleg_design.report.study_sections import Made
+from hyperleg_design.report.style import save
 from hyperleg_design.writing import write_json
 
 if TYPE_CHECKING:
@@ -21,7 +22,13 @@ def capability(context: Context) -> Made:
     """The largest contact forces."""
     from hyperleg_design.sizing.capability import capability_table
 
-    found = capability_table(context.variants)
+    upright = [
+        {**row, "direction": "vertical, through the centre of mass"}
+        for row in capability_table(context.variants, upright=True)
+        if row["direction"] == "vertical"
+    ]
+    free = capability_table(context.variants)
+    found = free + upright
     write_json(context.folder / "capability.json", found)
     by_place: dict[tuple[str, str], dict[str, dict[str, Any]]] = {}
     for row in found:
@@ -37,10 +44,13 @@ def capability(context: Context) -> Made:
         )
         rows.append([posture.replace("_", " "), direction, *cells, Cell(stops, "note")])
     off = by_place[("toe_off", "vertical")]
+    from hyperleg_design.report.demand_figures import capability_figure
+
     content: list[Any] = [
-        "The largest force that one leg can press on the floor in a posture at rest, inside the motors' envelopes and the friction cones of the sole's pads (a second-order cone programme).",
+        "The largest force that one leg can press on the floor in a posture at rest, inside the motors' envelopes and the friction cones of the sole's pads (a second-order cone programme). The pelvis is held. Near straight knees the vertical force is almost borne by the structure; with the force through the centre of mass, as in standing on that leg, it is what motors can hold.",
         Table(["posture", "direction", *(f"{v} [N]" for v in context.variants), "motors at their limit"], rows),
     ]
+    content.append(context.picture("capability", "Largest contact force of one leg by posture.", lambda p: save(capability_figure(free), p)))
     if off["toe"]["force"] and off["toe_locked"]["force"]:
         ratio = off["toe"]["force"] / off["toe_locked"]["force"]
         verdict = "so the active toe is the weak link there: it buys motion, not force" if ratio < 0.95 else "so the active toe costs no force there"
@@ -121,4 +131,16 @@ def demand(context: Context) -> Made:
 
 
 def _figures(context: Context, found: dict[str, dict[str, Demand]]) -> list[Any]:
-    return [Heading("")] if not found else []
+    from hyperleg_design.report.demand_figures import cycle_figure, margin_figure, operating_points_figure, stick_figure_strip
+
+    walk = found["walk"]
+    pair: dict[str, Demand] = {n: walk[n] for n in ("toe", "toe_removed_matched") if n in walk}
+    drawn: list[Any] = [
+        context.picture("walk", "The planned walk with the active toe, from the right side, with the floor's force on each foot.", lambda p: save(stick_figure_strip(walk["toe"]), p)),
+        context.picture("walk_cycle", "Joint angles and torques of the left leg over one cycle of the planned walk.", lambda p: save(cycle_figure(pair), p)),
+        context.picture("walk_points", "Operating points of every motor on the planned walk, in their envelopes.", lambda p: save(operating_points_figure(pair), p)),
+        context.picture("walk_margins", "Smallest margin, thermal use and heat of every motor on the planned walk.", lambda p: save(margin_figure(walk), p)),
+    ]  # fmt: skip
+    others = [m for m in MOTIONS[1:] if "toe" in found.get(m, {})]
+    strips = [context.picture(m, f"The planned {m}, active toe.", lambda p, m=m: save(stick_figure_strip(found[m]["toe"]), p)) for m in others]  # type: ignore[misc]
+    return [*drawn, *strips]
