@@ -7,6 +7,7 @@ from typing import Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import parameters
+from hyperleg_design.robot.friction import FRICTION_SPEED
 from hyperleg_design.robot.parameters import flag, number, text
 
 
@@ -39,7 +40,7 @@ class Physics(Checked):
     """How joint friction enters a step, see `actuation`."""
     friction_space: Any = text("joint", "motor", default="joint")
     """Where friction acts: at the joints as Table I prints it, or at the motors."""
-    friction_velocity: Any = number("rad/s", 1e-4, 10, default=0.1)
+    friction_velocity: Any = number("rad/s", 1e-4, 10, default=FRICTION_SPEED)
     """Width v_m of the Coulomb friction's tanh [rad/s]; the paper does not print it."""
     posture_dependent: Any = flag(default=False)
     """Reductions from the linkage model at each posture, in place of the printed posture's."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot.friction import FRICTION_SPEED
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.transmission import joint_from_motor, joint_names, motor_names, motor_velocity
 from hyperleg_design.sizing.allocation import Allocation, least_heat
@@ -25,9 +26,6 @@ from hyperleg_design.sizing.thermal import thermal_use
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
-
-FRICTION_SPEED = 0.1
-"""Width v_m of the Coulomb friction's tanh [rad/s] (assumed; the paper does not print it)."""
 
 
 @dataclass(frozen=True, eq=False)
