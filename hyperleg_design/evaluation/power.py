@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.evaluation.gait import CYCLE_POINTS, Steps, cycles
+from hyperleg_design.evaluation.gait import CYCLE_POINTS, Steps, cycles, strides
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.sizing.energy import EnergyLedger, energy_ledger, joint_power
 
@@ -49,31 +50,14 @@ class CyclePower:
     """Given by the motors to each joint, signed [W], `(strides, points, q)`."""
     joule: np.ndarray
     """Heat of each motor [W], `(strides, points, m)`."""
+    means: Mapping[str, float]
+    """Means over the strides' samples [W]: `{group}`, `{group}_positive`, `{group}_absolute` mechanical, taken joint by joint;
+    `joule` of all motors; `total`, to which signed groups and `joule` add up."""
 
     def of_group(self, group: str) -> np.ndarray:
         """Mechanical power of a part of `GROUPS` [W], `(strides, points)`; zero for a toe that is not there."""
         kept = [i for i, joint in enumerate(self.joints) if joint in GROUPS[group]]
         return np.asarray(self.mechanical[..., kept].sum(-1))
-
-    def means(self) -> dict[str, float]:
-        """Means over strides and cycle [W]: `{group}`, `{group}_positive`, `{group}_absolute` mechanical, `joule`, `total`.
-
-        Positive and absolute are taken joint by joint. Signed groups and `joule` add up to `total`.
-        """
-        found: dict[str, float] = {}
-        for group, names in GROUPS.items():
-            part = self.mechanical[..., [i for i, joint in enumerate(self.joints) if joint in names]]
-            found[group] = _over_cycle(part.sum(-1))
-            found[f"{group}_positive"] = _over_cycle(np.maximum(part, 0.0).sum(-1))
-            found[f"{group}_absolute"] = _over_cycle(np.abs(part).sum(-1))
-        found["joule"] = _over_cycle(self.joule.sum(-1))
-        found["total"] = found["joule"] + sum(found[group] for group in GROUPS)
-        return found
-
-
-def _over_cycle(values: np.ndarray) -> float:
-    """Mean over strides and cycle, whose two ends are one point, `(strides, points)`; NaN without strides."""
-    return float(np.trapezoid(values.mean(0), dx=1.0 / (values.shape[1] - 1))) if len(values) else np.nan
 
 
 def cycle_power(trial: Trial, steps: Steps, foot: int = 1, points: int = CYCLE_POINTS) -> CyclePower:
@@ -89,9 +73,36 @@ def cycle_power(trial: Trial, steps: Steps, foot: int = 1, points: int = CYCLE_P
     joints, motors = (slice(foot * n, (foot + 1) * n) for n in (layout.leg_joints, layout.leg_motors))
     constants = motor_arrays(trial.design).power_constant[: layout.leg_motors]
     mechanical = joint_power(trial.driven_joint_torque[:, joints], trial.joint_velocity[:, joints])
+    joule = constants * trial.motor_torque[:, motors] ** 2
+    names = tuple(name.split("_", 1)[1] for name in layout.joints[joints])
+    begins, ends = strides(steps, foot)
+    whole = slice(int(begins[0]), int(ends[-1])) if len(begins) else slice(0)
     return CyclePower(
-        joints=tuple(name.split("_", 1)[1] for name in layout.joints[joints]),
+        joints=names,
         motors=tuple(name.split("_", 1)[1] for name in layout.motors[motors]),
         mechanical=cycles(mechanical, steps, foot, points),
-        joule=cycles(constants * trial.motor_torque[:, motors] ** 2, steps, foot, points),
+        joule=cycles(joule, steps, foot, points),
+        means=leg_means(names, mechanical[whole], joule[whole]),
     )
+
+
+def leg_means(joints: Sequence[str], mechanical: np.ndarray, joule: np.ndarray) -> dict[str, float]:
+    """Mean powers of one leg [W], see `CyclePower.means`; NaN without samples.
+
+    Args:
+        joints: names without the side, `(q,)`.
+        mechanical: given to each joint [W], `(t, q)`.
+        joule: heat of each motor [W], `(t, m)`.
+    """
+    if not len(mechanical):
+        names = [*(f"{g}{kind}" for g in GROUPS for kind in ("", "_positive", "_absolute")), "joule", "total"]
+        return dict.fromkeys(names, np.nan)
+    found: dict[str, float] = {}
+    for group, names_of in GROUPS.items():
+        part = mechanical[:, [i for i, joint in enumerate(joints) if joint in names_of]]
+        found[group] = float(part.sum(-1).mean())
+        found[f"{group}_positive"] = float(np.maximum(part, 0.0).sum(-1).mean())
+        found[f"{group}_absolute"] = float(np.abs(part).sum(-1).mean())
+    found["joule"] = float(joule.sum(-1).mean())
+    found["total"] = found["joule"] + sum(found[group] for group in GROUPS)
+    return found

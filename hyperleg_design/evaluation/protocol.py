@@ -67,8 +67,8 @@ class Steady(Checked):
 
     begin: Any = number("m", 0, 1e5, default=4.0)
     """From so far away from the start [m]."""
-    end: Any = number("m", 0, 1e5, default=20.0)
-    """Up to so far [m]."""
+    end: Any = number("m", 0, 1e5, default=0.0)
+    """Up to so far [m]; 0 for the whole distance."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -126,9 +126,14 @@ class WalkProtocol(Protocol):
         if self.distance > self.speed * self.time_limit:
             least = self.distance / self.speed
             raise InputError(self.name, "distance", self.distance, f"cannot be reached at {self.speed:g} m/s in time_limit; that takes {least:.1f} s")
-        if not self.steady.begin < self.steady.end <= self.distance:
+        if not self.steady.begin < self.steady_end <= self.distance:
             remedy = f"expects begin below end, and end within distance, {self.distance:g} m"
             raise InputError(self.name, "steady", [self.steady.begin, self.steady.end], remedy)
+
+    @property
+    def steady_end(self) -> float:
+        """Distance from the start at which the steady part ends [m]."""
+        return float(self.steady.end or self.distance)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

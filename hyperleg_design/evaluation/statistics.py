@@ -8,6 +8,8 @@ are that array. Values that could not be measured (no arrival, so no time) are N
 Intervals rest on a hierarchical bootstrap: seeds are drawn with replacement, then trials within each drawn seed. With few
 seeds the bootstrap's spread is too small by sqrt((k - 1) / k) and percentiles cover too little, so its standard error is
 multiplied by sqrt(k / (k - 1)) and by Student's t with k - 1 degrees of freedom (Hesterberg, 2015, on both corrections).
+Drawing trials anew counts their spread twice, in the seeds' means and within them, so intervals are wider than they need
+be where trials of one seed differ more than seeds do, and never narrower.
 One seed alone gives an interval over its trials that cannot speak about seeds, and says so.
 """
 

@@ -118,7 +118,7 @@ def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tup
     beyond = np.flatnonzero(away >= protocol.steady.begin)
     if trial.outcome == rollout.FELL or not len(beyond):
         return None
-    past = np.flatnonzero(away >= protocol.steady.end)
+    past = np.flatnonzero(away >= protocol.steady_end)
     steps = measured_steps(trial, protocol.events)
     window = gait.whole_strides(steps, int(beyond[0]), int(past[0]) if len(past) else trial.samples)
     if window is None or len(steps.within(*window).foot) < 2 * STRIDES:
