@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.simulation.assist import Assist, supported_height
+from hyperleg_design.simulation.assist import Assist
 
 if TYPE_CHECKING:
     from hyperleg_design.learning.preset import Preset, Ramp, Stage
@@ -54,7 +54,7 @@ class Schedule:
 
     def apply(self, environment: Environment) -> None:
         """Set what the next iteration runs with; stages before the present one leave their last values."""
-        environment.assist = Assist(self.gain, supported_height(environment.model)) if self.gain > 0.0 else None
+        environment.assist = Assist(self.gain) if self.gain > 0.0 else None
         index, done = self.place
         for i, stage in enumerate(self.stages[: index + 1]):
             for term, values in stage.rewards.items():

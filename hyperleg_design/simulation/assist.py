@@ -7,15 +7,11 @@ its `Assist`, which none is by default.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.simulation.state import Motion, to_world
-
-if TYPE_CHECKING:
-    import mujoco
 
 FORCE = 250.0
 """Forward force over speed error [N s/m]; assumed."""
@@ -23,12 +19,6 @@ TORQUE = 400.0
 """Uprighting torque over tilt [Nm/rad]; assumed."""
 DAMPING = 40.0
 """Uprighting torque over roll and pitch rate [Nms/rad]; assumed."""
-SUPPORT = 3000.0
-"""Upward force over sinking of the pelvis below `Assist.height` [N/m]; assumed."""
-SUPPORT_DAMPING = 300.0
-"""Upward force over speed of sinking [N s/m]; assumed. Without support the first policies, drawn forward, only fall."""
-SAG = 0.025
-"""Depth below standing at which the support begins [m]; assumed."""
 DECAY = 0.93
 """Factor on the gain at each decay; assumed."""
 OFF_BELOW = 0.01
@@ -37,12 +27,10 @@ OFF_BELOW = 0.01
 
 @dataclass
 class Assist:
-    """A forward force toward the commanded speed, an uprighting torque and a support, scaled by a gain that only decays."""
+    """A forward force toward the commanded speed and an uprighting torque, scaled by a gain that only decays."""
 
     gain: float = 1.0
     """1 full, 0 gone [-]."""
-    height: float = 0.0
-    """Of the pelvis, below which it is supported [m]; 0 for no support. See `supported_height`."""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.gain <= 1.0:
@@ -75,12 +63,4 @@ class Assist:
         wrench[:, :2] = FORCE * error[:, None] * ahead
         wrench[:, 3] = TORQUE * up[:, 1] - DAMPING * turning[:, 0]
         wrench[:, 4] = -TORQUE * up[:, 0] - DAMPING * turning[:, 1]
-        if self.height > 0.0:
-            sunk, sinking = np.maximum(self.height - motion.position[:, 2], 0.0), np.maximum(-motion.velocity[:, 2], 0.0)
-            wrench[:, 2] = SUPPORT * sunk + SUPPORT_DAMPING * sinking
         return self.gain * wrench
-
-
-def supported_height(model: mujoco.MjModel) -> float:
-    """Pelvis height below which a robot is supported: `SAG` under standing in the default posture [m]."""
-    return float(model.key_qpos[0][2]) - SAG
