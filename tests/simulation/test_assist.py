@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.simulation.assist import DAMPING, FORCE, SAG, SUPPORT, SUPPORT_DAMPING, TORQUE, Assist, supported_height
+from hyperleg_design.simulation.assist import DAMPING, FORCE, TORQUE, Assist
 from hyperleg_design.simulation.state import read_motion
 
 
@@ -46,22 +46,3 @@ def test_it_only_decays_and_then_is_gone():
 def test_gain_is_checked():
     with pytest.raises(InputError, match="gain"):
         Assist(gain=2.0)
-
-
-@pytest.mark.parametrize(
-    ("height", "speed", "force"), [(0.5, 0.0, SUPPORT * 0.2), (0.8, 0.0, 0.0), (0.8, -0.1, SUPPORT_DAMPING * 0.1), (0.5, 0.3, SUPPORT * 0.2)]
-)
-def test_support_holds_a_sinking_pelvis_and_never_pulls_it_down(height, speed, force):
-    motion = motion_of(velocity=(0, 0, speed))
-    motion.position[0, 2] = height
-    assert Assist(0.5, height=0.7).wrench(motion, AHEAD, np.zeros(1))[0, 2] == pytest.approx(0.5 * force)
-    assert Assist(0.5).wrench(motion, AHEAD, np.zeros(1))[0, 2] == 0.0
-
-
-def test_supported_height_is_just_under_standing(hyperleg):
-    from hyperleg_design.simulation.model import simulation_model
-    from hyperleg_design.simulation.settings import Physics
-
-    model = simulation_model(hyperleg, Physics())
-    assert supported_height(model) == pytest.approx(model.key_qpos[0][2] - SAG)
-    assert 0.7 < supported_height(model) < 0.78
