@@ -36,6 +36,9 @@ TOO_FEW_SEEDS = "too few seeds to tell"
 NOTHING_MEASURED = "nothing was measured"
 AGREES = "agrees"
 
+_DRAWS = 2_000_000
+"""Numbers drawn at once, so that memory stays small."""
+
 Groups = Sequence[Any]
 """One array of values a seed."""
 
@@ -252,14 +255,25 @@ def _pairs(first: Groups, second: Groups) -> tuple[list[Any], list[Any]]:
 
 def _means(groups: list[np.ndarray], resamples: int, rng: np.random.Generator) -> np.ndarray:
     """Means of hierarchical resamples, `(resamples,)`: seeds with replacement, then trials of each."""
-    seeds = len(groups)
-    chosen = rng.integers(seeds, size=(resamples, seeds))
-    found = np.zeros(resamples)
-    for place in range(seeds):
-        for i, group in enumerate(groups):
-            rows = np.flatnonzero(chosen[:, place] == i)
-            found[rows] += group[0] if len(group) == 1 else group[rng.integers(len(group), size=(len(rows), len(group)))].mean(-1)
-    return found / seeds
+    return _drawn_means(groups, rng.integers(len(groups), size=(resamples, len(groups))), rng)
+
+
+def _drawn_means(groups: list[np.ndarray], chosen: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Means over chosen seeds `(resamples, places)` of their trials drawn with replacement, `(resamples,)`."""
+    lengths = np.array([len(g) for g in groups])
+    values = np.zeros((len(groups), lengths.max()))
+    for row, group in zip(values, groups, strict=True):
+        row[: len(group)] = group
+    found = np.empty(len(chosen))
+    at_once = max(1, _DRAWS // (chosen.shape[1] * values.shape[1]))
+    for begin in range(0, len(chosen), at_once):
+        seeds = chosen[begin : begin + at_once]
+        length = lengths[seeds][..., None]
+        trials = (rng.random((*seeds.shape, values.shape[1])) * length).astype(int)
+        drawn = values[seeds[..., None], trials]
+        drawn[np.arange(values.shape[1]) >= length] = 0.0  # of shorter groups, drawn for nothing
+        found[begin : begin + at_once] = (drawn.sum(-1) / length[..., 0]).mean(-1)
+    return found
 
 
 def _standard_error(groups: list[np.ndarray], means: np.ndarray) -> tuple[float, int]:
@@ -275,13 +289,8 @@ def _paired_error(a: list[np.ndarray], b: list[np.ndarray], resamples: int, rng:
         error_a, error_b = (_standard_error(g, _means(g, resamples, rng)) for g in (a, b))
         return float(np.hypot(error_a[0], error_b[0])), _welch(*error_a, *error_b)
     chosen = rng.integers(seeds, size=(resamples, seeds))
-    found = np.zeros(resamples)
-    for place in range(seeds):
-        for i in range(seeds):
-            rows = np.flatnonzero(chosen[:, place] == i)
-            x, y = (g[i][rng.integers(len(g[i]), size=(len(rows), len(g[i])))].mean(-1) for g in (a, b))
-            found[rows] += x - y
-    return float(found.std() / seeds * np.sqrt(seeds / (seeds - 1))), seeds - 1
+    found = _drawn_means(a, chosen, rng) - _drawn_means(b, chosen, rng)
+    return float(found.std() * np.sqrt(seeds / (seeds - 1))), seeds - 1
 
 
 def _welch(error_a: float, freedom_a: int, error_b: float, freedom_b: int) -> int:

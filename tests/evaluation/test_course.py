@@ -50,7 +50,7 @@ def test_distances_equal_brute_force_and_the_simulations(seed):
 
 
 def test_a_parallel_path_deviates_by_its_offset():
-    path = run_along(T[:2]) + [0.0, 0.3]
+    path = run_along(T[:2]) + np.array([0.0, 0.3])
     assert course.course_deviation(path, T[:2]) == pytest.approx(np.full(len(path), 0.3))
 
 

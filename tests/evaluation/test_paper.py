@@ -44,3 +44,39 @@ def test_every_inconsistency_says_where_what_and_what_is_done():
         assert item.place
         assert item.finding
         assert item.choice
+
+
+def test_tables_three_and_four_agree_with_the_changes_printed():
+    printed = {
+        "total power": -16.9,
+        "Joule heating": -24.9,
+        "mechanical loss": -7.6,
+        "CoT": -17.5,
+        "time to goal": -1.1,
+        "average heel-strike GRF": -5.0,
+    }
+    for row in paper.TABLE_THREE:
+        assert 100 * row.change == pytest.approx(printed[row.quantity], abs=0.06), row.quantity
+    printed = {"time to goal": -0.1, "max speed": -6.6, "average speed": -4.4, "average path deviation": -25.0, "max path deviation": -34.0}
+    for row in paper.TABLE_FOUR:
+        assert 100 * row.change == pytest.approx(printed[row.quantity], abs=0.06), row.quantity
+
+
+def test_total_power_is_joule_and_mechanical_and_the_legs_do_not_reach_it():
+    total, joule, mechanical = paper.TABLE_THREE[:3]
+    for side in ("toe", "ablation"):
+        assert getattr(total, side) == pytest.approx(getattr(joule, side) + getattr(mechanical, side), abs=0.06)
+        leg = sum(getattr(row, side) for row in paper.RIGHT_LEG_POWER)
+        assert getattr(total, side) / 2 < leg < getattr(total, side)
+    printed = {"hip": 22, "knee": 11, "ankle": 29}
+    for row, name in zip(paper.RIGHT_LEG_POWER, printed, strict=True):
+        assert name in row.quantity
+        assert 100 * (row.ablation / row.toe - 1) == pytest.approx(printed[name], abs=0.6)
+
+
+def test_the_t_test_is_shorter_than_the_human_one():
+    time, _, speed = paper.TABLE_FOUR[:3]
+    assert time.toe * speed.toe == pytest.approx(33.5, abs=0.05)
+    assert time.ablation * speed.ablation == pytest.approx(35.1, abs=0.05)
+    grf = paper.TABLE_THREE[-1]
+    assert (grf.toe / (32 * 9.81), grf.ablation / (32 * 9.81)) == pytest.approx((3.09, 3.25), abs=0.005)

@@ -114,6 +114,22 @@ def test_bootstrap_error_is_that_of_theory():
     assert estimate(groups, resamples=20_000).standard_error == pytest.approx(np.sqrt(theory), rel=0.03)
 
 
+def test_groups_of_unequal_length_are_drawn_from_their_own_values():
+    groups = [np.array([1.0, 2.0]), np.array([5.0] * 7), np.array([9.0])]
+    rng = np.random.default_rng(8)
+    for which, expected in ((0, 1.5), (1, 5.0), (2, 9.0)):
+        drawn_means = statistics._drawn_means(groups, np.full((20_000, 3), which), rng)
+        assert drawn_means.mean() == pytest.approx(expected, abs=0.01)
+        assert drawn_means.var() == pytest.approx(0.25 / 2 / 3 if which == 0 else 0, rel=0.05, abs=1e-12)
+
+
+def test_memory_stays_small_and_pieces_fit_together(monkeypatch):
+    groups = drawn(np.random.default_rng(9), 5, 10, 1, 1)
+    whole = estimate(groups, resamples=2000)
+    monkeypatch.setattr(statistics, "_DRAWS", 500)
+    assert estimate(groups, resamples=2000) == whole
+
+
 def test_no_fall_in_fifty_walks_still_has_an_upper_bound():
     found = share([[False] * 10] * 5)
     assert (found.mean, found.low) == (0, 0)
