@@ -56,7 +56,7 @@ class Meter:
         name = "position_progress" if self.goal else "linear_velocity"
         share = terms[name] / rewards[name].weight if name in rewards and rewards[name].weight else 0.0
         if self.goal:
-            share /= speed_cap(environment)
+            share /= speed_cap(environment) * duration  # progress is a distance
         self.steps = MEMORY * self.steps + self._count
         self.ends = MEMORY * self.ends + self._ends
         self.share = share if not self.share else MEMORY * self.share + (1 - MEMORY) * share

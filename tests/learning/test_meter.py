@@ -43,3 +43,17 @@ def test_running_means_survive(hyperleg: Design) -> None:
     for meter in meters:
         meter.note(step)
     assert str(meters[0].read()) == str(meters[1].read())  # some are nan
+
+
+def test_share_of_the_speed_cap_is_the_speed_of_getting_closer(hyperleg: Design) -> None:
+    environment = Environment(hyperleg, load_task("goal"), simulations=4, threads=1)
+    environment.reset()
+    meter = Meter(environment)
+    for chunk in environment.chunks:  # all robots thrown ahead, toward waypoints that lie ahead
+        chunk.drive.qvel[:, :2] = 1.2 * chunk.motion.heading
+    first = environment.chunks[0].commander.best.copy()
+    for _ in range(10):
+        meter.note(environment.step(np.zeros((4, 14))))
+    closer = (first - environment.chunks[0].commander.best).mean()
+    assert closer > 0.05
+    assert meter.read()["share"] == pytest.approx(closer / (10 * 0.02) / 1.4, rel=1e-6)
