@@ -26,7 +26,7 @@ import numpy as np
 
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope, torque_limits
+from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
@@ -118,9 +118,15 @@ def driven_torque(model: ActuationModel, wanted: np.ndarray, speed: np.ndarray, 
         speed: motor velocities [rad/s], `(..., legs, motors)`.
         to_motor: map from joint to motor torques in place of the model's, `(..., motors, joints)`.
     """
-    lower, upper = torque_limits(model.envelope, speed)
     torque = applied(model.motor_from_joint if to_motor is None else to_motor, wanted)
-    return np.minimum(np.maximum(torque, lower), upper)
+    # `sizing.envelope.clip_torque` with the bounds taken one after the other, in place: this runs in every simulation step.
+    stall, peak = model.envelope.stall_torque, model.envelope.peak_torque
+    droop = stall / model.envelope.no_load_speed * speed
+    np.minimum(torque, stall - droop, out=torque)
+    droop += stall
+    np.maximum(torque, np.negative(droop, out=droop), out=torque)
+    np.minimum(torque, peak, out=torque)
+    return np.maximum(torque, -peak, out=torque)
 
 
 def friction_torque(coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any) -> np.ndarray:
@@ -130,9 +136,14 @@ def friction_torque(coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarr
 
 def friction_damping(coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any) -> np.ndarray:
     """The damping D with D v = `friction_torque` [Nms/rad], `(...)`; f_c / v_m + f_v at rest."""
-    ratio = np.abs(velocity) / width
+    ratio = np.abs(velocity)
+    ratio /= width
     np.maximum(ratio, 1e-9, out=ratio)
-    return coulomb / width * (np.tanh(ratio) / ratio) + viscous
+    damping = np.tanh(ratio)
+    damping /= ratio
+    damping *= coulomb / width
+    damping += viscous
+    return damping
 
 
 def motor_friction(design: Design) -> tuple[np.ndarray, np.ndarray]:

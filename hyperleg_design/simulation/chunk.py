@@ -155,15 +155,17 @@ class Chunk:
         self._physics()
         self.episode_step += 1
         divergences = self._find_diverged(position_before, velocity_before)
-        diverged = np.array([d.simulation - self.first for d in divergences], int)
         self.motion = read_motion(self.drive.qpos, self.drive.qvel)
         self.goal = self.commander.judge(self.motion)
         ending = terminations.ending(self.motion, self.goal, self.episode_step, task.limits, duration)
-        ending[diverged] = terminations.DIVERGED
+        diverged = [d.simulation - self.first for d in divergences]
+        if diverged:
+            ending[diverged] = terminations.DIVERGED
         terminated = terminations.fell(ending)
         state = self._state(self.thermal.advance(self.motor_torque / self._rated, duration), terminated)
         reward_terms = self._rewards(state) * duration
-        reward_terms[diverged] = 0.0
+        if diverged:
+            reward_terms[diverged] = 0.0
         ended = np.flatnonzero(ending)
         lengths = self.episode_step[ended]
         self.commander.advance(self.motion, self.goal, duration, self.rng)
@@ -179,7 +181,7 @@ class Chunk:
                 observations[group][ended] = values
         return Step(
             observations=observations,
-            reward=reward_terms.sum(-1),
+            reward=np.einsum("nt->n", reward_terms),
             terminated=terminated,
             truncated=(ending != 0) & ~terminated,
             ending=ending,
@@ -284,11 +286,11 @@ class Chunk:
         )
 
     def _rewards(self, state: State) -> np.ndarray:
-        values = np.zeros((self.count, len(self.rewards)))
-        for column, (name, reward) in enumerate(self.rewards.items()):
+        values = np.zeros((len(self.rewards), self.count))
+        for row, (name, reward) in enumerate(self.rewards.items()):
             if reward.weight:
-                np.multiply(TERMS[name].function(state, self.robot, **reward.parameters), reward.weight, out=values[:, column])
-        return values
+                np.multiply(TERMS[name].function(state, self.robot, **reward.parameters), reward.weight, out=values[row])
+        return values.T
 
     def _find_diverged(self, position: np.ndarray, velocity: np.ndarray) -> list[Divergence]:
         """Simulations gone wrong in this step; they are put back to standing so that the others can go on."""
@@ -312,8 +314,8 @@ class Chunk:
     def _sound(self) -> bool:
         """Whether all simulations are well."""
         speed, position = self.drive.qvel, self.drive.qpos
-        bounded = np.minimum.reduce(speed, None) > -FASTEST and np.maximum.reduce(speed, None) < FASTEST
-        return bool(bounded and np.isfinite(np.add.reduce(position, None)) and not self.batch.warning[:, _BROKEN, 1].any())
+        bounded = np.einsum("nj,nj->", speed, speed) < FASTEST**2  # false for what is not a number
+        return bool(bounded and np.isfinite(np.einsum("nj->", position)) and not self.batch.warning[:, _BROKEN, 1].any())
 
     def _start(self, ids: np.ndarray) -> Motion:
         """Put robots on the floor near their default posture; motion of these rows."""

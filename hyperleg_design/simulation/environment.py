@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
     from hyperleg_design.simulation.layout import Layout
 
-CHUNK = 256
+CHUNK = 512
 """Most simulations in a chunk: fewer and larger ones waste less time in Python."""
 SMALLEST_SPLIT = 32
 """Simulations from which there are two chunks at least."""

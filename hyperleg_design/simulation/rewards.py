@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.simulation.layout import Layout
+from hyperleg_design.simulation.model import foot_loads
 from hyperleg_design.simulation.settings import Clock
 from hyperleg_design.simulation.state import Goal, State
 
@@ -142,16 +143,15 @@ def action_rate(state: State, robot: Robot) -> np.ndarray:
 @term()
 def foot_slide(state: State, robot: Robot) -> np.ndarray:
     """Sliding speed of the feet [m/s]: of each foot's touching pads the mean, weighted by load, summed over the feet."""
-    count = len(state.pad_slip)
-    weighted = (state.pad_load[-1] * state.pad_slip).reshape(count, 2, -1).sum(-1)
-    return (weighted / np.maximum(state.foot_load[-1], TOUCH)).sum(-1)
+    weighted = foot_loads(state.pad_load[-1] * state.pad_slip)
+    return np.einsum("nf->n", weighted / np.maximum(state.foot_load[-1], TOUCH))
 
 
 @term()
 def hip_deviation(state: State, robot: Robot) -> np.ndarray:
     """Hip yaw and roll away from the default posture, summed [rad]."""
     places = robot.layout.hip_sideways
-    return np.abs(state.motion.joint_position[:, places] - robot.layout.default[places]).sum(-1)
+    return np.einsum("nj->n", np.abs(state.motion.joint_position[:, places] - robot.layout.default[places]))
 
 
 @term()
@@ -165,7 +165,7 @@ def roll_pitch_rate(state: State, robot: Robot) -> np.ndarray:
 def joint_limits(state: State, robot: Robot, share: float = 0.95) -> np.ndarray:
     """Joint angles outside the inner share of their range of motion, summed [rad]."""
     middle, half = (robot.layout.upper + robot.layout.lower) / 2, (robot.layout.upper - robot.layout.lower) / 2
-    return np.maximum(np.abs(state.motion.joint_position - middle) - share * half, 0.0).sum(-1)
+    return np.einsum("nj->n", np.maximum(np.abs(state.motion.joint_position - middle) - share * half, 0.0))
 
 
 @term()

@@ -116,14 +116,15 @@ class State:
 
 def read_motion(qpos: np.ndarray, qvel: np.ndarray) -> Motion:
     """Motion from MuJoCo's coordinates, `(n, 7 + J)` and `(n, 6 + J)`; copies."""
-    w, x, y, z = qpos[:, 3:7].T
-    rotation = np.empty((len(qpos), 3, 3))
+    w, x, y, z = np.ascontiguousarray(qpos[:, 3:7].T)
+    rows = np.empty((3, 3, len(qpos)))  # simulations last, so that each entry is written in one run
     xx, yy, zz = 2 * x * x, 2 * y * y, 2 * z * z
     xy, xz, yz = 2 * x * y, 2 * x * z, 2 * y * z
     wx, wy, wz = 2 * w * x, 2 * w * y, 2 * w * z
-    rotation[:, 0, 0], rotation[:, 0, 1], rotation[:, 0, 2] = 1 - yy - zz, xy - wz, xz + wy
-    rotation[:, 1, 0], rotation[:, 1, 1], rotation[:, 1, 2] = xy + wz, 1 - xx - zz, yz - wx
-    rotation[:, 2, 0], rotation[:, 2, 1], rotation[:, 2, 2] = xz - wy, yz + wx, 1 - xx - yy
+    rows[0, 0], rows[0, 1], rows[0, 2] = 1 - yy - zz, xy - wz, xz + wy
+    rows[1, 0], rows[1, 1], rows[1, 2] = xy + wz, 1 - xx - zz, yz - wx
+    rows[2, 0], rows[2, 1], rows[2, 2] = xz - wy, yz + wx, 1 - xx - yy
+    rotation = rows.transpose(2, 0, 1)
     forward = rotation[:, :2, 0]
     heading = forward / np.sqrt(np.maximum(np.einsum("ni,ni->n", forward, forward), 1e-18))[:, None]
     return Motion(qpos[:, :3].copy(), rotation, qvel[:, :3].copy(), qvel[:, 3:6].copy(), heading, qpos[:, 7:].copy(), qvel[:, 6:].copy())
