@@ -22,6 +22,8 @@ AT_LIMIT = 1e-6
 class MotorUse:
     """Of every motor of both legs, `(K,)`."""
 
+    motors: tuple[str, ...]
+    """Names with the side in front."""
     rms_torque: np.ndarray
     """[Nm]"""
     peak_torque: np.ndarray
@@ -48,6 +50,7 @@ def motor_use(trial: Trial, first: int = 0, last: int | None = None) -> MotorUse
     heat = thermal_use(trial.motor_torque[:last], rated, trial.time_step)
     rms = rms_torque(torque)
     return MotorUse(
+        motors=trial.layout.motors,
         rms_torque=rms,
         peak_torque=np.abs(torque).max(0),
         peak_speed=np.abs(speed).max(0),

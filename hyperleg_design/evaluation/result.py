@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import dataclasses
+import io
+import os
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.bearing import headings
+from hyperleg_design.evaluation.course import in_start_frame
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, policy_name
+from hyperleg_design.evaluation.protocol import protocol_mapping
+from hyperleg_design.provenance import git_commit, versions
+from hyperleg_design.writing import output_folder, write_bytes, write_json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,6 +27,10 @@ if TYPE_CHECKING:
     from hyperleg_design.evaluation.power import CyclePower
     from hyperleg_design.evaluation.rollout import Trial
     from hyperleg_design.robot.design import Design
+
+
+ORIGIN = ("command", "commit", "versions", "deviations")
+"""Metadata of a policy that results carry."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,21 +47,28 @@ class Evaluation:
     """Of the training; -1 where unknown."""
     steps: int
     """Policy steps of the training; -1 where unknown."""
+    origin: Mapping[str, Any]
+    """What an ONNX policy says of its training: command, commit, versions, deviations from the paper; empty for others."""
     protocol: Any
     """The `WalkProtocol` or `TTestProtocol`."""
-    trials: list[Trial]
-    """With all signals."""
+    outcomes: list[str]
+    """How each trial ended, of `rollout.OUTCOMES`."""
+    end_times: list[float]
+    """At which each trial ended [s]."""
+    paths: list[np.ndarray]
+    """Pelvis over the floor in the frame of the start, x ahead, once a policy step [m], `(t, 2)` of each trial."""
     measures: list[dict[str, float]]
     """Of each trial, the same names in all; NaN where a trial gives no such number."""
     motors: list[MotorUse | None]
     """Of each trial; None where it gives none."""
     cycles: list[CyclePower | None] = field(default_factory=list)
     """Right-leg power over the steady strides of each walk; None where there is none."""
+    trials: list[Trial] = field(default_factory=list)
+    """All signals, of the first trials where others were let go by `light`."""
 
-    @property
-    def outcomes(self) -> list[str]:
-        """How each trial ended, of `rollout.OUTCOMES`."""
-        return [trial.outcome for trial in self.trials]
+    def light(self, kept: int = 1) -> Evaluation:
+        """The same without the signals of all trials but the first `kept`; a trial's fill some 4 MB."""
+        return dataclasses.replace(self, trials=self.trials[:kept])
 
     def values(self, measure: str) -> np.ndarray:
         """A measure in all trials, `(n,)`.
@@ -78,7 +98,11 @@ def evaluation_of(
         design=design.name,
         seed=known.seed if known else -1,
         steps=known.steps if known else -1,
+        origin={key: known.metadata[key] for key in ORIGIN if key in known.metadata} if known else {},
         protocol=protocol,
+        outcomes=[trial.outcome for trial in trials],
+        end_times=[trial.end_time for trial in trials],
+        paths=[_path(trial) for trial in trials],
         trials=trials,
         measures=measures,
         motors=motors,
@@ -93,8 +117,9 @@ def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
     rows = []
     for one in evaluations:
         head = {"policy": one.policy, "variant": one.variant, "design": one.design, "seed": one.seed, "steps": one.steps}
-        for index, (trial, measures) in enumerate(zip(one.trials, one.measures, strict=True)):
-            rows.append(head | {"protocol": one.protocol.name, "trial": index, "outcome": trial.outcome, "end_time": trial.end_time} | measures)
+        for index, measures in enumerate(one.measures):
+            ended = {"trial": index, "outcome": one.outcomes[index], "end_time": one.end_times[index]}
+            rows.append(head | {"protocol": one.protocol.name} | ended | measures)
     return pd.DataFrame(rows)
 
 
@@ -104,13 +129,80 @@ def motor_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
 
     rows = []
     for one in evaluations:
-        for index, (trial, use) in enumerate(zip(one.trials, one.motors, strict=True)):
+        for index, use in enumerate(one.motors):
             if use is None:
                 continue
-            for k, motor in enumerate(trial.layout.motors):
+            for k, motor in enumerate(use.motors):
                 head = {"policy": one.policy, "variant": one.variant, "seed": one.seed, "trial": index, "motor": motor}
-                rows.append(head | {name: float(values[k]) for name, values in vars(use).items()})
+                rows.append(head | {name: float(values[k]) for name, values in vars(use).items() if name != "motors"})
     return pd.DataFrame(rows)
+
+
+def cycle_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
+    """One row a policy, joint or motor, and point of the gait cycle: mean and standard deviation over all strides [W].
+
+    Columns: policy, variant, training seed, kind (`mechanical` of joints, `joule` of motors), part, share of the cycle, mean,
+    deviation, strides.
+    """
+    import pandas as pd
+
+    rows = []
+    for one in evaluations:
+        found = [c for c in one.cycles if c is not None and len(c.mechanical)]
+        if not found:
+            continue
+        for kind, names in (("mechanical", found[0].joints), ("joule", found[0].motors)):
+            power = np.concatenate([getattr(c, kind) for c in found])
+            for k, name in enumerate(names):
+                for point, share in enumerate(np.linspace(0, 1, power.shape[1])):
+                    head = {"policy": one.policy, "variant": one.variant, "seed": one.seed, "kind": kind, "part": name, "share": float(share)}
+                    values = power[:, point, k]
+                    rows.append(head | {"mean": float(values.mean()), "deviation": float(values.std()), "strides": len(values)})
+    return pd.DataFrame(rows)
+
+
+def write_results(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]) -> Path:
+    """Write evaluations as a folder: `trials.parquet`, `motors.parquet`, `cycles.parquet`, `paths.parquet`, `evaluation.json`.
+
+    `evaluation.json` holds the protocols, what each policy says of itself, versions and commit; no date.
+
+    Raises:
+        OutputError: the folder is somebody else's, or cannot be written; nothing half-written is left.
+    """
+    import pandas as pd
+
+    paths = [
+        {"policy": one.policy, "variant": one.variant, "seed": one.seed, "trial": i, "step": k, "x": float(x), "y": float(y)}
+        for one in evaluations
+        for i, path in enumerate(one.paths)
+        for k, (x, y) in enumerate(path)
+    ]
+    tables = {"trials": trial_table, "motors": motor_table, "cycles": cycle_table}
+    made = {name: build(evaluations) for name, build in tables.items()} | {"paths": pd.DataFrame(paths)}
+    described = {
+        "protocols": [protocol_mapping(p) for p in {id(one.protocol): one.protocol for one in evaluations}.values()],
+        "policies": [{"policy": one.policy, "variant": one.variant, "seed": one.seed, "steps": one.steps, **one.origin} for one in evaluations],
+        "versions": versions(("hyperleg-design", "numpy", "scipy", "mujoco", "onnxruntime")),
+        "commit": git_commit(),
+    }
+    with output_folder(folder) as place:
+        for name, table in made.items():
+            write_bytes(place / f"{name}.parquet", _parquet(table))
+        write_json(place / "evaluation.json", described)
+    return Path(folder)
+
+
+def _parquet(table: pd.DataFrame) -> bytes:
+    stream = io.BytesIO()
+    table.to_parquet(stream, index=False)
+    return stream.getvalue()
+
+
+def _path(trial: Trial) -> np.ndarray:
+    if not trial.samples:
+        return np.empty((0, 2))
+    heading = headings(trial.base_orientation[0])
+    return in_start_frame(trial.base_position[:: trial.substeps, :2], trial.base_position[0, :2], heading)
 
 
 def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:

@@ -109,7 +109,7 @@ def test_standing_falls_and_falls_are_counted(design):
 
 
 def test_same_seed_same_bytes_whatever_the_threads(design):
-    protocol = WalkProtocol(trials=40, distance=2.0, time_limit=2.0, steady=Steady(begin=0.5))  # from 32 on there are two chunks
+    protocol = WalkProtocol(trials=32, distance=1.0, time_limit=1.2, steady=Steady(begin=0.5))  # from 32 on there are two chunks
     actions = Scripted(0.3 * np.random.default_rng(0).normal(size=(200, 14)))
     one, two = (evaluate_walk(actions, protocol, design=design, task=load_task("walk"), threads=n) for n in (1, 2))
     for name in measures.WALK:

@@ -1,0 +1,104 @@
+"""Evaluation of one policy, or of many side by side, under any protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.policy import Policy, load_policy
+from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, WalkProtocol, load_protocol, protocol_from_mapping, protocol_mapping
+from hyperleg_design.evaluation.t_test import evaluate_t_test
+from hyperleg_design.evaluation.walk import evaluate_walk
+from hyperleg_design.simulation.commands import WaypointCommands
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.tasks import Task
+
+
+def evaluate(
+    policy: Policy | str | Path,
+    protocol: Protocol | str | Path | None = None,
+    *,
+    design: Design | None = None,
+    task: Task | None = None,
+    threads: int | None = None,
+) -> Evaluation:
+    """Run a protocol on a policy: deterministic, without assist.
+
+    Args:
+        policy: a callable from observations `(n, k)` to actions `(n, J)`, a shipped policy's name, or an ONNX file.
+        protocol: a protocol, a shipped name, or a file; by default `t_test` for tasks with waypoints, else `walk`.
+        design: the robot; an ONNX policy's own by default.
+        task: which gives observations, physics and control; an ONNX policy's own by default.
+        threads: of the simulation; the result does not depend on it.
+
+    Raises:
+        InputError: a file that cannot be used, a policy that does not fit robot, task or protocol, or one whose output is not
+            finite.
+    """
+    chosen = load_policy(policy) if isinstance(policy, str | Path) else policy
+    if protocol is None:
+        commands = getattr(task or getattr(chosen, "task", None), "commands", None)
+        protocol = "t_test" if isinstance(commands, WaypointCommands) else "walk"
+    run = load_protocol(protocol) if isinstance(protocol, str | Path) else protocol
+    if isinstance(run, TTestProtocol):
+        return evaluate_t_test(chosen, run, design=design, task=task, threads=threads)
+    if isinstance(run, WalkProtocol):
+        return evaluate_walk(chosen, run, design=design, task=task, threads=threads)
+    raise InputError("evaluate", "protocol", run.name, "expects a WalkProtocol or a TTestProtocol")
+
+
+def evaluate_many(
+    policies: Sequence[str | Path],
+    protocol: Protocol | str | Path | None = None,
+    *,
+    workers: int = 2,
+    kept: int = 1,
+    progress: Callable[[Evaluation], None] | None = None,
+) -> list[Evaluation]:
+    """Evaluate ONNX files, each in a process of one thread.
+
+    Args:
+        policies: shipped names or files.
+        protocol: as in `evaluate`.
+        workers: processes; one works in this process.
+        kept: trials of each policy whose signals are kept.
+        progress: called with each evaluation as it comes, in order.
+
+    Returns:
+        In the order of the policies; the same for any number of workers.
+
+    Raises:
+        InputError: as `evaluate`, of the first policy that fails.
+    """
+    if workers < 1:
+        raise InputError("evaluate", "workers", workers, "expects at least 1")
+    run = load_protocol(protocol) if isinstance(protocol, str | Path) else protocol
+    mapping = None if run is None else protocol_mapping(run)
+    for policy in policies:
+        load_policy(policy)  # a broken file is told before hours of work
+    found = []
+    if workers == 1 or len(policies) < 2:
+        for policy in policies:
+            found.append(_evaluated(policy, mapping, kept))
+            if progress is not None:
+                progress(found[-1])
+        return found
+    import multiprocessing
+
+    with ProcessPoolExecutor(min(workers, len(policies)), mp_context=multiprocessing.get_context("spawn")) as pool:
+        for one in pool.map(_evaluated, policies, [mapping] * len(policies), [kept] * len(policies)):
+            found.append(one)
+            if progress is not None:
+                progress(one)
+    return found
+
+
+def _evaluated(policy: str | Path, protocol: dict[str, object] | None, kept: int) -> Evaluation:
+    run = None if protocol is None else protocol_from_mapping(protocol, "protocol")
+    return evaluate(policy, run, threads=1).light(kept)

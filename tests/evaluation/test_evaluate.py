@@ -1,0 +1,78 @@
+"""One call evaluates any policy under any protocol; many policies give the same in any number of processes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.evaluate import evaluate, evaluate_many
+from hyperleg_design.evaluation.policy import standing
+from hyperleg_design.evaluation.protocol import Protocol, Steady, TTestProtocol, WalkProtocol
+from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.settings import Start
+from hyperleg_design.simulation.tasks import load_task
+
+SHORT = WalkProtocol(trials=3, distance=2.0, time_limit=2.0, steady=Steady(begin=0.5))
+
+
+def balance(design):
+    """A policy that stands: ankles answer to the pelvis's lean and pitch rate."""
+    ankles = layout_of(design).joint_indices("ankle_pitch")
+
+    def act(observation):
+        action = np.zeros((len(observation), 14))
+        action[:, ankles] = (2.0 * observation[:, 3] + 0.6 * observation[:, 1] + 0.1)[:, None]
+        return action
+
+    return act
+
+
+def test_the_task_chooses_the_protocol(design):
+    assert isinstance(evaluate(standing(14), design=design, task=load_task("walk")).protocol, WalkProtocol)
+    assert isinstance(evaluate(standing(14), design=design, task=load_task("goal")).protocol, TTestProtocol)
+    with pytest.raises(InputError, match="expects a WalkProtocol"):
+        evaluate(standing(14), Protocol(name="bare"), design=design, task=load_task("walk"))
+
+
+def test_a_file_is_enough(make_onnx):
+    found = evaluate(make_onnx(), SHORT)
+    assert found.policy == "small"
+    assert len(found.outcomes) == len(found.paths) == len(found.end_times) == 3
+    for path in found.paths:
+        assert path[0].tolist() == [0, 0]
+        assert np.all(np.linalg.norm(path, axis=1) < 2)
+
+
+def test_a_robot_that_stands_does_not_arrive_and_does_not_fall(design):
+    protocol = SHORT.changed(time_limit=6.0, start=Start(joint_position=0, tilt=0))
+    found = evaluate(balance(design), protocol, design=design, task=load_task("walk"))
+    assert found.outcomes == ["timed_out"] * 3
+    assert found.end_times == [6.0] * 3
+    assert np.isnan(found.values("time")).all()
+    assert np.all(found.values("distance") < 0.3)
+    for trial in found.trials:
+        assert trial.foot_load[-400:].sum(-1).mean() == pytest.approx(trial.layout.weight, rel=0.01)
+
+
+def test_processes_change_nothing(make_onnx):
+    files = [make_onnx(f"p{k}.onnx", bias=0.1 * k, seed=str(k)) for k in range(3)]
+    seen = []
+    alone = evaluate_many(files, SHORT, workers=1, progress=lambda one: seen.append(one.policy))
+    beside = evaluate_many(files, SHORT, workers=2)
+    assert seen == ["p0", "p1", "p2"]
+    assert [one.seed for one in beside] == [0, 1, 2]
+    for a, b in zip(alone, beside, strict=True):
+        assert a.measures[0].keys() == b.measures[0].keys()
+        assert np.array_equal([list(m.values()) for m in a.measures], [list(m.values()) for m in b.measures], equal_nan=True)
+        assert len(a.trials) == len(b.trials) == 1
+        assert np.array_equal(a.trials[0].motor_torque, b.trials[0].motor_torque)
+
+
+def test_a_broken_file_stops_before_any_work(make_onnx, write):
+    seen = []
+    with pytest.raises(InputError, match="no whole ONNX file"):
+        evaluate_many([make_onnx(), write("broken.onnx", b"x")], SHORT, workers=1, progress=seen.append)
+    assert seen == []
+    with pytest.raises(InputError, match="workers"):
+        evaluate_many([make_onnx()], SHORT, workers=0)
