@@ -19,7 +19,6 @@ import fcntl
 import json
 import os
 import signal
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -84,12 +83,13 @@ def train(
         InputError: bad input, or `out` holds another training or is at work already.
         OutputError: something cannot be written; the training can go on from its last checkpoint.
     """
+    command = f"hyperleg train --task {_name(task)} --design {_name(design)} --seed {seed} --preset {_name(preset)}"
     task = task if isinstance(task, Task) else load_task(task)
     design = design if isinstance(design, Design) else load_design(design)
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     folder = check_output_folder(out)
-    description = describe(task, design, seed, preset)
+    description = {**describe(task, design, seed, preset), "command": command}
     _check_same(folder, description)
     write_text(folder / MARKER, "made by hyperleg\n")
     with _alone(folder), _limited_threads(threads):
@@ -108,7 +108,6 @@ def describe(task: Task, design: Design, seed: int, preset: Preset) -> dict[str,
         "seed": seed,
         "preset": preset_mapping(preset, task.name),
         "deviations": task.deviations,
-        "command": " ".join(["hyperleg", *sys.argv[1:]]),
         "commit": provenance.git_commit(),
         "versions": provenance.versions(PACKAGES),
     }
@@ -315,6 +314,10 @@ class Training:
         finally:
             for number, handler in old.items():
                 signal.signal(number, handler)
+
+
+def _name(given: Any) -> str:
+    return str(given.name if isinstance(given, Task | Design | Preset) else given)
 
 
 def _check_same(folder: Path, description: dict[str, Any]) -> None:

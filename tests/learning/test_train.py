@@ -81,7 +81,8 @@ def test_a_policy_says_what_it_is(tiny: Preset, tmp_path: Path) -> None:
     assert "goal_speed" in json.loads(said["deviations"])
     assert json.loads(said["design"])["variant"] == "toe_removed_matched"
     assert json.loads(said["preset"])["tasks"].keys() == {"goal"}
-    assert {"commit", "command", "versions"} <= said.keys()
+    assert said["command"] == "hyperleg train --task goal --design toe_removed_matched --seed 2 --preset tiny"
+    assert {"commit", "versions"} <= said.keys()
 
 
 def test_a_finished_training_is_left_alone(tiny: Preset, tmp_path: Path) -> None:
