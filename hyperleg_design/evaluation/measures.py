@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hyperleg_design.evaluation.power import GROUPS
+
 LESS, MORE, NEITHER = "less", "more", ""
 
 
@@ -73,6 +75,18 @@ BEARING = _table(
 )
 """Of every protocol."""
 
+_KINDS = {"": "signed", "_positive": "of joints that are driven", "_absolute": "driving and braking both counted as positive, joint by joint"}
+RIGHT_LEG = _table(
+    *(
+        Measure(f"right_{group}{kind}_power", "W", f"mechanical power of the right {group}, {words}")
+        for group in GROUPS
+        for kind, words in _KINDS.items()
+    ),
+    Measure("right_joule_power", "W", "Joule heat of the right leg's motors", LESS),
+    Measure("right_total_power", "W", "Joule heat and signed mechanical power of the right leg", LESS),
+)
+"""Means over the right leg's steady strides (Fig. 6); of the walk protocol."""
+
 WALK = {
     **OUTCOMES,
     **POWER,
@@ -103,6 +117,7 @@ WALK = {
         Measure("heel_or_flat", "", "share of steps that touch down heel first or flat", MORE),
         Measure("mean_tilt", "rad", "mean lean of the pelvis over the steady strides", LESS),
     ),
+    **RIGHT_LEG,
     **IMPACT,
     **STEPS,
     **BEARING,

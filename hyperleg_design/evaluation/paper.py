@@ -100,9 +100,9 @@ TABLE_THREE = (
 """Walking 20 m at 1.33 m/s, means of ten trials of one training each."""
 
 RIGHT_LEG_POWER = (
-    Printed("Section IV.A", "hip power, right leg", "W", 103.7, 126.0, "hip_absolute", "signed, positive or absolute is not printed"),
-    Printed("Section IV.A", "knee power, right leg", "W", 61.8, 68.9, "knee_absolute", "signed, positive or absolute is not printed"),
-    Printed("Section IV.A", "ankle power, right leg", "W", 47.5, 61.1, "ankle_absolute", "signed, positive or absolute is not printed"),
+    Printed("Section IV.A", "hip power, right leg", "W", 103.7, 126.0, "right_hip_absolute_power", "signed, positive or absolute is not printed"),
+    Printed("Section IV.A", "knee power, right leg", "W", 61.8, 68.9, "right_knee_absolute_power", "signed, positive or absolute is not printed"),
+    Printed("Section IV.A", "ankle power, right leg", "W", 47.5, 61.1, "right_ankle_absolute_power", "signed, positive or absolute is not printed"),
 )
 """Means over the gait cycle (Fig. 6 and the text on it)."""
 

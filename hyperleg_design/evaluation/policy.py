@@ -26,6 +26,7 @@ import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.reading import short_name
 from hyperleg_design.robot.design import design_from_mapping
 from hyperleg_design.simulation.tasks import task_from_mapping
 
@@ -50,7 +51,7 @@ class OnnxPolicy:
     """A policy from an ONNX file, run by ONNX Runtime on one thread, so that results do not depend on the machine's load."""
 
     name: str
-    """Of the file, without its ending."""
+    """Folder and name of the file, without its ending."""
     columns: tuple[str, ...]
     """Names of the numbers of the observation."""
     joints: tuple[str, ...]
@@ -104,7 +105,7 @@ def load_policy(name: str | Path) -> OnnxPolicy:
     columns, joints = (_names(metadata[key], path.name, key) for key in ("columns", "joints"))
     _check_graph(session, path.name, len(columns), len(joints))
     return OnnxPolicy(
-        name=path.stem,
+        name=short_name(path.with_suffix("")),
         columns=columns,
         joints=joints,
         design=design_from_mapping(metadata["design"], f"{path.name}: design"),

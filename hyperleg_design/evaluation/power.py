@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 GROUPS = {"hip": ("hip_yaw", "hip_roll", "hip_pitch"), "knee": ("knee",), "ankle": ("ankle_pitch", "ankle_roll"), "toe": ("toe",)}
 """Joints of each part of Fig. 6."""
+LEG_MEANS = (*(f"{group}{kind}" for group in GROUPS for kind in ("", "_positive", "_absolute")), "joule", "total")
+"""Keys of `CyclePower.means`."""
 FLOWS = ("motor_side", "joule", "mechanical", "mechanical_positive", "mechanical_negative", "driver_loss", "battery")
 """Of `EnergyLedger`, summed over all motors, in `flows`."""
 
@@ -95,8 +97,7 @@ def leg_means(joints: Sequence[str], mechanical: np.ndarray, joule: np.ndarray) 
         joule: heat of each motor [W], `(t, m)`.
     """
     if not len(mechanical):
-        names = [*(f"{g}{kind}" for g in GROUPS for kind in ("", "_positive", "_absolute")), "joule", "total"]
-        return dict.fromkeys(names, np.nan)
+        return dict.fromkeys(LEG_MEANS, np.nan)
     found: dict[str, float] = {}
     for group, names_of in GROUPS.items():
         part = mechanical[:, [i for i, joint in enumerate(joints) if joint in names_of]]

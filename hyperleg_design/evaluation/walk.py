@@ -12,7 +12,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import bearing, course, gait, rollout
 from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
 from hyperleg_design.evaluation.policy import Policy
-from hyperleg_design.evaluation.power import CyclePower, cycle_power, flows, ledger
+from hyperleg_design.evaluation.power import LEG_MEANS, CyclePower, cycle_power, flows, ledger
 from hyperleg_design.evaluation.protocol import WalkProtocol, load_protocol
 from hyperleg_design.evaluation.result import Evaluation, evaluation_of
 from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
@@ -104,7 +104,9 @@ def measure_walk(trial: Trial, protocol: WalkProtocol) -> tuple[dict[str, float]
     if window is None:
         return found | dict.fromkeys(_STEADY, np.nan), None, None
     steady, steps = _steady_measures(trial, window, protocol)
-    return found | steady, motor_use(trial, *window), cycle_power(trial, steps)
+    cycle = cycle_power(trial, steps)
+    leg = {f"right_{name}_power": value for name, value in cycle.means.items()}
+    return found | steady | leg, motor_use(trial, *window), cycle
 
 
 def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tuple[int, int] | None:
@@ -158,7 +160,7 @@ _STEADY = (
     "steady_battery_power", "steady_cost_of_transport", "steady_battery_cost_of_transport", "grf_peak", "grf_peak_body_weights",
     "grf_raw_peak", "grf_loading_rate", "grf_impulse", "cadence", "step_length", "step_width", "duty_factor", "heel_off", "double_support",
     "single_support", "flight", "alternation", "heel_lead", "heel_or_flat", "slip_per_step", "largest_slip", "mean_tilt", "stop_share",
-    "vibration", "limit_share", "continuous_use", "thermal_peak",
+    "vibration", "limit_share", "continuous_use", "thermal_peak", *(f"right_{name}_power" for name in LEG_MEANS),
 )  # fmt: skip
 
 

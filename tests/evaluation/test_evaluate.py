@@ -37,7 +37,7 @@ def test_the_task_chooses_the_protocol(design):
 
 def test_a_file_is_enough(make_onnx):
     found = evaluate(make_onnx(), SHORT)
-    assert found.policy == "small"
+    assert found.policy.endswith("/small")
     assert len(found.outcomes) == len(found.paths) == len(found.end_times) == 3
     for path in found.paths:
         assert path[0].tolist() == [0, 0]
@@ -58,7 +58,7 @@ def test_a_robot_that_stands_does_not_arrive_and_does_not_fall(design):
 def test_processes_change_nothing(make_onnx):
     files = [make_onnx(f"p{k}.onnx", bias=0.1 * k, seed=str(k)) for k in range(3)]
     seen = []
-    alone = evaluate_many(files, SHORT, workers=1, progress=lambda one: seen.append(one.policy))
+    alone = evaluate_many(files, SHORT, workers=1, progress=lambda one: seen.append(one.policy.split("/")[-1]))
     beside = evaluate_many(files, SHORT, workers=2)
     assert seen == ["p0", "p1", "p2"]
     assert [one.seed for one in beside] == [0, 1, 2]

@@ -12,6 +12,7 @@ from hyperleg_design.evaluation import measures, rollout
 from hyperleg_design.evaluation.policy import Scripted, standing
 from hyperleg_design.evaluation.protocol import Steady, TTestProtocol, WalkProtocol
 from hyperleg_design.evaluation.walk import evaluate_walk, impact_band, measure_walk, walk_task
+from hyperleg_design.simulation.environment import SMALLEST_SPLIT
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.sizing.motions.walk import WalkPlan
 
@@ -109,7 +110,7 @@ def test_standing_falls_and_falls_are_counted(design):
 
 
 def test_same_seed_same_bytes_whatever_the_threads(design):
-    protocol = WalkProtocol(trials=32, distance=1.0, time_limit=1.2, steady=Steady(begin=0.5))  # from 32 on there are two chunks
+    protocol = WalkProtocol(trials=SMALLEST_SPLIT, distance=1.0, time_limit=1.2, steady=Steady(begin=0.5))  # so there are two chunks
     actions = Scripted(0.3 * np.random.default_rng(0).normal(size=(200, 14)))
     one, two = (evaluate_walk(actions, protocol, design=design, task=load_task("walk"), threads=n) for n in (1, 2))
     for name in measures.WALK:
