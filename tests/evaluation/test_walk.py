@@ -12,7 +12,10 @@ from hyperleg_design.evaluation import measures, rollout
 from hyperleg_design.evaluation.policy import Scripted, standing
 from hyperleg_design.evaluation.protocol import Steady, TTestProtocol, WalkProtocol
 from hyperleg_design.evaluation.walk import evaluate_walk, impact_band, measure_walk, walk_task
-from hyperleg_design.simulation.environment import SMALLEST_SPLIT
+from hyperleg_design.simulation.assist import Assist
+from hyperleg_design.simulation.environment import SMALLEST_SPLIT, Environment
+from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.settings import Start
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.sizing.motions.walk import WalkPlan
 
@@ -149,3 +152,59 @@ def test_the_task_is_the_policys_under_the_protocol():
 def test_what_does_not_fit_is_refused(design, call, message):
     with pytest.raises(InputError, match=message):
         call(design)
+
+
+@pytest.fixture(scope="module")
+def march(design):
+    """A robot in simulation that lifts its legs by turns once a second, held upright and pulled along by the assist."""
+    protocol = WalkProtocol(speed=0.6, distance=3.0, time_limit=8.0, trials=2, start=Start(joint_position=0, tilt=0), steady=Steady(begin=0.5))
+    layout = layout_of(design)
+    phase = (np.arange(1, 401)[:, None] * 0.02 + np.array([0.0, 0.5])) % 1.0
+    lift = np.where(phase < 0.5, np.sin(2 * np.pi * phase), 0.0)
+    actions = np.zeros((400, 14))
+    for joint, share in (("hip_pitch", -1.6), ("knee", 2.2), ("ankle_pitch", -0.6)):
+        actions[:, layout.joint_indices(joint)] = share * lift
+    environment = Environment(design, walk_task(load_task("walk"), protocol), simulations=2)
+
+    def help_along(made):
+        made.assist = Assist()
+
+    trials = rollout.record(
+        Scripted(actions), environment, protocol.time_limit, before_step=help_along,
+        arrived=lambda first, now: np.linalg.norm(now[:, :2] - first[:, :2], axis=-1) >= 3.0,
+    )  # fmt: skip
+    return trials, [measure_walk(trial, protocol) for trial in trials]
+
+
+def test_simulated_steps_are_found_as_they_were_commanded(march):
+    for trial, (found, _, _) in zip(*march, strict=True):
+        assert trial.outcome == rollout.ARRIVED
+        assert found["cadence"] == pytest.approx(2.0, rel=0.01)
+        assert found["alternation"] == 1
+        assert found["step_length"] * found["cadence"] == pytest.approx(found["steady_speed"], rel=0.02)
+        assert found["time"] == pytest.approx(trial.end_time, abs=0.02)
+        assert found["double_support"] + found["single_support"] + found["flight"] == pytest.approx(1)
+        assert found["duty_factor"] == pytest.approx((1 + found["double_support"] - found["flight"]) / 2, abs=0.01)
+
+
+def test_simulated_impacts_bear_on_the_simulations_forces(march):
+    trial, (found, _, _) = march[0][0], march[1][0]
+    assert 0.5 < found["grf_peak_body_weights"] < 4
+    assert found["grf_peak"] < found["grf_raw_peak"] <= trial.foot_load.max()
+    mean = trial.foot_load.sum(-1).mean() / trial.layout.weight
+    assert mean == pytest.approx(1.0, abs=0.05)  # the assist pulls forward and turns, it does not carry
+
+
+def test_simulated_feet_slide_no_less_than_they_move_in_contact(march):
+    from hyperleg_design.evaluation.feet import foot_places
+    from hyperleg_design.evaluation.protocol import Events
+    from hyperleg_design.evaluation.steps import measured_steps
+
+    trial, (found, _, _) = march[0][0], march[1][0]
+    steps = measured_steps(trial, Events()).within(200, trial.samples - 100)
+    moved = []
+    for foot, down, up in zip(steps.foot, steps.touchdown, steps.toe_off, strict=True):
+        flat = slice(down + 12, max(down + 13, up - 12))  # landing and push-off turn the foot about its edge
+        places = foot_places(trial, np.arange(trial.samples)[flat])[:, foot]
+        moved.append(np.linalg.norm(places[-1] - places[0]))
+    assert np.mean(moved) < 1.2 * found["slip_per_step"] + 0.01
