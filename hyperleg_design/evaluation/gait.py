@@ -176,7 +176,9 @@ def step_vectors(steps: Steps, places: np.ndarray) -> tuple[np.ndarray, np.ndarr
 def slip_per_step(steps: Steps, pad_load: np.ndarray, pad_slip: np.ndarray, pad_foot: np.ndarray, time_step: float) -> np.ndarray:
     """Way that the foot slides over the floor in each whole contact [m], `(k,)`; NaN where the record ends before toe-off.
 
-    The integral of the pads' sliding speed, their mean weighted by load.
+    The integral of the pads' sliding speed, their mean weighted by load: the length of the way, to and fro. A step of the
+    simulation moves with the velocity at its end, so the speed with which a foot meets the floor, before any force could
+    brake it, is not slip.
 
     Args:
         steps: k steps.
@@ -194,7 +196,7 @@ def slip_per_step(steps: Steps, pad_load: np.ndarray, pad_slip: np.ndarray, pad_
         speed = np.divide(weighted, total, out=np.zeros(len(total)), where=total > 0)
         way = np.concatenate([[0.0], np.cumsum(speed) * time_step])
         for i in np.flatnonzero((steps.foot == foot) & (steps.toe_off > 0)):
-            found[i] = way[steps.toe_off[i]] - way[steps.touchdown[i]]
+            found[i] = way[steps.toe_off[i] + 1] - way[steps.touchdown[i] + 1]
     return found
 
 

@@ -60,7 +60,8 @@ STEPS = _table(
     Measure("duty_factor", "", "contact over stride; also when toe-off comes"),
     Measure("double_support", "", "share of time with both feet on the floor"),
     Measure("flight", "", "share of time with none"),
-    Measure("slip_per_step", "m", "way that a foot slides in a contact, mean", LESS),
+    Measure("slip_per_step", "m", "way that a foot slides in a contact, to and fro, mean", LESS),
+    Measure("foot_drift", "m", "how far a foot has moved between first and last standing flat in a contact, straight, mean", LESS),
     Measure("largest_slip", "m", "the same, largest", LESS),
 )
 """Of every protocol."""

@@ -80,8 +80,24 @@ def step_measures(trial: Trial, steps: gait.Steps, window: tuple[int, int], even
         "heel_lead": mean_of(steps.heel_lead),
         "heel_or_flat": mean_of((steps.heel_lead >= 0).astype(float)),
         "slip_per_step": mean_of(slip),
+        "foot_drift": mean_of(flat_drift(trial, steps, contacts)),
         "largest_slip": float(np.nanmax(slip)) if np.isfinite(slip).any() else np.nan,
     }
+
+
+def flat_drift(trial: Trial, steps: gait.Steps, contacts: Contacts) -> np.ndarray:
+    """How far each foot has moved over the floor between first and last standing flat in a contact [m], `(k,)`; NaN where it never is.
+
+    Straight and without landing and push-off, where the foot turns about its edges; what one would see of sliding.
+    """
+    found = np.full(len(steps), np.nan)
+    flat = contacts.heel & contacts.forefoot
+    for i, (foot, down, up) in enumerate(zip(steps.foot, steps.touchdown, steps.toe_off, strict=True)):
+        standing = down + np.flatnonzero(flat[down : up if up > 0 else len(flat), foot])
+        if len(standing) > 1:
+            begin, end = foot_places(trial, standing[[0, -1]])[:, foot]
+            found[i] = np.linalg.norm(end - begin)
+    return found
 
 
 def mean_of(values: np.ndarray) -> float:

@@ -153,7 +153,7 @@ def reached_samples(trial: Trial, place: np.ndarray, protocol: TTestProtocol) ->
     return found
 
 
-_OF_STEPS = ("cadence", "step_length", "duty_factor", "double_support", "flight", "slip_per_step", "largest_slip")
+_OF_STEPS = ("cadence", "step_length", "duty_factor", "double_support", "flight", "slip_per_step", "foot_drift", "largest_slip")
 _MEASURES = (
     "time", "waypoints_reached", "distance", "mean_speed", "peak_speed", "mean_deviation", "peak_deviation", "mean_leg_deviation",
     "peak_leg_deviation", "turned", "power", "joule_power", "mechanical_power", "positive_power", "negative_power", "battery_power", "energy",

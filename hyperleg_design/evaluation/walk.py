@@ -159,7 +159,7 @@ _STEADY = (
     "steady_speed", "steady_power", "steady_joule_power", "steady_mechanical_power", "steady_positive_power", "steady_negative_power",
     "steady_battery_power", "steady_cost_of_transport", "steady_battery_cost_of_transport", "grf_peak", "grf_peak_body_weights",
     "grf_raw_peak", "grf_loading_rate", "grf_impulse", "cadence", "step_length", "step_width", "duty_factor", "heel_off", "double_support",
-    "single_support", "flight", "alternation", "heel_lead", "heel_or_flat", "slip_per_step", "largest_slip", "mean_tilt", "stop_share",
+    "single_support", "flight", "alternation", "heel_lead", "heel_or_flat", "slip_per_step", "foot_drift", "largest_slip", "mean_tilt", "stop_share",
     "vibration", "limit_share", "continuous_use", "thermal_peak", *(f"right_{name}_power" for name in LEG_MEANS),
 )  # fmt: skip
 

@@ -123,8 +123,9 @@ def test_slip_is_speed_times_time_weighted_by_load():
     feet[50:150, 0] = True
     steps = gait.find_steps(feet, feet, feet, STEP)
     load, slip = np.zeros((200, 4)), np.zeros((200, 4))
-    load[50:150, 0], load[50:150, 1] = 300.0, 100.0
-    slip[50:150, 0], slip[50:150, 1] = 0.02, 0.06
+    load[50:151, 0], load[50:151, 1] = 300.0, 100.0
+    slip[51:151, 0], slip[51:151, 1] = 0.02, 0.06
+    slip[50, :2] = 5.0  # with which it meets the floor
     slip[:, 2:] = 9.0  # the other foot's
     found = gait.slip_per_step(steps, load, slip, np.array([0, 0, 1, 1]), STEP)
     assert found == pytest.approx([100 * STEP * 0.03])
