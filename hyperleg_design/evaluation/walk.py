@@ -93,7 +93,7 @@ def measure_walk(trial: Trial, protocol: WalkProtocol) -> tuple[dict[str, float]
     fewer than `STRIDES` whole strides.
 
     Returns:
-        Names of the measures end in their unit where they have one; see `measures`.
+        Measures by name, see `measures.WALK`; use of the motors and right-leg power, None without a steady state.
     """
     found = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(trial)
     if trial.outcome == rollout.DIVERGED or not trial.samples:

@@ -219,3 +219,20 @@ def test_a_name_comes_from_the_file(write):
 def test_a_missing_file(tmp_path: Path):
     with pytest.raises(InputError, match=r"gone\.yaml.*shipped: .*hyperleg"):
         load_design(tmp_path / "gone.yaml")
+
+
+@pytest.mark.parametrize("variant", ["toe", "toe_locked", "toe_removed_matched", "toe_removed"])
+def test_a_mapping_carries_a_whole_design(variant):
+    import json
+
+    from hyperleg_design.robot.design import design_from_mapping
+
+    design = load_design("hyperleg", variant=variant, overrides={"pelvis.mass": 16.0})
+    again = design_from_mapping(json.loads(json.dumps(design.to_mapping())), "carried")
+    assert again.to_mapping() == design.to_mapping()
+    assert again.variant == variant
+    for broken, field in (("text", ""), ({**design.to_mapping(), "variant": "no_toes"}, "variant"), ({"name": "x"}, "pelvis")):
+        with pytest.raises(InputError) as caught:
+            design_from_mapping(broken, "carried")
+        assert caught.value.field == field
+        assert caught.value.where == "carried"
