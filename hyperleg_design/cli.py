@@ -198,6 +198,102 @@ class Study:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Train:
+    """Train a policy, or go on with a training that was stopped; needs the learning extra."""
+
+    task: str = "walk"
+    """walk, walk_paper, goal, goal_paper, or a YAML file."""
+    design: str = "toe"
+    """Shipped name or YAML file."""
+    seed: int = 0
+    """Of everything random."""
+    preset: str = "laptop"
+    """laptop, paper, or a YAML file."""
+    out: Path
+    """Folder of the training."""
+    threads: int = 1
+    """Of this process; two trainings of one thread each are the best use of two cores."""
+
+    def run(self) -> None:
+        """Become the training's process."""
+        from hyperleg_design.learning import launch
+
+        _require("torch", "rsl_rl")
+        given = {"task": self.task, "design": self.design, "seed": self.seed, "preset": self.preset, "out": self.out, "threads": self.threads}
+        launch.run_here([f"--{key}={value}" for key, value in given.items()], self.threads)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Campaign:
+    """Train whatever a campaign still lacks, side by side, or show where it stands."""
+
+    action: Annotated[str, tyro.conf.Positional]
+    """run or status"""
+    file: Annotated[str, tyro.conf.Positional] = "campaign"
+    """Shipped name or YAML file."""
+    out: Path = Path("results/campaign")
+    """Folder of the trainings."""
+
+    def run(self) -> None:
+        """Run it, or print its state."""
+        from hyperleg_design.learning.campaign import campaign_status, load_campaign, run_campaign, status_table
+
+        if self.action not in ("run", "status"):
+            raise InputError("campaign", "", self.action, "expects run or status")
+        campaign = load_campaign(self.file)
+        if self.action == "status":
+            print(status_table(campaign_status(campaign, self.out)))
+            return
+        _require("torch", "rsl_rl")
+        if not run_campaign(campaign, self.out, show=print):
+            raise SystemExit(3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evaluate:
+    """Evaluate policies (ONNX): 20 m walks or Robot T-tests, falls counted, numbers with intervals."""
+
+    policies: Annotated[tuple[str, ...], tyro.conf.Positional]
+    """ONNX files."""
+    protocol: str = ""
+    """walk, t_test, or a YAML file; what suits the policy's task by default."""
+    out: Path
+    """Folder to write tables to."""
+    workers: int = 2
+    """Processes side by side."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Evaluate them."""
+        from hyperleg_design.evaluation.evaluate import evaluate_many
+        from hyperleg_design.evaluation.result import write_results
+        from hyperleg_design.report.evaluation_text import evaluation_rows, evaluation_text
+        from hyperleg_design.writing import check_output_folder
+
+        if not self.policies:
+            raise InputError("evaluate", "", None, "expects ONNX files")
+        check_output_folder(self.out)
+        found = evaluate_many(self.policies, self.protocol or None, workers=self.workers)
+        folder = write_results(self.out, found)
+        rows = evaluation_rows(found)
+        if self.json:
+            _emit({"folder": str(folder), "results": rows})
+        else:
+            print(evaluation_text(rows))
+            print(f"tables in {folder}")
+
+
+def _require(*modules: str) -> None:
+    """Raise one clear error where the learning extra is not installed."""
+    import importlib.util
+
+    missing = [m for m in modules if importlib.util.find_spec(m) is None]
+    if missing:
+        raise InputError("train", "", None, f"needs {', '.join(missing)}: make .venv/.learning, or install hyperleg-design[learning]")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Version:
     """Versions of this package and of what it builds on."""
 
@@ -224,6 +320,9 @@ VERBS: dict[str, Any] = {
     "sweep": Sweep,
     "compare": Compare,
     "study": Study,
+    "train": Train,
+    "campaign": Campaign,
+    "evaluate": Evaluate,
     "version": Version,
 }
 

@@ -80,6 +80,9 @@ def test_list_speaks_json(capsys):
         (["build"], ["--out"]),
         (["check", "no/such/file.urdf"], ["no/such/file.urdf"]),
         (["sweep", "walk", "toe_mass", "--out", "x"], ["walk", "run"]),
+        (["evaluate", "no/such/policy.onnx", "--out", "x"], ["no/such/policy.onnx"]),
+        (["campaign", "start"], ["start", "status"]),
+        (["campaign", "status", "no-campaign"], ["no-campaign", "campaign"]),
     ],
 )
 def test_bad_input_is_one_clear_line_and_exit_code_two(capsys, arguments, words):
@@ -116,3 +119,21 @@ def test_build_leaves_a_foreign_folder_alone(capsys, tmp_path: Path):
     assert code == 2
     assert str(tmp_path) in err
     assert [p.name for p in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_campaign_status_needs_no_torch_and_lists_every_training(capsys, tmp_path: Path):
+    code, out, _ = run(capsys, "campaign", "status", "--out", str(tmp_path / "none"))
+    assert code == 0
+    assert out.count("missing") == 36
+    assert "0 of 36 done" in out
+
+
+def test_training_without_torch_says_what_to_install(capsys, tmp_path: Path, monkeypatch):
+    import importlib.util
+
+    real = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *rest: None if name == "torch" else real(name, *rest))
+    code, _, err = run(capsys, "train", "--out", str(tmp_path / "t"))
+    assert code == 2
+    assert "torch" in err
+    assert "learning" in err

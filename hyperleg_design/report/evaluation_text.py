@@ -1,0 +1,53 @@
+"""Evaluations as rows of estimates, for a terminal and for programs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from hyperleg_design.evaluation.result import by_seed, trial_table
+from hyperleg_design.evaluation.statistics import Estimate, estimate, share
+from hyperleg_design.report.text import table
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.result import Evaluation
+
+SHARES = ("fell", "diverged")
+"""Measures that are true or false of a trial."""
+
+
+def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
+    """One row a variant and measure: mean with its interval over seeds and trials.
+
+    Returns:
+        `variant`, `protocol`, `measure`, `mean`, `low`, `high` (None where there is none), `seeds`, `trials`, `missing`.
+    """
+    trials = trial_table(evaluations)
+    rows = []
+    for (protocol, variant), part in trials.groupby(["protocol", "variant"], sort=False):
+        for measure in evaluations[0].measures[0]:
+            if measure not in part:
+                continue
+            found = (share if measure in SHARES else estimate)(by_seed(part, measure))
+            rows.append({"variant": str(variant), "protocol": str(protocol), "measure": measure, **_plain(found)})
+    return rows
+
+
+def _plain(found: Estimate) -> dict[str, Any]:
+    numbers = {k: getattr(found, k) for k in ("mean", "low", "high")}
+    return {
+        **{k: v if math.isfinite(v) else None for k, v in numbers.items()},
+        "seeds": found.seeds,
+        "trials": found.trials,
+        "missing": found.missing,
+    }
+
+
+def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
+    """The same for a terminal."""
+    cells = [
+        [r["variant"], r["measure"], *("" if r[k] is None else r[k] for k in ("mean", "low", "high")), r["seeds"], r["trials"], r["missing"]]
+        for r in rows
+    ]
+    return table(["variant", "measure", "mean", "low", "high", "seeds", "trials", "missing"], cells)

@@ -1,0 +1,33 @@
+"""`hyperleg evaluate` from file to tables."""
+
+from __future__ import annotations
+
+import json
+
+import pandas as pd
+import pytest
+
+from hyperleg_design import cli
+
+
+def test_a_standing_policy_is_evaluated_and_its_falls_are_counted(make_onnx, tmp_path, capsys):
+    protocol = tmp_path / "short.yaml"
+    protocol.write_text((cli.resources.content_folder("sim") / "protocol_walk.yaml").read_text().replace("trials: 10", "trials: 3"))
+    code = cli.main(["evaluate", str(make_onnx()), "--protocol", str(protocol), "--out", str(tmp_path / "out"), "--workers", "1", "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert code == 0
+    table = pd.read_parquet(tmp_path / "out" / "trials.parquet")
+    assert len(table) == 3
+    fell = next(r for r in found["results"] if r["measure"] == "fell")
+    assert fell["trials"] == 3
+    assert fell["mean"] == pytest.approx(table["fell"].mean())
+    assert fell["low"] <= fell["mean"] <= fell["high"]
+
+
+def test_a_truncated_policy_stops_before_anything_is_written(make_onnx, tmp_path, capsys):
+    broken = tmp_path / "broken.onnx"
+    broken.write_bytes(make_onnx().read_bytes()[:100])
+    code = cli.main(["evaluate", str(broken), "--out", str(tmp_path / "out")])
+    assert code == 2
+    assert "broken.onnx" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
