@@ -135,9 +135,13 @@ def envelopes(context: Context) -> Made:
     """Motor envelopes, and the set of torques that joints can have together."""
     from hyperleg_design.report.envelope_figures import polyhedron_figure, slice_figure, torque_speed_figure
     from hyperleg_design.sizing import zonotope
+    from hyperleg_design.sizing.demand import demand
     from hyperleg_design.sizing.envelope import motor_envelope
 
     design = context.design
+    walk = demand(design, "walk")
+    torque = walk.joint_torque.reshape(-1, walk.joint_torque.shape[-1])
+    velocity = walk.motion.v[:, 6:].reshape(torque.shape)
     matrix, peak = transmission.joint_from_motor(design, "walking"), motor_envelope(design).peak_torque
     _, high = zonotope.box(matrix, -peak, peak)
     rows: list[list[Any]] = []
@@ -148,7 +152,7 @@ def envelopes(context: Context) -> Made:
     pitch = float(zonotope.alone(matrix[3:, 3:], -peak[3:], peak[3:], 1, held=[0]))
     content = [
         "Each motor lives inside four quadrants: peak torque, and the line from stall torque to no-load speed. Projected through M, the ankle's two motors make the pitch and roll envelopes of the paper's Fig. 4.",
-        context.picture("envelopes", "Envelopes of the ankle motors, and of ankle pitch (L+R) and roll (L−R).", lambda p: save(torque_speed_figure(design), p)),
+        context.picture("envelopes", "Envelopes of the ankle motors, and of ankle pitch (L+R) and roll (L−R), with the operating points of a planned walk at 1.33 m/s.", lambda p: save(torque_speed_figure(design, torque, velocity), p)),
         f"The printed maxima of the joints are one at a time. Below the hip the reachable torques are a zonotope that fills {100 * share:.1f} % of the box those maxima span. With no knee torque, ankle pitch reaches {pitch:.1f} Nm, not {high[4]:.1f}.",
         Table(["joint", "largest, whatever the others do [Nm]", "largest, the others at zero [Nm]", "of it"], rows, "Walking posture, zero speed, not derated."),
         context.picture("slices", "What two joints can have together, the others at zero, against the box (dashed).", lambda p: save(slice_figure(design), p)),
