@@ -44,7 +44,7 @@ def robot(context: Context) -> Made:
     drawn = [
         context.picture("dimensions", "Dimensions [mm]; leg length and height are the paper's, the rest is assumed.", lambda p: picture.render(picture.dimensions_scene(design), p)),
         context.picture("frames", "Joint axes: an arrow points along the axis about which the angle is positive.", lambda p: picture.render(picture.frames_scene(design), p)),
-        context.picture("masses", "Segment masses at their centres of mass; balls have the volume of steel.", lambda p: picture.render(picture.masses_scene(design), p)),
+        context.picture("masses", "Segment masses at their centres of mass; balls have the volume of that mass at 6.5 kg/dm³.", lambda p: picture.render(picture.masses_scene(design), p)),
     ]  # fmt: skip
     side_by_side = context.picture(
         "variants", "The four variants; orange: active toe and its motor.", lambda p: picture.render(picture.variants_scene(context.variants), p)
@@ -194,13 +194,19 @@ def lightness(context: Context) -> Made:
         for r in others
     ]
     toe, bare = own["toe"], own["toe_removed"]
+    bipeds = [r for r in others if r.source.legs == 2]
     content = [
         f"Below the knee is {100 * toe.distal_share:.0f} % of the leg's mass. Swinging the straight leg about the hip takes {toe.swing_inertia:.3f} kg m² ({bare.swing_inertia:.3f} without toe and toe motor), and the rotors add {float(rotor_swing_inertia(context.design)):.3f} kg m² there.",
-        "Over the leg's own mass the swing inertia is below that of most humanoids; over the robot's total mass it is not, because the legs are half of the robot. Masses are the paper's, centres of mass and radii of gyration are assumed; the other robots' come from their URDF or SDF files.",
+        f"Over the leg's own mass the swing inertia is {toe.inertia_over_leg:.3f}, less than that of {_lighter(toe.inertia_over_leg, [r.leg.inertia_over_leg for r in bipeds])} other bipeds and the human; over the robot's total mass it is {toe.inertia_over_total:.3f}, less than that of {_lighter(toe.inertia_over_total, [r.leg.inertia_over_total for r in bipeds])}, because the legs are {200 * toe.leg_share:.0f} % of the robot. Masses are the paper's, centres of mass and radii of gyration are assumed; the other robots' come from their URDF or SDF files.",
         context.picture("lightness", "Share of the leg's mass below the knee, and swing inertia of the straight leg about the hip.", lambda p: save(leg_comparison_figure(list(context.variants.values()), others), p)),
         Table(["robot", "total kg", "leg kg", "below the knee [-]", "swing inertia / (leg mass · length²)", "… / (total mass · length²)", "gyration / length"], rows),
     ]  # fmt: skip
     return Made(Section("How light the leg is", content), ((f"{100 * toe.distal_share:.0f} %", "of the leg's mass is below the knee"),))
+
+
+def _lighter(own: Any, others: list[Any]) -> str:
+    known = [float(v) for v in others if v == v]
+    return f"{sum(v > own for v in known)} of {len(known)}"
 
 
 def sweeps(context: Context) -> Made:
