@@ -6,22 +6,24 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from hyperleg_design.evaluation.measures import OUTCOMES, T_TEST, WALK
 from hyperleg_design.evaluation.result import by_seed, trial_table
 from hyperleg_design.evaluation.statistics import Estimate, estimate, share
 from hyperleg_design.report.text import table
 
 if TYPE_CHECKING:
-    from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.evaluation.measures import OUTCOMES, T_TEST, WALK
+from hyperleg_design.evaluation.result import Evaluation
 
-SHARES = ("fell", "diverged")
-"""Measures that are true or false of a trial."""
+UNITS = {name: measure.unit for table_of in (OUTCOMES, WALK, T_TEST) for name, measure in table_of.items()}
+"""Unit of each measure."""
 
 
 def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
     """One row a variant and measure: mean with its interval over seeds and trials.
 
     Returns:
-        `variant`, `protocol`, `measure`, `mean`, `low`, `high` (None where there is none), `seeds`, `trials`, `missing`.
+        `variant`, `protocol`, `measure`, `unit`, `mean`, `low`, `high` (None where there is none), `seeds`, `trials`, `missing`.
     """
     trials = trial_table(evaluations)
     rows = []
@@ -29,8 +31,8 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
         for measure in evaluations[0].measures[0]:
             if measure not in part:
                 continue
-            found = (share if measure in SHARES else estimate)(by_seed(part, measure))
-            rows.append({"variant": str(variant), "protocol": str(protocol), "measure": measure, **_plain(found)})
+            found = (share if measure in OUTCOMES else estimate)(by_seed(part, measure))
+            rows.append({"variant": str(variant), "protocol": str(protocol), "measure": measure, "unit": UNITS.get(measure, ""), **_plain(found)})
     return rows
 
 
@@ -47,7 +49,15 @@ def _plain(found: Estimate) -> dict[str, Any]:
 def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
     """The same for a terminal."""
     cells = [
-        [r["variant"], r["measure"], *("" if r[k] is None else r[k] for k in ("mean", "low", "high")), r["seeds"], r["trials"], r["missing"]]
+        [
+            r["variant"],
+            r["measure"],
+            r["unit"],
+            *("" if r[k] is None else r[k] for k in ("mean", "low", "high")),
+            r["seeds"],
+            r["trials"],
+            r["missing"],
+        ]
         for r in rows
     ]
-    return table(["variant", "measure", "mean", "low", "high", "seeds", "trials", "missing"], cells)
+    return table(["variant", "measure", "unit", "mean", "low", "high", "seeds", "trials", "missing"], cells)
