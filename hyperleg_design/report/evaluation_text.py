@@ -48,16 +48,8 @@ def _plain(found: Estimate) -> dict[str, Any]:
 
 def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
     """The same for a terminal."""
-    cells = [
-        [
-            r["variant"],
-            r["measure"],
-            r["unit"],
-            *("" if r[k] is None else r[k] for k in ("mean", "low", "high")),
-            r["seeds"],
-            r["trials"],
-            r["missing"],
-        ]
-        for r in rows
-    ]
+    cells = []
+    for row in rows:
+        numbers = ["" if row[k] is None else row[k] for k in ("mean", "low", "high")]
+        cells.append([row["variant"], row["measure"], row["unit"], *numbers, row["seeds"], row["trials"], row["missing"]])
     return table(["variant", "measure", "unit", "mean", "low", "high", "seeds", "trials", "missing"], cells)
