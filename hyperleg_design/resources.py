@@ -64,3 +64,21 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path
 def names(kind: str, suffix: str = ".yaml") -> list[str]:
     """Names of the shipped files of a kind, sorted."""
     return sorted(p.name[: -len(suffix)] for p in content_folder(kind).glob(f"*{suffix}"))
+
+
+def sim_names(what: str) -> list[str]:
+    """Names of the shipped files `sim/WHAT_NAME.yaml`, such as tasks, presets and protocols."""
+    return [n.removeprefix(f"{what}_") for n in names("sim") if n.startswith(f"{what}_")]
+
+
+def find_sim(what: str, name: str | os.PathLike[str]) -> Path:
+    """Path of a task, preset or protocol: the name of a shipped one, or a file.
+
+    Raises:
+        InputError: neither; the message lists what is shipped.
+    """
+    known = sim_names(what)
+    path = find("sim", f"{what}_{name}") if str(name) in known else Path(name)
+    if not path.is_file():
+        raise InputError(what, "", str(name), f"no such file; shipped: {', '.join(known)}")
+    return path

@@ -45,3 +45,11 @@ def test_home_is_overridden_by_the_environment(monkeypatch, tmp_path: Path):
     monkeypatch.setenv("HYPERLEG_HOME", str(tmp_path / "nowhere"))
     with pytest.raises(InputError, match="HYPERLEG_HOME"):
         resources.home()
+
+
+@pytest.mark.parametrize("what", ["task", "preset", "protocol"])
+def test_shipped_simulation_files_are_found_by_name(what):
+    for name in resources.sim_names(what):
+        assert resources.find_sim(what, name).name == f"{what}_{name}.yaml"
+    with pytest.raises(InputError, match=resources.sim_names(what)[0]):
+        resources.find_sim(what, "nothing-of-the-kind")

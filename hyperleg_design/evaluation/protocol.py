@@ -18,8 +18,6 @@ from hyperleg_design.robot import parameters
 from hyperleg_design.robot.parameters import number
 from hyperleg_design.simulation.settings import Checked, Randomisation, Start
 
-PREFIX = "protocol_"
-"""How the shipped files in `sim/` begin."""
 MOST_TRIALS = 4096
 T_TEST_POINTS = {"A": (0.0, 0.0), "B": (9.14, 0.0), "C": (9.14, 4.57), "D": (9.14, -4.57)}
 """Of the human agility T-test, A where the run starts, x ahead [m]; the paper does not print its course's size."""
@@ -180,7 +178,7 @@ _KINDS: dict[str, type[Protocol]] = {"walk": WalkProtocol, "t_test": TTestProtoc
 
 def protocol_names() -> list[str]:
     """Names of the shipped protocols."""
-    return [n[len(PREFIX) :] for n in resources.names("sim") if n.startswith(PREFIX)]
+    return resources.sim_names("protocol")
 
 
 def load_protocol(name: str | Path) -> Protocol:
@@ -192,10 +190,7 @@ def load_protocol(name: str | Path) -> Protocol:
     Raises:
         InputError: names file, field, value and remedy.
     """
-    known = protocol_names()
-    path = resources.find("sim", f"{PREFIX}{name}") if str(name) in known else Path(name)
-    if not path.is_file():
-        raise InputError("protocol", "", str(name), f"no such file; shipped: {', '.join(known)}")
+    path = resources.find_sim("protocol", name)
     return protocol_from_mapping(read_yaml(path), short_name(path))
 
 

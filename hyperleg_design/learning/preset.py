@@ -16,8 +16,6 @@ from hyperleg_design.robot.parameters import flag, number, text
 from hyperleg_design.simulation.rewards import TERMS
 from hyperleg_design.simulation.settings import Checked
 
-PREFIX = "preset_"
-"""How the presets' files in `sim/` begin."""
 BEGINS = ("stage", "assist_gone")
 """From when a ramp counts: the stage's beginning, or the first iteration without assist."""
 
@@ -156,7 +154,7 @@ class Preset(Checked):
 
 def preset_names() -> list[str]:
     """Names of the shipped presets."""
-    return [n[len(PREFIX) :] for n in resources.names("sim") if n.startswith(PREFIX)]
+    return resources.sim_names("preset")
 
 
 def load_preset(name: str | Path) -> Preset:
@@ -168,10 +166,7 @@ def load_preset(name: str | Path) -> Preset:
     Raises:
         InputError: names file, field, value and remedy.
     """
-    known = preset_names()
-    path = resources.find("sim", f"{PREFIX}{name}") if str(name) in known else Path(name)
-    if not path.is_file():
-        raise InputError("preset", "", str(name), f"no such file; shipped: {', '.join(known)}")
+    path = resources.find_sim("preset", name)
     return preset_from_mapping(read_yaml(path), short_name(path))
 
 

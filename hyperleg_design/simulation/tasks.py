@@ -17,8 +17,6 @@ from hyperleg_design.simulation.observations import PARTS
 from hyperleg_design.simulation.rewards import TERMS
 from hyperleg_design.simulation.settings import Clock, Control, Limits, Physics, Randomisation, Start, Thermal
 
-PREFIX = "task_"
-"""How the presets' files in `sim/` begin."""
 GROUPS = ("policy", "critic")
 """Observation groups that every task has."""
 _SECTIONS: dict[str, Any] = {
@@ -97,16 +95,13 @@ def load_task(name: str | Path) -> Task:
     Raises:
         InputError: names file, field, value and remedy.
     """
-    known = task_names()
-    path = resources.find("sim", f"{PREFIX}{name}") if name in known else Path(name)
-    if not path.is_file():
-        raise InputError("task", "", str(name), f"no such file; shipped: {', '.join(known)}")
+    path = resources.find_sim("task", name)
     return task_from_mapping(read_yaml(path), short_name(path))
 
 
 def task_names() -> list[str]:
     """Names of the shipped tasks."""
-    return [n[len(PREFIX) :] for n in resources.names("sim") if n.startswith(PREFIX)]
+    return resources.sim_names("task")
 
 
 def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
