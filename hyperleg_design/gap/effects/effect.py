@@ -1,0 +1,81 @@
+"""What every effect of the catalogue is: identifier, places, parameters, its trace in the balances and its way into the simulation."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
+"""Where an effect can sit."""
+BALANCES = ("motion", "drive", "base", "ground")
+"""Rows that a trace can fill; `gap/signals.py` says what each compares."""
+
+Change = Mapping[tuple[str, str], Mapping[str, float]]
+"""Values of parameters by (effect, location): what is added to a simulation; empty, the simulation as it is."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that an effect has."""
+
+    name: str
+    unit: str
+    null: float
+    """Value at which the simulation is as it was."""
+    low: float
+    high: float
+    """Range searched; bounds of what is physically plausible."""
+    typical: float
+    """Usual distance from `null` on hardware: scale of the prior and of finite differences."""
+    source: str
+    """Where the magnitude comes from."""
+    shape: bool = False
+    """Whether it only shapes the trace (a Stribeck speed, a cogging order) and means nothing while the size is at its null."""
+
+
+class Effect(ABC):
+    """One unmodelled effect; a class without state.
+
+    Residuals of all balances are what the log shows minus what the model explains, so that a log made with the effect at
+    `values` has, apart from noise, the residual `trace(signals, location, values)`; at the nulls the trace is zero.
+    """
+
+    identifier: ClassVar[str]
+    kind: ClassVar[str]
+    """One of `KINDS`."""
+    summary: ClassVar[str]
+    """One line for people."""
+    parameters: ClassVar[tuple[Parameter, ...]]
+    linear: ClassVar[bool] = False
+    """Whether the trace is linear in (values - nulls)."""
+
+    @abstractmethod
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Names of the places where it can sit on this robot."""
+
+    @abstractmethod
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """Residual that it leaves in each balance.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the balance `(k, t, rows)` [Nm; N in the ground balance], before any filtering; balances that it leaves
+            alone are missing. Unknown ticks are NaN.
+        """
+
+    @property
+    def nulls(self) -> np.ndarray:
+        """Values at which it is absent, `(parameters,)`."""
+        return np.array([p.null for p in self.parameters])

@@ -1,0 +1,74 @@
+"""A log made ready for the balances: one even time base, smooth motion, believed torques, inverse dynamics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.log import Log
+    from hyperleg_design.gap.subject import Subject
+
+
+@dataclass(frozen=True)
+class BaseMotion:
+    """How the base moves; of a fixed base, there is none."""
+
+    position: np.ndarray
+    """In the world `(t, 3)` [m]; NaN where nobody measured it."""
+    rotation: np.ndarray
+    """World from base `(t, 3, 3)`."""
+    linear_velocity: np.ndarray
+    """In the base's frame `(t, 3)` [m/s]; NaN where nobody measured it."""
+    angular_velocity: np.ndarray
+    """In the base's frame `(t, 3)` [rad/s]."""
+    specific_force: np.ndarray
+    """Acceleration minus gravity at the base's origin, in the base's frame `(t, 3)` [m/s^2]."""
+    angular_acceleration: np.ndarray
+    """In the base's frame `(t, 3)` [rad/s^2]."""
+
+
+@dataclass(frozen=True)
+class Signals:
+    """One log on an even time base, `t` ticks, `n` joints, `m` motors, `f` feet; motion smoothed without delay.
+
+    Balances, each what the log shows minus what the nominal model explains:
+        motion: believed joint torque minus the torque that the logged motion needs `(t, n)` [Nm];
+        drive: measured motor torque minus the torque that the controller asks for `(t, m)` [Nm], where both are known;
+        base: of a floating base whose contact forces are logged, the six rows of the base `(t, 6)` [N, Nm];
+        ground: logged contact force minus the nominal ground's at the logged motion `(t, 3 f)` [N].
+    """
+
+    log: Log
+    subject: Subject
+    step: float
+    """Of the time base [s]."""
+    time: np.ndarray
+    """`(t,)` [s]."""
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    """Of the joints `(t, n)` [rad, rad/s, rad/s^2]."""
+    base: BaseMotion | None
+    target: np.ndarray | None
+    """Position target `(t, n)` [rad]."""
+    command: np.ndarray | None
+    """Motor torque that the controller asks for `(t, m)` [Nm]: logged, or from targets and gains; before any limit."""
+    measured: np.ndarray | None
+    """Motor torque that the log measured, or current times the declared torque constant `(t, m)` [Nm]."""
+    believed: np.ndarray
+    """Motor torque that the balance of motion trusts: measured, else command within the nominal limits `(t, m)` [Nm]."""
+    rigid: np.ndarray
+    """Joint torque that the logged motion needs: inverse dynamics, rotors, nominal friction, contact forces `(t, n)` [Nm]."""
+    temperature: np.ndarray | None
+    """`(t, m)` [degC]."""
+    voltage: np.ndarray | None
+    """Battery `(t,)` [V]."""
+    contact: np.ndarray | None
+    """Force of the ground on each foot, world frame `(t, f, 3)` [N]."""
+    valid: np.ndarray
+    """Ticks fit for use `(t,)`: no gap in the log near, not at its ends."""
+    residual: dict[str, np.ndarray]
+    """By balance that this log allows."""
