@@ -209,6 +209,8 @@ class Train:
     """Of everything random."""
     preset: str = "laptop"
     """laptop, paper, or a YAML file."""
+    start: str = ""
+    """ONNX policy of another task to start from; from scratch by default."""
     out: Path
     """Folder of the training."""
     threads: int = 1
@@ -220,6 +222,7 @@ class Train:
 
         _require("torch", "rsl_rl")
         given = {"task": self.task, "design": self.design, "seed": self.seed, "preset": self.preset, "out": self.out, "threads": self.threads}
+        given |= {"start": self.start} if self.start else {}
         launch.run_here([f"--{key}={value}" for key, value in given.items()], self.threads)
 
 

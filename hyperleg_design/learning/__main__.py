@@ -15,6 +15,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m hyperleg_design.learning", description="One training, or the rest of one.")
     for name in ("task", "design", "preset", "out"):
         parser.add_argument(f"--{name}", required=name == "out", default={"task": "walk", "design": "toe", "preset": "laptop"}.get(name))
+    parser.add_argument("--start")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--threads", type=int, default=1)
     given = parser.parse_args()
@@ -23,7 +24,7 @@ def main() -> int:
     from hyperleg_design.learning.train import train
 
     try:
-        done = train(given.task, given.design, given.seed, given.preset, given.out, threads=given.threads, show=_show)
+        done = train(given.task, given.design, given.seed, given.preset, given.out, start=given.start, threads=given.threads, show=_show)
     except HyperlegError as error:
         sys.stderr.write(f"{error}\n")
         return 2

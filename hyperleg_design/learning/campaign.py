@@ -38,6 +38,8 @@ class Run:
     design: str
     seed: int
     preset: str
+    start: str = ""
+    """Group whose policy of the same design and seed it starts from; empty: from scratch."""
 
     @property
     def name(self) -> str:
@@ -91,9 +93,11 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
     for g, group in enumerate(groups):
         if not isinstance(group, Mapping):
             raise InputError(where, f"groups.{g}", group, "expects a mapping")
-        _check_keys(group, ("name", "task", "designs", "seeds"), where, f"groups.{g}.")
+        _check_keys(group, ("name", "task", "designs", "seeds", "start"), where, f"groups.{g}.")
         if group["name"] in names:
             raise InputError(where, f"groups.{g}.name", group["name"], "stands twice")
+        start = str(group.get("start") or "")
+        before = {(run.design, run.seed) for *_, run in runs if run.group == start}
         names.add(group["name"])
         task = load_task(str(group["task"])).name
         load_preset(str(data["preset"])).stages(task)
@@ -102,7 +106,9 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
         for d, design in enumerate(group["designs"]):
             load_design(str(design))
             for seed in range(_whole(group["seeds"], where, f"groups.{g}.seeds")):
-                run = Run(str(group["name"]), str(group["task"]), str(design), seed, str(data["preset"]))
+                if start and (str(design), seed) not in before:
+                    raise InputError(where, f"groups.{g}.start", start, f"expects a group before it that has {design}, seed {seed}")
+                run = Run(str(group["name"]), str(group["task"]), str(design), seed, str(data["preset"]), start)
                 runs.append((seed, g, d, run))
     # by seed first, so that whatever is done when time is out can be compared
     ordered = tuple(run for *_, run in sorted(runs, key=lambda entry: entry[:3]))
@@ -165,12 +171,18 @@ def run_campaign(
             for name in [name for name, process in working.items() if process.poll() is not None]:
                 if working.pop(name).returncode:
                     failed.append(name)
-            while waiting and len(working) < (processes or campaign.processes):
-                run = waiting.pop(0)
+            ready = [run for run in waiting if _can_start(run, folder)]
+            if not ready and not working:
+                break
+            while ready and len(working) < (processes or campaign.processes):
+                run = ready.pop(0)
+                waiting.remove(run)
                 place = folder / run.name
                 place.mkdir(parents=True, exist_ok=True)
                 write_text(place / MARKER, "made by hyperleg\n")
-                arguments = {"task": run.task, "design": run.design, "seed": run.seed, "preset": run.preset, "out": place}
+                arguments: dict[str, object] = {"task": run.task, "design": run.design, "seed": run.seed, "preset": run.preset, "out": place}
+                if run.start:
+                    arguments["start"] = _start_file(run, folder)
                 working[run.name] = launch.start(arguments, place / LOG)
             if show is not None and time.monotonic() - shown > show_every:
                 shown = time.monotonic()
@@ -186,6 +198,15 @@ def run_campaign(
         for name in failed:
             show(f"{name} failed; see {folder / name / LOG}")
     return all(status.state == "done" for status in statuses)
+
+
+def _start_file(run: Run, folder: Path) -> Path:
+    return folder / f"{run.start}-{run.design}-{run.seed}" / POLICY
+
+
+def _can_start(run: Run, folder: Path) -> bool:
+    """Whether the policy that it starts from, if any, is there."""
+    return not run.start or _start_file(run, folder).exists()
 
 
 def _stop(processes: list[subprocess.Popen[bytes]]) -> None:
@@ -227,7 +248,7 @@ def _check_keys(data: Mapping[str, Any], known: tuple[str, ...], where: str, pat
         if key not in known:
             raise InputError(where, f"{path}{key}", data[key], unknown(str(key), list(known)))
     for key in known:
-        if key not in data and key != "processes":
+        if key not in data and key not in ("processes", "start"):
             raise InputError(where, f"{path}{key}", None, "is missing")
 
 

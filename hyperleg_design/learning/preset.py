@@ -73,6 +73,18 @@ class Network(Checked):
     """Whether observations are normalised by their running mean and deviation."""
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class WarmStart(Checked):
+    """How a training begins that starts from another task's policy; `learning/warm_start.py`."""
+
+    forward: Any = number("m/s", -5, 5, default=1.33)
+    """Velocity command that the policy follows at first, straight ahead [m/s]."""
+    deviation: Any = number("", 1e-3, 10, default=0.5)
+    """Standard deviation of the actions at the start."""
+    critic_iterations: Any = number("", 0, 10000, default=20)
+    """Iterations at the start in which only the critic learns."""
+
+
 @dataclass(frozen=True)
 class Ramp:
     """A value that changes linearly over some steps and then stays."""
@@ -125,6 +137,7 @@ class Preset(Checked):
     """Policy steps between them."""
     algorithm: Algorithm = field(default_factory=Algorithm)
     network: Network = field(default_factory=Network)
+    warm_start: WarmStart = field(default_factory=WarmStart)
     tasks: Mapping[str, tuple[Stage, ...]]
     """Stages by name of the task."""
 
@@ -187,16 +200,19 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
     if not isinstance(hidden, list) or not hidden or not all(isinstance(h, int) and not isinstance(h, bool) and 0 < h <= 65536 for h in hidden):
         raise InputError(where, "network.hidden", hidden, "expects a list of widths")
     made = parameters.from_mapping(Network, network, where, "network")
+    warm = parameters.from_mapping(WarmStart, rest.pop("warm_start", {}), where, "warm_start")
     algorithm = parameters.from_mapping(Algorithm, rest.pop("algorithm", {}), where, "algorithm")
     if (algorithm.mirror, algorithm.adapted) in (("half", "minibatch"), ("append", "iteration")):
         raise InputError(where, "algorithm.adapted", algorithm.adapted, f"with mirror: {algorithm.mirror} would judge mirrored samples")
     sizes = ("simulations", "rollout", "checkpoint_every", "trial_every", "late", "late_apart")
     for key in rest:
         if key not in sizes:
-            raise InputError(where, str(key), rest[key], parameters.unknown(str(key), ["name", *sizes, "algorithm", "network", "tasks"]))
+            known = ["name", *sizes, "algorithm", "network", "warm_start", "tasks"]
+            raise InputError(where, str(key), rest[key], parameters.unknown(str(key), known))
     values = {key: _whole(rest[key], where, key) for key in rest}
     try:
-        return Preset(name=name, algorithm=algorithm, network=dataclasses.replace(made, hidden=tuple(hidden)), tasks=stages, **values)
+        shape = dataclasses.replace(made, hidden=tuple(hidden))
+        return Preset(name=name, algorithm=algorithm, network=shape, warm_start=warm, tasks=stages, **values)
     except InputError as error:
         raise InputError(where, error.field, error.value, error.remedy) from None
 

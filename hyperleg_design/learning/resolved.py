@@ -38,6 +38,7 @@ def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:
             found[field.name] = getattr(preset, field.name)
     found["algorithm"] = parameters.leaves(preset.algorithm)
     found["network"] = {"hidden": list(preset.network.hidden), **parameters.leaves(preset.network)}
+    found["warm_start"] = parameters.leaves(preset.warm_start)
     found["tasks"] = {task: [_stage(stage) for stage in preset.stages(task)]}
     return found
 

@@ -39,6 +39,7 @@ from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.learning.schedule import Schedule
 from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, STATUS
 from hyperleg_design.learning.trial import trial
+from hyperleg_design.learning.warm_start import StartPolicy, read_start, start_actor
 from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
@@ -59,6 +60,7 @@ def train(
     preset: str | Path | Preset,
     out: str | Path,
     *,
+    start: str | Path | None = None,
     threads: int = 1,
     iterations: int | None = None,
     show: Callable[[str], None] | None = None,
@@ -71,6 +73,7 @@ def train(
         seed: of all randomness.
         preset: a preset, its shipped name or file.
         out: folder of the training.
+        start: ONNX policy of another task to start from, of the same robot; from scratch by default.
         threads: of physics and learning. One by default: trainings side by side use processors best. Resuming is bit for
             bit with the same number only.
         iterations: stop, with a checkpoint, after so many more; all by default.
@@ -84,18 +87,21 @@ def train(
         OutputError: something cannot be written; the training can go on from its last checkpoint.
     """
     command = f"hyperleg train --task {_name(task)} --design {_name(design)} --seed {seed} --preset {_name(preset)}"
+    started = None if start is None else read_start(start)
+    if started is not None:
+        command += f" --start {Path(str(start)).parent.name}/{Path(str(start)).name}"
     task = task if isinstance(task, Task) else load_task(task)
     design = design if isinstance(design, Design) else load_design(design)
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     folder = check_output_folder(out)
-    description = {**describe(task, design, seed, preset), "command": command}
+    description = {**describe(task, design, seed, preset), "start": started and started.source, "command": command}
     _check_same(folder, description)
     write_text(folder / MARKER, "made by hyperleg\n")
     with _alone(folder), _limited_threads(threads):
         if not (folder / RUN).exists():
             write_json(folder / RUN, description)
-        training = Training(task, design, seed, preset, folder, threads, description)
+        training = Training(task, design, seed, preset, folder, threads, description, started)
         return training.run(iterations, show or (lambda line: None))
 
 
@@ -116,7 +122,17 @@ def describe(task: Task, design: Design, seed: int, preset: Preset) -> dict[str,
 class Training:
     """A training at work."""
 
-    def __init__(self, task: Task, design: Design, seed: int, preset: Preset, folder: Path, threads: int, description: dict[str, Any]) -> None:
+    def __init__(
+        self,
+        task: Task,
+        design: Design,
+        seed: int,
+        preset: Preset,
+        folder: Path,
+        threads: int,
+        description: dict[str, Any],
+        start: StartPolicy | None = None,
+    ) -> None:
         self.task, self.design, self.preset, self.folder, self.description = task, design, preset, folder, description
         self.schedule = Schedule(preset, task.name)
         self.environment = Environment(design, task, simulations=int(preset.simulations), seed=seed, threads=threads)
@@ -133,8 +149,11 @@ class Training:
         self.seconds = 0.0
         """Spent on training so far [s]."""
         self._stop = False
+        self._critic_only = int(preset.warm_start.critic_iterations) if start is not None else 0
         if (folder / CHECKPOINT).exists():
             self._load()
+        elif start is not None:
+            self._start_from(start)
 
     def run(self, iterations: int | None, show: Callable[[str], None]) -> bool:
         """Train to the end, to a signal, or for some iterations; whether it is done."""
@@ -224,7 +243,7 @@ class Training:
                 self.observations = as_tensors(step.observations)
                 algorithm.process_env_step(self.observations, reward, torch.from_numpy(step.ending != 0), {})
             algorithm.compute_returns(self.observations)
-        losses = algorithm.update()
+        losses = self._update()
         measures = self.meter.read()
         self.schedule.advance(measures["episode"], measures["share"])
         steps = self.preset.steps_per_iteration
@@ -242,6 +261,24 @@ class Training:
             "losses": losses,
             "diverged": environment.divergence_count,
         }
+
+    def _update(self) -> dict[str, float]:
+        """One iteration's learning; of the critic alone where a warm start asks for it."""
+        algorithm = self.algorithm
+        if self.schedule.iteration >= self._critic_only:
+            return algorithm.update()
+        rate = algorithm.learning_rate
+        algorithm.actor.requires_grad_(False)
+        losses = algorithm.update()
+        algorithm.actor.requires_grad_(True)
+        if isinstance(algorithm, IterationPPO):
+            algorithm.set_rate(rate)  # adapted on a divergence of zero
+        return losses
+
+    def _start_from(self, start: StartPolicy) -> None:
+        warm, columns = self.preset.warm_start, list(self.environment.observation_columns["policy"])
+        command, first = np.array([float(warm.forward), 0.0, 0.0]), self.observations["policy"].numpy()
+        start_actor(self.algorithm.actor, start, columns, list(self.environment.layout.joints), command, first, float(warm.deviation))
 
     def _bootstrap(self, step: Any, reward: torch.Tensor) -> None:
         """An episode that was cut, not lost, goes on in value: add what the critic expects of its last state."""
@@ -261,7 +298,7 @@ class Training:
         return left > 0 and left % apart == 0 and left // apart < int(self.preset.late)
 
     def _export(self, name: str) -> None:
-        chosen = ("variant", "seed", "task", "design", "preset", "deviations", "command", "commit", "versions")
+        chosen = ("variant", "seed", "task", "design", "preset", "deviations", "start", "command", "commit", "versions")
         metadata = {key: self.description[key] for key in chosen}
         metadata |= {"seed": str(self.description["seed"]), "steps": str(self.schedule.iteration * self.preset.steps_per_iteration)}
         metadata |= {"columns": self.environment.observation_columns["policy"], "joints": list(self.environment.layout.joints)}
@@ -329,7 +366,7 @@ def _check_same(folder: Path, description: dict[str, Any]) -> None:
         found = json.loads(path.read_text())
     except (OSError, ValueError):
         raise InputError(f"{folder.name}/{RUN}", "", None, "cannot be read; choose another folder, or delete this one") from None
-    for key in ("variant", "seed", "task", "design", "preset"):
+    for key in ("variant", "seed", "task", "design", "preset", "start"):
         if found.get(key) != json.loads(json.dumps(description[key])):
             remedy = "the folder holds another training; choose another, or delete it"
             raise InputError(str(folder), key, found.get(key) if key in ("variant", "seed") else None, remedy)

@@ -34,6 +34,6 @@ def tiny_mapping() -> dict:
     }
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def tiny() -> Preset:
     return preset_from_mapping(tiny_mapping(), "tiny.yaml")

@@ -76,7 +76,7 @@ def test_a_policy_says_what_it_is(tiny: Preset, tmp_path: Path) -> None:
     said = session.get_modelmeta().custom_metadata_map
     assert (said["variant"], said["seed"], said["steps"]) == ("toe_removed_matched", "2", "96")
     assert len(json.loads(said["joints"])) == 12
-    assert session.get_inputs()[0].shape[1] == len(json.loads(said["columns"])) == 57 + 4
+    assert session.get_inputs()[0].shape[1] == len(json.loads(said["columns"])) == 57 + 2 + 4
     assert task_from_mapping(json.loads(said["task"]), "onnx").name == "goal"
     assert "goal_speed" in json.loads(said["deviations"])
     assert json.loads(said["design"])["variant"] == "toe_removed_matched"

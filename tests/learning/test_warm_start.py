@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.learning.preset import Preset
+
+torch = pytest.importorskip("torch")
+onnx = pytest.importorskip("onnx")
+ort = pytest.importorskip("onnxruntime")
+pytest.importorskip("rsl_rl")
+pytest.importorskip("tensorboard")
+
+from hyperleg_design.learning.preset import WarmStart  # noqa: E402
+from hyperleg_design.learning.train import Training, describe, train  # noqa: E402
+from hyperleg_design.learning.warm_start import read_start  # noqa: E402
+from hyperleg_design.robot.design import load_design  # noqa: E402
+from hyperleg_design.simulation.tasks import load_task  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def walker(tiny: Preset, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("walker")
+    assert train("walk", "toe", 0, tiny, folder)
+    return folder / "policy.onnx"
+
+
+def begun(tiny: Preset, walker: Path, folder: Path, design: str = "toe") -> Training:
+    task, robot = load_task("goal"), load_design(design)
+    return Training(task, robot, 0, tiny, folder, 1, describe(task, robot, 0, tiny), read_start(walker))
+
+
+def test_it_begins_by_doing_what_the_walk_did(tiny: Preset, walker: Path, tmp_path: Path) -> None:
+    training = begun(tiny, walker, tmp_path)
+    columns = list(training.environment.observation_columns["policy"])
+    session = ort.InferenceSession(walker)
+    old = json.loads({e.key: e.value for e in onnx.load(walker).metadata_props}["columns"])
+    observation = np.random.default_rng(0).normal(0.0, 1.0, (20, len(columns))).astype(np.float32)
+    before = np.zeros((20, len(old)), np.float32)
+    for i, name in enumerate(old):
+        before[:, i] = float(tiny.warm_start.forward) * (name == "command.0") if name.startswith("command") else observation[:, columns.index(name)]
+    (expected,) = session.run(["action"], {"observation": before})
+    np.testing.assert_allclose(training.policy(observation), expected, atol=2e-4 * (1 + np.abs(expected).max()))
+    training.environment.close()
+
+
+def test_the_critic_learns_alone_at_first(tiny: Preset, walker: Path, tmp_path: Path) -> None:
+    training = begun(tiny, walker, tmp_path)
+    assert training._critic_only == int(WarmStart().critic_iterations)
+    before = {k: v.clone() for k, v in training.algorithm.actor.mlp.state_dict().items()}
+    critic = {k: v.clone() for k, v in training.algorithm.critic.mlp.state_dict().items()}
+    rate = training.algorithm.learning_rate
+    training._iterate()
+    assert all(torch.equal(before[k], v) for k, v in training.algorithm.actor.mlp.state_dict().items())
+    assert any(not torch.equal(critic[k], v) for k, v in training.algorithm.critic.mlp.state_dict().items())
+    assert training.algorithm.learning_rate == rate
+    training._critic_only = 0
+    training._iterate()
+    assert any(not torch.equal(before[k], v) for k, v in training.algorithm.actor.mlp.state_dict().items())
+    training.environment.close()
+
+
+def test_a_start_is_told_and_resumes(tiny: Preset, walker: Path, tmp_path: Path) -> None:
+    assert not train("goal", "toe", 0, tiny, tmp_path / "a", start=walker, iterations=1)
+    assert json.loads((tmp_path / "a" / "run.json").read_text())["start"]["task"] == "walk"
+    assert not train("goal", "toe", 0, tiny, tmp_path / "a", start=walker, iterations=1)
+    with pytest.raises(InputError, match="start"):
+        train("goal", "toe", 0, tiny, tmp_path / "a", iterations=1)
+
+
+def test_bad_starts(tiny: Preset, walker: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="expects a policy for"):
+        begun(tiny, walker, tmp_path, design="toe_removed")
+    with pytest.raises(InputError, match="would miss it"):
+        train("goal_paper", "toe", 0, with_goal_paper(tiny), tmp_path / "b", start=walker)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_start(tmp_path / "none.onnx")
+    (tmp_path / "cut.onnx").write_bytes(walker.read_bytes()[:1000])
+    with pytest.raises(InputError, match="truncated"):
+        read_start(tmp_path / "cut.onnx")
+
+
+def with_goal_paper(tiny: Preset) -> Preset:
+    return dataclasses.replace(tiny, tasks={**tiny.tasks, "goal_paper": tiny.tasks["goal"]})
