@@ -1,0 +1,202 @@
+"""What a log says about its robot besides the signals: gains, torque constants, payload, base, session."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design.errors import InputError
+
+STANDARD_GRAVITY = (0.0, 0.0, -9.81)
+"""Where nothing else is said; the value MuJoCo uses [m/s^2]."""
+MAX_GRAVITY = 30.0
+"""Above that of any planet a robot stands on [m/s^2]: another unit."""
+BASES = ("", "fixed", "floating")
+"""What holds the robot's base; empty, what its model says."""
+ROLES = ("test", "reference")
+"""A reference log is of the same robot in a state known to be well modelled."""
+
+
+@dataclass(frozen=True)
+class Metadata:
+    """Beside the signals of one log; checked when made.
+
+    Raises:
+        InputError: a value of the wrong kind or out of range.
+    """
+
+    robot: str = ""
+    """Name of a design, or an MJCF or URDF file; empty, what the command line says."""
+    overrides: tuple[str, ...] = ()
+    """Of the design, `PATH=VALUE` each."""
+    base: str = ""
+    """One of `BASES`."""
+    gravity: tuple[float, float, float] = STANDARD_GRAVITY
+    """In the world, z up, unless the base stands tilted [m/s^2]."""
+    gains: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Of the position controller by joint: stiffness [Nm/rad], damping [Nms/rad], at the joint."""
+    torque_constant: Mapping[str, float] = field(default_factory=dict)
+    """By motor [Nm/A], of the torque that `motor_torque` means."""
+    payload: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
+    """What hangs on the robot by link: mass [kg], centre of mass in the link's frame x, y, z [m]."""
+    session: str = ""
+    """Logs of one session share one assembly, calibration and temperature; empty, a session of its own."""
+    role: str = "test"
+    """One of `ROLES`."""
+    notes: str = ""
+    """For people."""
+    remarks: tuple[str, ...] = ()
+    """What the source lacks and what a reader changed; the answer is weaker by these."""
+    extra: Mapping[str, Any] = field(default_factory=dict)
+    """Keys that this format does not know, as found."""
+
+    def __post_init__(self) -> None:
+        """Check."""
+        checked = _checked({k: getattr(self, k) for k in FIELDS}, "metadata")
+        for key, value in checked.items():
+            object.__setattr__(self, key, value)
+        object.__setattr__(self, "extra", _mapping(self.extra, "metadata", "extra"))
+
+    def changed(self, **values: Any) -> Metadata:
+        """A copy with some fields replaced."""
+        return dataclasses.replace(self, **values)
+
+    def remarked(self, *remarks: str) -> Metadata:
+        """A copy with remarks added, each once."""
+        return self.changed(remarks=tuple(dict.fromkeys((*self.remarks, *remarks))))
+
+    def mapping(self) -> dict[str, Any]:
+        """As JSON holds it: fields at their defaults left out, unknown keys beside the known."""
+        default = Metadata()
+        known = {k: getattr(self, k) for k in FIELDS if k != "extra" and getattr(self, k) != getattr(default, k)}
+        plain: dict[str, Any] = json.loads(json.dumps(known, allow_nan=False))
+        return {**self.extra, **plain}
+
+
+FIELDS = tuple(f.name for f in dataclasses.fields(Metadata))
+
+
+def metadata_from_mapping(content: Mapping[str, Any], where: str) -> Metadata:
+    """Metadata from what a JSON file holds; unknown keys go to `extra`.
+
+    Raises:
+        InputError: a value of the wrong kind or out of range, with its place.
+    """
+    content = _mapping(content, where, "")
+    extra = {**_mapping(content.get("extra", {}), where, "extra"), **{k: v for k, v in content.items() if k not in FIELDS}}
+    return Metadata(**_checked(content, where), extra=extra)
+
+
+def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
+    checks: dict[str, Callable[[Any, str, str], Any]] = {
+        "robot": _text,
+        "overrides": _overrides,
+        "base": _text,
+        "gravity": _gravity,
+        "gains": _gains,
+        "torque_constant": _torque_constants,
+        "payload": _payloads,
+        "session": _text,
+        "role": _text,
+        "notes": _text,
+        "remarks": _texts,
+    }
+    values = {key: check(content[key], where, key) for key, check in checks.items() if key in content}
+    for key, allowed in (("base", BASES), ("role", ROLES)):
+        if key in values and values[key] not in allowed:
+            raise InputError(where, key, values[key], f"expects {' or '.join(a for a in allowed if a)}")
+    return values
+
+
+def read_metadata_mapping(path: Path) -> dict[str, Any]:
+    """The mapping of a metadata side file.
+
+    Raises:
+        InputError: unreadable, no JSON, or no mapping.
+    """
+    where = path.name
+    try:
+        return _mapping(json.loads(path.read_text(encoding="utf-8")), where, "")
+    except OSError as error:
+        raise InputError(where, "", None, f"cannot be read ({error.strerror})") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(where, "", None, f"is not JSON ({' '.join(str(error).split())[:80]})") from None
+
+
+def _mapping(value: Any, where: str, name: str) -> dict[str, Any]:
+    if not isinstance(value, Mapping) or not all(isinstance(k, str) for k in value):
+        raise InputError(where, name, value, "expects names with values, { ... }")
+    return dict(value)
+
+
+def _text(value: Any, where: str, name: str) -> str:
+    if not isinstance(value, str):
+        raise InputError(where, name, value, "expects a text")
+    return value
+
+
+def _texts(value: Any, where: str, name: str) -> tuple[str, ...]:
+    if isinstance(value, str) or not isinstance(value, list | tuple):
+        raise InputError(where, name, value, "expects a list of texts")
+    return tuple(_text(v, where, name) for v in value)
+
+
+def _overrides(value: Any, where: str, name: str) -> tuple[str, ...]:
+    if isinstance(value, Mapping):
+        return tuple(f"{key}={v}" for key, v in _mapping(value, where, name).items())
+    return _texts(value, where, name)
+
+
+def _number(value: Any, where: str, name: str) -> float:
+    number = value.item() if hasattr(value, "item") and getattr(value, "size", 1) == 1 else value
+    if isinstance(number, bool) or not isinstance(number, int | float) or not math.isfinite(number):
+        raise InputError(where, name, value, "expects a finite number")
+    return float(number)
+
+
+def _numbers(value: Any, count: int, where: str, name: str) -> tuple[float, ...]:
+    values = value.tolist() if hasattr(value, "tolist") else value
+    if not isinstance(values, list | tuple) or len(values) != count:
+        raise InputError(where, name, value, f"expects {count} numbers")
+    return tuple(_number(v, where, name) for v in values)
+
+
+def _gravity(value: Any, where: str, name: str) -> tuple[float, ...]:
+    found = _numbers(value, 3, where, name)
+    if math.hypot(*found) > MAX_GRAVITY:
+        raise InputError(where, name, value, "expects m/s^2, such as [0, 0, -9.81]")
+    return found
+
+
+def _gains(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]:
+    found = {}
+    for joint, pair in _mapping(value, where, name).items():
+        found[joint] = _numbers(pair, 2, where, f"{name}.{joint}")
+        if min(found[joint]) < 0:
+            raise InputError(where, f"{name}.{joint}", pair, "expects [stiffness Nm/rad, damping Nms/rad], neither negative")
+    return found
+
+
+def _torque_constants(value: Any, where: str, name: str) -> dict[str, float]:
+    found = {motor: _number(constant, where, f"{name}.{motor}") for motor, constant in _mapping(value, where, name).items()}
+    for motor, constant in found.items():
+        if constant <= 0:
+            raise InputError(where, f"{name}.{motor}", constant, "expects Nm/A, above 0")
+    return found
+
+
+def _payloads(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]:
+    found = {}
+    for link, numbers in _mapping(value, where, name).items():
+        flat = (
+            [numbers[0], *numbers[1]] if isinstance(numbers, list | tuple) and len(numbers) == 2 and isinstance(numbers[1], list | tuple) else numbers
+        )
+        found[link] = _numbers(flat, 4, where, f"{name}.{link}")
+        if found[link][0] < 0:
+            raise InputError(where, f"{name}.{link}", numbers, "expects [mass kg, x, y, z m], mass not negative")
+    return found
