@@ -1,0 +1,238 @@
+"""Kinematic tree of a robot as plain arrays: one moving frame a joint, its z axis the joint's axis, and what mass rides on it.
+
+Made from a compiled MuJoCo model, so that whatever file a robot came from, inverse dynamics, Pinocchio and replays share one
+set of numbers. Several joints in one body become several frames, all but the last without mass.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+
+if TYPE_CHECKING:
+    import mujoco
+    import pinocchio
+
+BASE = -1
+"""Place of the base (or, of a fixed one, the world) among the joints."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mechanism:
+    """Tree of `n` joints that carry `L` links; parents come before children."""
+
+    floating: bool
+    joints: tuple[str, ...]
+    parent: np.ndarray
+    """Joint that carries each joint, `BASE` where none does `(n,)`."""
+    rotation: np.ndarray
+    """Axes of each joint's frame in its parent's, at the reference position `(n, 3, 3)`."""
+    offset: np.ndarray
+    """Origin of each joint's frame in its parent's [m] `(n, 3)`."""
+    hinge: np.ndarray
+    """Whether it turns; it slides otherwise `(n,)`."""
+    reference: np.ndarray
+    """Position at which the frames stand as given [rad or m] `(n,)`."""
+    inertial: np.ndarray
+    """Mass, mass times centre of mass, and inertia about the origin (xx, xy, yy, xz, yz, zz) of what each joint's frame
+    carries, in that frame `(n, 10)` [kg, kg m, kg m^2]."""
+    base_inertial: np.ndarray
+    """The same of a floating base, in its own frame `(10,)`."""
+    links: tuple[str, ...]
+    """That can move."""
+    link_joint: np.ndarray
+    """Joint that carries each link, `BASE` for the floating base and what is fixed to it `(L,)`."""
+    link_rotation: np.ndarray
+    """Axes of each link's own frame in its joint's `(L, 3, 3)`."""
+    link_offset: np.ndarray
+    """Origin of each link's own frame in its joint's [m] `(L, 3)`."""
+    link_inertial: np.ndarray
+    """Inertial parameters of each link in its own frame `(L, 10)`."""
+
+    @property
+    def count(self) -> int:
+        """Joints."""
+        return len(self.joints)
+
+    def chain(self, joint: int) -> list[int]:
+        """Joints from the base out to one, itself included."""
+        found = []
+        while joint != BASE:
+            found.append(joint)
+            joint = int(self.parent[joint])
+        return found[::-1]
+
+    def link(self, name: str) -> int:
+        """Place of a link, given by its own name or by that of the joint that carries it (its outermost link).
+
+        Raises:
+            InputError: no such link or joint.
+        """
+        if name in self.links:
+            return self.links.index(name)
+        if name in self.joints:
+            carried = np.flatnonzero(self.link_joint == self.joints.index(name))
+            if len(carried):
+                return int(carried[0])
+        raise InputError("robot", "link", name, f"no such moving link; there are {', '.join(self.links)}")
+
+
+def mechanism_of(model: mujoco.MjModel) -> Mechanism:
+    """Tree of a compiled MuJoCo model with hinges, slides and at most one free joint, at the root.
+
+    Raises:
+        InputError: a ball joint, or a free joint elsewhere.
+    """
+    import mujoco
+
+    kinds = mujoco.mjtJoint
+    joints: list[str] = []
+    rows: dict[str, list[Any]] = {k: [] for k in ("parent", "rotation", "offset", "hinge", "reference")}
+    inertials: list[np.ndarray] = []
+    base_inertial = np.zeros(10)
+    frames: list[tuple[int, np.ndarray, np.ndarray]] = [(BASE, np.eye(3), np.zeros(3))]
+    moves = [False]
+    floating = False
+    links: list[tuple[str, int, np.ndarray, np.ndarray, np.ndarray]] = []
+    for body in range(1, model.nbody):
+        above = int(model.body_parentid[body])
+        carrier, rotation, offset = frames[above]
+        offset = offset + rotation @ model.body_pos[body]
+        rotation = rotation @ quaternion_rotation(model.body_quat[body])
+        moving = moves[above]
+        first = int(model.body_jntadr[body])
+        for joint in range(first, first + int(model.body_jntnum[body])):
+            kind, name = model.jnt_type[joint], model.joint(joint).name
+            moving = True
+            if kind == kinds.mjJNT_FREE:
+                if above != 0 or floating:
+                    raise InputError("robot", name or "free joint", None, "is not the root's; one floating base can be understood")
+                floating, carrier, rotation, offset = True, BASE, np.eye(3), np.zeros(3)
+                continue
+            if kind == kinds.mjJNT_BALL:
+                raise InputError("robot", name, "ball", "ball joints are not understood; model it as three hinges")
+            anchor = offset + rotation @ model.jnt_pos[joint]
+            axes = _axes_with_z(rotation @ model.jnt_axis[joint])
+            rows["parent"].append(carrier)
+            rows["rotation"].append(axes)
+            rows["offset"].append(anchor)
+            rows["hinge"].append(kind == kinds.mjJNT_HINGE)
+            rows["reference"].append(model.qpos0[model.jnt_qposadr[joint]])
+            inertials.append(np.zeros(10))
+            carrier, rotation, offset = len(joints), axes.T @ rotation, axes.T @ (offset - anchor)
+            joints.append(name or f"joint_{joint}")
+        frames.append((carrier, rotation, offset))
+        moves.append(moving)
+        if not moving:
+            continue
+        turned = quaternion_rotation(model.body_iquat[body])
+        inertia = turned @ np.diag(model.body_inertia[body]) @ turned.T
+        own = inertial_parameters(float(model.body_mass[body]), model.body_ipos[body], inertia)
+        links.append((model.body(body).name or f"body_{body}", carrier, rotation, offset, own))
+        if carrier == BASE:
+            base_inertial += moved_inertial(own, rotation, offset)
+        else:
+            inertials[carrier] += moved_inertial(own, rotation, offset)
+    if not joints:
+        raise InputError("robot", "", None, "has no hinge or slide to diagnose")
+    return Mechanism(
+        floating=floating,
+        joints=tuple(joints),
+        parent=np.array(rows["parent"]),
+        rotation=np.array(rows["rotation"]),
+        offset=np.array(rows["offset"]),
+        hinge=np.array(rows["hinge"], bool),
+        reference=np.array(rows["reference"], float),
+        inertial=np.array(inertials),
+        base_inertial=base_inertial,
+        links=tuple(name for name, *_ in links),
+        link_joint=np.array([carrier for _, carrier, *_ in links]),
+        link_rotation=np.array([rotation for _, _, rotation, *_ in links]),
+        link_offset=np.array([offset for *_, offset, _ in links]),
+        link_inertial=np.array([own for *_, own in links]),
+    )
+
+
+def inertial_parameters(mass: float, com: np.ndarray, inertia: np.ndarray) -> np.ndarray:
+    """Ten parameters `(10,)` from mass [kg], centre of mass [m] `(3,)` and inertia about it [kg m^2] `(3, 3)`."""
+    x, y, z = com
+    about = inertia + mass * (com @ com * np.eye(3) - np.outer(com, com))
+    return np.array([mass, mass * x, mass * y, mass * z, about[0, 0], about[0, 1], about[1, 1], about[0, 2], about[1, 2], about[2, 2]])
+
+
+def mass_properties(parameters: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Mass, centre of mass and inertia about it from ten parameters; of a massless thing, at the origin."""
+    mass, moment = float(parameters[0]), parameters[1:4]
+    com = moment / mass if mass else np.zeros(3)
+    return mass, com, _about_origin(parameters) - mass * (com @ com * np.eye(3) - np.outer(com, com))
+
+
+def moved_inertial(parameters: np.ndarray, rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
+    """Ten parameters seen from another frame, in which the old one stands at `rotation` `(3, 3)` and `offset` `(3,)`."""
+    mass, com, inertia = mass_properties(parameters)
+    if not mass:
+        moved = rotation @ _about_origin(parameters) @ rotation.T
+        return np.array([0, 0, 0, 0, moved[0, 0], moved[0, 1], moved[1, 1], moved[0, 2], moved[1, 2], moved[2, 2]])
+    return inertial_parameters(mass, offset + rotation @ com, rotation @ inertia @ rotation.T)
+
+
+def quaternion_rotation(wxyz: np.ndarray) -> np.ndarray:
+    """Rotation matrices `(..., 3, 3)` of quaternions `(..., 4)`, w first, of any length but zero."""
+    q = np.asarray(wxyz, float)
+    w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, -1) for row in rows], -2)
+
+
+def pinocchio_model(tree: Mechanism, gravity: np.ndarray) -> pinocchio.Model:
+    """Pinocchio model of the same tree; `q` is measured from `reference`, rotors are left out.
+
+    Configurations are base position and quaternion (x y z w), where the base floats, then joints; frames bear links' names.
+    """
+    import pinocchio as pin
+
+    model: Any = pin.Model()
+    model.gravity.linear = np.asarray(gravity, float)
+    root = 0
+    if tree.floating:
+        root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "floating_base")
+        model.appendBodyToJoint(root, _pin_inertia(tree.base_inertial), pin.SE3.Identity())
+    places = []
+    for index, name in enumerate(tree.joints):
+        kind = pin.JointModelRZ() if tree.hinge[index] else pin.JointModelPZ()
+        above = root if tree.parent[index] == BASE else places[tree.parent[index]]
+        places.append(model.addJoint(above, kind, pin.SE3(tree.rotation[index], tree.offset[index]), name))
+        model.appendBodyToJoint(places[-1], _pin_inertia(tree.inertial[index]), pin.SE3.Identity())
+    for index, name in enumerate(tree.links):
+        carrier = int(tree.link_joint[index])
+        place = pin.SE3(tree.link_rotation[index], tree.link_offset[index])
+        model.addFrame(pin.Frame(name, root if carrier == BASE else places[carrier], place, pin.FrameType.BODY))
+    return model
+
+
+def _pin_inertia(parameters: np.ndarray) -> Any:
+    import pinocchio as pin
+
+    return pin.Inertia(*mass_properties(parameters))
+
+
+def _about_origin(parameters: np.ndarray) -> np.ndarray:
+    xx, xy, yy, xz, yz, zz = parameters[4:]
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def _axes_with_z(axis: np.ndarray) -> np.ndarray:
+    """A right-handed frame whose z is the axis, exact for axes along coordinates."""
+    z = axis / np.linalg.norm(axis)
+    helper = np.eye(3)[int(np.argmin(np.abs(z)))]
+    x = np.cross(helper, z)
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z], -1)
