@@ -8,7 +8,7 @@ simulations and its own random stream only, so a trajectory does not depend on h
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,14 +16,15 @@ import numpy as np
 
 from hyperleg_design.simulation import model as models
 from hyperleg_design.simulation import terminations
-from hyperleg_design.simulation.actuation import smoothed_action
+from hyperleg_design.simulation.actuation import applied, smoothed_action
+from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.commands import commander
 from hyperleg_design.simulation.drive import LEGS, Drive
 from hyperleg_design.simulation.layout import Layout
 from hyperleg_design.simulation.observations import observe
 from hyperleg_design.simulation.rewards import TERMS, Robot
-from hyperleg_design.simulation.state import Goal, Motion, State, read_motion
+from hyperleg_design.simulation.state import Goal, Motion, Sensed, State, read_motion
 from hyperleg_design.simulation.tasks import Reward, Task
 from hyperleg_design.simulation.thermal import ThermalState
 
@@ -95,6 +96,7 @@ class Chunk:
         rng: np.random.Generator,
         turn: threading.Lock,
         threads: int,
+        alterations: Sequence[Alteration] = (),
     ) -> None:
         from mujoco import batch
 
@@ -108,7 +110,7 @@ class Chunk:
             _give_models(self.batch, designs_models)
             _give_models(self._starter, designs_models)
         _vary_models(self.batch, task, rng)
-        self.drive = Drive(design, layout, task.physics, self.batch, task.randomisation, rng)
+        self.drive = Drive(design, layout, task.physics, self.batch, task.randomisation, rng, alterations)
         self._rated, self._heat = self.drive.flat(self.drive.model.rated_torque), self.drive.flat(self.drive.model.envelope.power_constant)
         self._sensors, self._push = self.batch.bind("sensordata"), self.batch.bind("xfrc_applied")
         self._places, self._tried = self._starter.bind("geom_xpos"), self._starter.bind("qpos")
@@ -127,6 +129,8 @@ class Chunk:
         self.sensors = np.zeros((substeps, count, self._sensors.shape[-1]))
         self.states = np.zeros((substeps, count, 13 + 2 * joints))
         """MuJoCo's position and velocity before each substep, kept while `recording`."""
+        self.altered = None if self.drive.chain is None else np.zeros((substeps, 2, count, joints))
+        """Torque through the transmission and friction that alterations make of them, kept while `recording`."""
         self.recording = False
         self.thermal = ThermalState(task.thermal, (count, motors))
         self.commander = commander(task.commands, count)
@@ -206,12 +210,25 @@ class Chunk:
             if self.recording:
                 self.states[substep, :, : 7 + joints], self.states[substep, :, 7 + joints :] = self.drive.qpos, self.drive.qvel
             self.drive.apply(target, self.motor_torque[substep], self.motor_velocity[substep])
+            if self.altered is not None and self.recording:
+                self._keep_altered(self.altered[substep])
             if assisted:
                 self._help()
             self._advance()
             self.sensors[substep] = self._sensors
         if assisted:
             self._push[:, self._pelvis] = 0.0
+
+    def _keep_altered(self, kept: np.ndarray) -> None:
+        chain, driven = self.drive.chain, self.drive.driven
+        assert chain is not None
+        assert driven is not None
+        matrix, velocity = chain.machine.joint_from_motor, self.drive.qvel[:, 6:]
+        kept[0], kept[1] = applied(matrix, driven.transmitted), 0.0
+        if driven.joint_damping is not None:
+            kept[1] = driven.joint_damping * velocity
+        if driven.motor_damping is not None:
+            kept[1] += applied(matrix, driven.motor_damping * applied(np.swapaxes(matrix, -1, -2), velocity))
 
     def _advance(self) -> None:
         from mujoco.batch import SimulationError
@@ -259,7 +276,22 @@ class Chunk:
             phase=self.phase,
             terminated=terminated,
             goal=self.goal,
+            sensed=self._sensed(self.motion),
         )
+
+    def _sensed(self, motion: Motion, ids: np.ndarray | None = None) -> Sensed | None:
+        """What alterations make of a motion on its way to the policy; of some simulations' rows."""
+        chain = self.drive.chain
+        if chain is None:
+            return None
+        rows = slice(None) if ids is None else ids
+        given = motion.joint_position, motion.joint_velocity, motion.angular_velocity, motion.gravity
+        whole = [np.zeros((self.count, values.shape[-1])) for values in given]
+        for place, values in zip(whole, given, strict=True):
+            place[rows] = values
+        position, velocity = chain.measured(*whole[:2])
+        angular_velocity, gravity = chain.imu(*whole[2:])
+        return Sensed(angular_velocity[rows], gravity[rows], position[rows], velocity[rows])
 
     def _started(self, ids: np.ndarray) -> State:
         """Start simulations and give the state of their rows; nothing has touched or moved yet."""
@@ -283,6 +315,7 @@ class Chunk:
             phase=self.phase[ids],
             terminated=np.zeros(count, bool),
             goal=goal,
+            sensed=self._sensed(motion, ids),
         )
 
     def _rewards(self, state: State) -> np.ndarray:
@@ -335,6 +368,7 @@ class Chunk:
         self._clock_start[ids] = 0.5 + 0.5 * drawn[:, -1]
         self.episode_step[ids] = 0
         self.thermal.reset(ids)
+        self.drive.reset(ids, position[:, 7:], velocity[:, 6:])
         for values in (self.action, self.previous_action, self.smoothed):
             values[ids] = 0.0
         return read_motion(position, velocity)
@@ -349,6 +383,9 @@ class Chunk:
         friction = self.drive.friction(velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs))
         shaped = {"driven_joint_torque": torque, "joint_friction": friction}
         found = {name: values.reshape(substeps, self.count, -1) for name, values in shaped.items()}
+        if self.altered is not None:
+            found["driven_joint_torque"] = self.altered[:, 0].copy()
+            found["joint_friction"] = found["joint_friction"] + self.altered[:, 1]
         found |= {
             "base_position": position[..., :3],
             "base_orientation": position[..., 3:7],

@@ -7,12 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.robot.linkage import LinkageModel
 from hyperleg_design.simulation import actuation
+from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.simulation.chain import Chain, Driven
 from hyperleg_design.simulation.layout import Layout
+from hyperleg_design.simulation.machine import bus_voltage, legs_matrix, machine_from, rotor_inertia
 from hyperleg_design.simulation.settings import Physics, Randomisation
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from mujoco.batch import Batch
 
     from hyperleg_design.robot.design import Design
@@ -28,7 +34,14 @@ class Drive:
     """
 
     def __init__(
-        self, design: Design, layout: Layout, physics: Physics, batch: Batch, randomisation: Randomisation | None, rng: np.random.Generator
+        self,
+        design: Design,
+        layout: Layout,
+        physics: Physics,
+        batch: Batch,
+        randomisation: Randomisation | None,
+        rng: np.random.Generator,
+        alterations: Sequence[Alteration] = (),
     ) -> None:
         self.model = actuation.actuation_model(design)
         self.physics = physics
@@ -51,6 +64,34 @@ class Drive:
         self._damping = None
         if physics.friction == "implicit":
             self._damping = batch.expand("dof_damping")[:, 6:] if physics.friction_space == "joint" else batch.expand("tendon_damping")
+        self.chain: Chain | None = None
+        """Of the alterations; None without."""
+        if alterations:
+            self._alter(design, layout, batch, alterations)
+
+    def _alter(self, design: Design, layout: Layout, batch: Batch, alterations: Sequence[Alteration]) -> None:
+        inertia = rotor_inertia(design)
+        machine = machine_from(self.model, layout.joints, layout.motors, inertia, bus_voltage(design))
+        chain = self.chain = Chain(machine, alterations, self.count, float(self.physics.time_step))
+        altered, nominal = chain.machine, chain.nominal
+        if not np.array_equal(altered.rigid_inertia, nominal.rotor_inertia):
+            batch.expand("tendon_armature")[:] += altered.rigid_inertia - nominal.rotor_inertia
+            batch.set_const()
+        if altered.joint_from_motor is not nominal.joint_from_motor:
+            if self._linkage is not None:
+                raise InputError("physics", "posture_dependent", True, "must be false with an alteration of the transmission")
+            leg, joint, motor = _wrap_places(batch, layout)
+            matrix, rows, columns = altered.joint_from_motor, leg * layout.leg_joints + joint, leg * layout.leg_motors + motor
+            batch.expand("wrap_prm")[:] = matrix[..., rows, columns]
+        self._joint_damping, self._motor_damping = batch.expand("dof_damping")[:, 6:], batch.expand("tendon_damping")
+        self._own_damping = [np.array(values) for values in (self._joint_damping, self._motor_damping)]
+        self.driven: Driven | None = None
+        """What the chain gave in the last step."""
+
+    def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
+        """Some simulations start anew from joint states `(len(ids), J)`."""
+        if self.chain is not None:
+            self.chain.reset(ids, position, velocity)
 
     def _spread(self) -> None:
         """Constants written out for every simulation and leg, so that NumPy runs through them in one go."""
@@ -79,6 +120,9 @@ class Drive:
             speed: filled with the motor velocities [rad/s], `(n, K)`.
         """
         position, velocity = self.qpos[:, 7:].copy().reshape(self._shape), self.qvel[:, 6:].copy().reshape(self._shape)
+        if self.chain is not None:
+            self._apply_chain(self.chain, target, position, velocity, torque, speed)
+            return
         matrix, to_motor = self.model.joint_from_motor, None
         if self._linkage is not None:
             matrix = self._linkage.joint_from_motor(position)
@@ -91,6 +135,31 @@ class Drive:
         torque[:], speed[:] = given.reshape(self.count, -1), motor_speed.reshape(self.count, -1)
         self._ctrl[:] = torque
         self._resist(velocity, motor_speed)
+
+    def _apply_chain(
+        self, chain: Chain, target: np.ndarray, position: np.ndarray, velocity: np.ndarray, torque: np.ndarray, speed: np.ndarray
+    ) -> None:
+        matrix, whole, to_motor = self.model.joint_from_motor, None, None
+        if self._linkage is not None:
+            matrix = self._linkage.joint_from_motor(position)
+            whole, to_motor = legs_matrix(matrix), legs_matrix(actuation.motor_from_joint(matrix, self.model.envelope.power_constant))
+            leg, joint, motor = self._places
+            self._coefficients[:] = matrix[:, leg, joint, motor]
+        driven = self.driven = chain.drive(
+            self.flat(position), self.flat(velocity), target=self.flat(target), joint_from_motor=whole, motor_from_joint=to_motor
+        )
+        torque[:], speed[:] = driven.torque, driven.motor_velocity
+        self._ctrl[:], self._applied[:, 6:] = driven.transmitted, 0.0
+        self._joint_damping[:], self._motor_damping[:] = 0.0, 0.0
+        self._resist(velocity, actuation.motor_speed(matrix, velocity))
+        self._joint_damping += self._own_damping[0]
+        self._motor_damping += self._own_damping[1]
+        if driven.joint_damping is not None:
+            self._joint_damping += driven.joint_damping
+        if driven.motor_damping is not None:
+            self._motor_damping += driven.motor_damping
+        if driven.joint_torque is not None:
+            self._applied[:, 6:] += driven.joint_torque
 
     def friction(self, velocity: np.ndarray, motor_speed: np.ndarray) -> np.ndarray:
         """Friction torque at the joints [Nm], `(..., 2, joints)` and `(..., 2, motors)` -> `(..., 2, joints)`."""

@@ -20,6 +20,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.simulation import mirror, observations
+from hyperleg_design.simulation.alteration import Alterations, made
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.chunk import Chunk, Divergence, Step
 from hyperleg_design.simulation.commands import WaypointCommands
@@ -52,10 +53,19 @@ class Environment:
         seed: of all randomness.
         threads: that step them; all processors by default.
         assist: helping forces, for training only.
+        alterations: of the simulated robot, or what makes them for a design; without, nothing changes.
     """
 
     def __init__(
-        self, design: Design, task: Task, *, simulations: int, seed: int = 0, threads: int | None = None, assist: Assist | None = None
+        self,
+        design: Design,
+        task: Task,
+        *,
+        simulations: int,
+        seed: int = 0,
+        threads: int | None = None,
+        assist: Assist | None = None,
+        alterations: Alterations | None = None,
     ) -> None:
         if simulations < 1:
             raise InputError("environment", "simulations", simulations, "expects at least 1")
@@ -67,8 +77,10 @@ class Environment:
         self.layout: Layout = layout_of(design)
         """Names and order of joints, motors and pads."""
         batched = bool(design.batch_shape)
-        each = [simulation_model(design.take(i), task.physics) for i in range(simulations)] if batched else None
-        self.model: mujoco.MjModel = each[0] if each else simulation_model(design, task.physics)
+        self.alterations = made(alterations, design.take(0) if batched else design)
+        """Of each of the simulated robots."""
+        each = [simulation_model(design.take(i), task.physics, self.alterations) for i in range(simulations)] if batched else None
+        self.model: mujoco.MjModel = each[0] if each else simulation_model(design, task.physics, self.alterations)
         """MuJoCo model that is simulated; the first one's of a batch of designs."""
         for model in each or [self.model]:
             check_standing(model, self.layout, task.limits, design.name)
@@ -86,7 +98,9 @@ class Environment:
             part = _taken(design, int(low), int(high)) if batched else design
             own = each[low:high] if each else None
             rng = np.random.default_rng(stream)
-            self.chunks.append(Chunk(part, task, self.layout, self.model, own, int(low), int(high - low), rng, self._turn, each_threads))
+            self.chunks.append(
+                Chunk(part, task, self.layout, self.model, own, int(low), int(high - low), rng, self._turn, each_threads, self.alterations)
+            )
         self._pool = ThreadPoolExecutor(workers) if workers > 1 else None
         self.divergences: list[Divergence] = []
         """Simulations that diverged, the latest `DIVERGENCES_KEPT`."""

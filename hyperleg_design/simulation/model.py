@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
+from hyperleg_design.simulation.alteration import Alteration, damps_motors
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.settings import Physics
 
@@ -20,11 +22,11 @@ PAD_SENSOR_SIZE = 6
 """Numbers a pad: force and relative velocity in the contact's frame."""
 
 
-def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.MjSpec:
+def simulation_spec(design: Design, physics: Physics | None = None, alterations: Sequence[Alteration] = ()) -> mujoco.MjSpec:
     """Editable model of one robot as simulated here; motors on tendons, joint friction left to `actuation`.
 
     A state that is not finite stays as it is instead of being reset by MuJoCo, so that it can be reported. Controls are not
-    clamped: `actuation` holds them inside the motors' envelopes.
+    clamped: `actuation` holds them inside the motors' envelopes. Alterations make their edits last.
     """
     import mujoco
 
@@ -55,12 +57,16 @@ def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.Mj
             name=pad, type=mujoco.mjtSensor.mjSENS_CONTACT, objtype=geom_kind, objname=FLOOR, reftype=geom_kind, refname=pad,
             intprm=[data, strongest, slots],
         )  # fmt: skip
+    if damps_motors(alterations):
+        option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    for alteration in alterations:
+        alteration.edit(spec)
     return spec
 
 
-def simulation_model(design: Design, physics: Physics | None = None) -> mujoco.MjModel:
+def simulation_model(design: Design, physics: Physics | None = None, alterations: Sequence[Alteration] = ()) -> mujoco.MjModel:
     """Compiled `simulation_spec`."""
-    return simulation_spec(design, physics).compile()
+    return simulation_spec(design, physics, alterations).compile()
 
 
 def pad_forces(sensors: np.ndarray) -> np.ndarray:

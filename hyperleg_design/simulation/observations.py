@@ -38,7 +38,7 @@ class Part:
 
 def proprioception(state: State, robot: Robot) -> list[np.ndarray]:
     """What the robot's own sensors give, with the command and the last two actions."""
-    motion = state.motion
+    motion = state.motion if state.sensed is None else state.sensed
     joint_position = motion.joint_position - robot.layout.default
     return [motion.angular_velocity, motion.gravity, state.command, joint_position, motion.joint_velocity, state.action, state.previous_action]
 

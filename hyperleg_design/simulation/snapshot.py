@@ -46,6 +46,7 @@ def _of_chunk(chunk: Chunk) -> dict[str, Any]:
         "motion": _fields(chunk.motion),
         "goal": None if chunk.goal is None else _fields(chunk.goal),
         "random": chunk.rng.bit_generator.state,
+        **({} if chunk.drive.chain is None else {"chain": chunk.drive.chain.state()}),
     }
 
 
@@ -60,6 +61,8 @@ def _into_chunk(chunk: Chunk, state: dict[str, Any]) -> None:
         getattr(chunk.commander, name)[:] = value
     for name, value in state["motion"].items():
         setattr(chunk.motion, name, value.copy())
+    if chunk.drive.chain is not None:
+        chunk.drive.chain.put_state(state["chain"])
     if state["goal"] is not None:
         for name, value in state["goal"].items():
             setattr(chunk.goal, name, value.copy())

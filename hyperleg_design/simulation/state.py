@@ -82,6 +82,20 @@ class Goal:
 
 
 @dataclass(slots=True, eq=False)
+class Sensed:
+    """What the robot's own sensors tell, where that is not the truth."""
+
+    angular_velocity: np.ndarray
+    """Of the pelvis in its frame [rad/s], `(n, 3)`."""
+    gravity: np.ndarray
+    """Unit vector of gravity in the pelvis's frame, `(n, 3)`."""
+    joint_position: np.ndarray
+    """[rad], `(n, J)`."""
+    joint_velocity: np.ndarray
+    """[rad/s], `(n, J)`."""
+
+
+@dataclass(slots=True, eq=False)
 class State:
     """All that a policy step left; substeps s lead in what was recorded within it."""
 
@@ -112,6 +126,8 @@ class State:
     """Whether the robot has fallen, `(n,)`."""
     goal: Goal | None
     """In tasks with waypoints."""
+    sensed: Sensed | None = None
+    """What sensors tell of `motion`, where alterations make a difference."""
 
 
 def read_motion(qpos: np.ndarray, qvel: np.ndarray) -> Motion:

@@ -12,6 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.simulation.alteration import Alteration
 
 KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 """Where an effect can sit."""
@@ -73,6 +74,16 @@ class Effect(ABC):
         Returns:
             By name of the balance `(k, t, rows)` [Nm; N in the ground balance], before any filtering; balances that it leaves
             alone are missing. Unknown ticks are NaN.
+        """
+
+    @abstractmethod
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """What adds it to a simulation.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation; rows at the nulls leave theirs alone.
+            subject: the robot.
         """
 
     @property

@@ -1,0 +1,247 @@
+"""Alterations: what can be added to a simulation that its model lacks, without the simulation knowing what it stands for.
+
+An `Alteration` changes a simulation in up to three places, each of which it may leave out:
+
+    edit(spec)          the MuJoCo model before it is compiled: masses, springs, contacts
+    machine(machine)    constants: what the controller believes, what motors and transmission are
+    live(...)           hooks in every simulation step, with a hidden state of their own: `Live`
+
+`Chain` runs the hooks in order. Nothing here knows a `Design`: joints, motors and constants are arrays with names, so that
+any simulator can use it. Arrays of hooks are `(n, J)` joints and `(n, K)` motors, n simulations in front. Constants of an
+alteration are numbers, or `(n,)`, one a simulation.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.robot.design import Design
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """Controller, motors and transmission of a robot of J joints and K motors; each array may lead with the simulations."""
+
+    joints: tuple[str, ...]
+    motors: tuple[str, ...]
+    joint_from_motor: np.ndarray
+    """M of the transmission as it is, `(J, K)` [-]: joint torque M tau, motor velocity M^T q_dot."""
+    motor_from_joint: np.ndarray
+    """By which the controller turns joint torques into motor torques, `(K, J)` [-]."""
+    stiffness: np.ndarray
+    """Of the controller [Nm/rad], `(J,)`."""
+    damping: np.ndarray
+    """Of the controller [Nms/rad], `(J,)`."""
+    rotor_inertia: np.ndarray
+    """[kg m^2] on the motor's side of M, `(K,)`; the simulator keeps it where its model has it."""
+    no_load_speed: np.ndarray
+    """[rad/s], `(K,)`; inf where unlimited."""
+    stall_torque: np.ndarray
+    """Where the voltage line meets zero speed [Nm], `(K,)`; inf where unlimited."""
+    peak_torque: np.ndarray
+    """[Nm], `(K,)`; inf where unlimited."""
+    power_constant: np.ndarray
+    """Joule heat over squared torque [W/Nm^2], `(K,)`; 0 where unknown."""
+    rated_torque: np.ndarray
+    """Continuous torque [Nm], `(K,)`; inf where unknown."""
+    voltage: float = float("nan")
+    """Nominal, of the battery [V]; NaN where unknown."""
+    free: np.ndarray | None = None
+    """Rotors that an alteration moves by itself, `(K,)` of bool; set by `Belt`."""
+
+    @property
+    def rigid_inertia(self) -> np.ndarray:
+        """Rotor inertia that belongs into the simulator's model [kg m^2], `(K,)`."""
+        return np.asarray(self.rotor_inertia if self.free is None else np.where(self.free, 0.0, self.rotor_inertia))
+
+    def joint(self, name: str) -> int:
+        """Place of a joint."""
+        return self.joints.index(name)
+
+    def motor(self, name: str) -> int:
+        """Place of a motor."""
+        return self.motors.index(name)
+
+    def changed(self, field: str, place: int, change: Callable[[np.ndarray], Any]) -> Machine:
+        """With one joint's or motor's constant changed.
+
+        Args:
+            field: name of a `(J,)` or `(K,)` field.
+            place: of the joint or motor.
+            change: from the constant, `()` or `(n,)`, to the new one, `()` or `(n,)`.
+        """
+        old = np.asarray(getattr(self, field), float)
+        new = np.asarray(change(old[..., place]), float)
+        values = np.array(np.broadcast_to(old, (*np.broadcast_shapes(old.shape[:-1], new.shape), old.shape[-1])))
+        values[..., place] = new
+        changes: dict[str, Any] = {field: values}
+        return dataclasses.replace(self, **changes)
+
+
+@dataclass(slots=True, eq=False)
+class Limits:
+    """What motors can give at this moment, `(n, K)` or `(K,)`; as in `Machine`."""
+
+    no_load_speed: np.ndarray
+    stall_torque: np.ndarray
+    peak_torque: np.ndarray
+
+    def clip(self, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """Torque inside the four-quadrant envelope at a motor velocity [Nm], `(n, K)`; as `sizing.envelope`."""
+        with np.errstate(invalid="ignore"):
+            droop = np.where(np.isfinite(self.stall_torque), self.stall_torque / self.no_load_speed, 0.0) * speed
+        torque = np.maximum(np.minimum(torque, self.stall_torque - droop), -self.stall_torque - droop)
+        return np.asarray(np.maximum(np.minimum(torque, self.peak_torque), -self.peak_torque))
+
+
+@dataclass(slots=True, eq=False)
+class Tick:
+    """One simulation step as hooks see it; filled from top to bottom as the step goes on."""
+
+    step: float
+    """Of the simulation [s]."""
+    position: np.ndarray
+    velocity: np.ndarray
+    """True, of the joints `(n, J)` [rad, rad/s], at the start of the step."""
+    motor_position: np.ndarray
+    motor_velocity: np.ndarray
+    """Of the rotors `(n, K)` [rad, rad/s]: M^T q, or an alteration's own where it lets them move apart from the joints."""
+    last_torque: np.ndarray
+    """That the motors gave in the step before `(n, K)` [Nm]; zero in the first."""
+    temperature: np.ndarray | None
+    """Of the motors `(n, K)` [degC], where somebody measured it."""
+    battery: np.ndarray | None
+    """Voltage `(n,)` [V], where somebody measured it."""
+    command: np.ndarray | None = None
+    """Motor torque that the controller asked for, before any hook `(n, K)` [Nm]; None where torque is replayed."""
+    torque: np.ndarray | None = None
+    """At the rotors, `(n, K)` [Nm]: after `motor_torque`."""
+    joint_torque: np.ndarray | None = None
+    """M torque, `(n, J)` [Nm]."""
+
+
+class Live:
+    """Hooks of one alteration at work, with its hidden state; each hook by itself changes nothing.
+
+    A hook may write into arrays it is given and return them, except into the tick's. `measured` and `imu` are also called
+    between steps, so they must leave the state alone.
+    """
+
+    kept: ClassVar[tuple[str, ...]] = ()
+    """Names of the attributes that are hidden state: arrays with the simulations in front."""
+
+    def __init__(self, alteration: Any, machine: Machine, count: int, step: float) -> None:
+        self.alteration, self.machine, self.count, self.step = alteration, machine, count, step
+        self.prepare()
+
+    def prepare(self) -> None:
+        """Find places by name, make the hidden state."""
+
+    def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
+        """Some simulations start anew from joint states `(len(ids), J)`; by default their hidden state becomes zero."""
+        for name in self.kept:
+            getattr(self, name)[ids] = 0
+
+    def begin(self, tick: Tick) -> None:
+        """First in each step: take in the new joint state; may write the rotors' state into the tick."""
+
+    def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Joint state that the controller and the policy are told, `(n, J)` each."""
+        return position, velocity
+
+    def imu(self, angular_velocity: np.ndarray, gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Angular velocity and direction of gravity in the base's frame that the policy is told, `(n, 3)` each."""
+        return angular_velocity, gravity
+
+    def target(self, target: np.ndarray, tick: Tick) -> np.ndarray:
+        """Position target that the controller follows `(n, J)` [rad]."""
+        return target
+
+    def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
+        """From the motor torque that the controller asks for to the one that the drive tries to give `(n, K)` [Nm]."""
+        return command
+
+    def limits(self, limits: Limits, tick: Tick) -> Limits:
+        """What the motors can give in this step; return a new one, or the one given."""
+        return limits
+
+    def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
+        """From the torque within the limits, which the drive believes, to the torque at the rotor `(n, K)` [Nm]."""
+        return torque
+
+    def motor_damping(self, tick: Tick) -> np.ndarray | None:
+        """Resistance at the rotors D >= 0 `(n, K)` [Nms/rad]: D times the motor velocity *after* the step is taken off.
+
+        Friction f(v) of any kind is D = f(v) / v at the present velocity, bounded at rest; see `resistance`.
+        """
+        return None
+
+    def joint_damping(self, tick: Tick) -> np.ndarray | None:
+        """Resistance at the joints, as `motor_damping`, `(n, J)` [Nms/rad]."""
+        return None
+
+    def joint_torque(self, tick: Tick) -> np.ndarray | None:
+        """Torque added at the joints, taken as it is `(n, J)` [Nm]; stiff springs belong into `edit`."""
+        return None
+
+    def transmitted(self, torque: np.ndarray, damping: np.ndarray | None, tick: Tick) -> tuple[np.ndarray, np.ndarray | None]:
+        """From torque and resistance at the rotors to those on the motor's side of a rigid M, `(n, K)` each."""
+        return torque, damping
+
+
+@dataclass(frozen=True, eq=False)
+class Alteration:
+    """Something added to a simulation; this one changes nothing. Subclasses are frozen dataclasses of constants."""
+
+    live: ClassVar[type[Live] | None] = None
+    """Its hooks, if it has any."""
+
+    def edit(self, spec: mujoco.MjSpec, simulation: int = 0) -> None:
+        """Change the model before it is compiled.
+
+        Args:
+            spec: of MuJoCo.
+            simulation: whose constants to take, where they are `(n,)`.
+        """
+
+    def machine(self, machine: Machine) -> Machine:
+        """Constants of the robot with it."""
+        return machine
+
+    @property
+    def edits(self) -> bool:
+        """Whether it has something to `edit`."""
+        return type(self).edit is not Alteration.edit
+
+
+Alterations = Sequence[Alteration] | Callable[["Design"], Sequence[Alteration]]
+"""Alterations, or what makes them for a design."""
+
+
+def made(alterations: Alterations | None, design: Design) -> tuple[Alteration, ...]:
+    """Alterations of a design."""
+    return tuple(alterations(design) if callable(alterations) else alterations or ())
+
+
+def damps_motors(alterations: Sequence[Alteration]) -> bool:
+    """Whether any of them resists at the rotors; MuJoCo then needs an integrator that is implicit in tendon damping."""
+    return any(overrides(a.live, "motor_damping") or overrides(a.live, "transmitted") for a in alterations)
+
+
+def resistance(torque: np.ndarray, velocity: np.ndarray, width: float) -> np.ndarray:
+    """The D of friction whose size `torque` [Nm] grows from zero over a `width` [rad/s] of velocity: torque tanh(|v| / w) / |v|."""
+    speed = np.maximum(np.abs(velocity), 1e-9 * width)
+    return np.asarray(torque * np.tanh(speed / width) / speed)
+
+
+def overrides(live: type[Live] | None, hook: str) -> bool:
+    """Whether a class of hooks has one of its own under a name."""
+    return live is not None and getattr(live, hook) is not getattr(Live, hook)

@@ -1,0 +1,89 @@
+"""The machine that a robot is to its drives, both legs in one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.motors import gather, motor_arrays
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SIDES
+from hyperleg_design.simulation.actuation import ActuationModel, actuation_model
+from hyperleg_design.simulation.alteration import Machine
+from hyperleg_design.simulation.layout import layout_of
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+
+def machine_of(design: Design) -> Machine:
+    """Of one robot.
+
+    Returns:
+        Arrays `(J,)`, `(K,)` and `(J, K)` in the order of `layout_of(design)`.
+    """
+    layout = layout_of(design)
+    return machine_from(actuation_model(design), layout.joints, layout.motors, rotor_inertia(design), bus_voltage(design))
+
+
+def machine_from(
+    model: ActuationModel, joints: tuple[str, ...], motors: tuple[str, ...], inertia: np.ndarray, voltage: float = float("nan")
+) -> Machine:
+    """Of the legs of an actuation model.
+
+    Args:
+        model: constants of one leg `(k,)`, or of both legs in n simulations `(n, 2, k)`.
+        joints: names, left leg first.
+        motors: names, left leg first.
+        inertia: of the rotors of one leg [kg m^2], `(..., motors)`.
+        voltage: of the battery [V].
+    """
+
+    def both(values: np.ndarray) -> np.ndarray:
+        values = np.asarray(values, float)
+        if values.ndim == 1:
+            return np.tile(values, len(SIDES))
+        return np.broadcast_to(values, (len(values), len(SIDES), values.shape[-1])).reshape(len(values), -1)
+
+    def blocks(matrix: np.ndarray) -> np.ndarray:
+        matrix = np.asarray(matrix, float)
+        return legs_matrix(matrix) if matrix.ndim > 2 else legs_matrix(matrix[None, None])[0]
+
+    envelope = model.envelope
+    inertia = np.asarray(inertia, float)
+    return Machine(
+        joints=joints,
+        motors=motors,
+        joint_from_motor=blocks(model.joint_from_motor),
+        motor_from_joint=blocks(model.motor_from_joint),
+        stiffness=both(model.stiffness),
+        damping=both(model.damping),
+        rotor_inertia=np.concatenate([inertia, inertia], -1),
+        no_load_speed=both(envelope.no_load_speed),
+        stall_torque=both(envelope.stall_torque),
+        peak_torque=both(envelope.peak_torque),
+        power_constant=both(envelope.power_constant),
+        rated_torque=both(model.rated_torque),
+        voltage=voltage,
+    )
+
+
+def legs_matrix(matrix: np.ndarray) -> np.ndarray:
+    """Matrices of both legs as one, `(n, 2, rows, columns)` -> `(n, 2 rows, 2 columns)`; `(n, 1, ...)` where the legs share one."""
+    rows, columns = matrix.shape[-2:]
+    whole = np.zeros((len(matrix), 2 * rows, 2 * columns))
+    whole[:, :rows, :columns], whole[:, rows:, columns:] = matrix[:, 0], matrix[:, -1]
+    return whole
+
+
+def bus_voltage(design: Design) -> float:
+    """Nominal voltage of the motors times the design's ratio [V]; NaN where motors, or designs of a batch, differ in it."""
+    found = {float(v) for a in ACTUATOR_OF_MOTOR for v in np.ravel(gather(getattr(design.actuators, a).motor, lambda m: m.nominal_voltage))}
+    ratios = {float(v) for v in np.ravel(design.electrical.voltage_ratio)}
+    return found.pop() * ratios.pop() if len(found) == len(ratios) == 1 else float("nan")
+
+
+def rotor_inertia(design: Design) -> np.ndarray:
+    """Of one leg's motors [kg m^2], a robot's `(motors,)` or a batch's `(n, motors)`."""
+    return np.asarray(motor_arrays(design).rotor_inertia[..., : len(transmission.motor_names(design))], float)
