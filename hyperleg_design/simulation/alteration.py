@@ -2,7 +2,7 @@
 
 An `Alteration` changes a simulation in up to three places, each of which it may leave out:
 
-    edit(spec)          the MuJoCo model before it is compiled: masses, springs, contacts
+    edit(model)         the compiled MuJoCo model, before the first step: masses, springs, contacts
     machine(machine)    constants: what the controller believes, what motors and transmission are
     live(...)           hooks in every simulation step, with a hidden state of their own: `Live`
 
@@ -204,11 +204,13 @@ class Alteration:
     live: ClassVar[type[Live] | None] = None
     """Its hooks, if it has any."""
 
-    def edit(self, spec: mujoco.MjSpec, simulation: int = 0) -> None:
-        """Change the model before it is compiled.
+    def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
+        """Change a compiled model in place; whoever calls runs `mj_setConst` afterwards (`edited` does both).
+
+        Joint and tendon damping belong into the hooks instead, which a simulator sums up with its own.
 
         Args:
-            spec: of MuJoCo.
+            model: of MuJoCo.
             simulation: whose constants to take, where they are `(n,)`.
         """
 
@@ -229,6 +231,21 @@ Alterations = Sequence[Alteration] | Callable[["Design"], Sequence[Alteration]]
 def made(alterations: Alterations | None, design: Design) -> tuple[Alteration, ...]:
     """Alterations of a design."""
     return tuple(alterations(design) if callable(alterations) else alterations or ())
+
+
+def edited(model: mujoco.MjModel, alterations: Sequence[Alteration], simulation: int = 0) -> mujoco.MjModel:
+    """A model with the edits of alterations; the same one if there are none, a copy otherwise."""
+    import copy
+
+    import mujoco
+
+    if not any(a.edits for a in alterations):
+        return model
+    model = copy.copy(model)
+    for alteration in alterations:
+        alteration.edit(model, simulation)
+    mujoco.mj_setConst(model, mujoco.MjData(model))
+    return model
 
 
 def damps_motors(alterations: Sequence[Alteration]) -> bool:

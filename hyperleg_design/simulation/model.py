@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
-from hyperleg_design.simulation.alteration import Alteration, damps_motors
+from hyperleg_design.simulation.alteration import Alteration, damps_motors, edited
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.settings import Physics
 
@@ -22,11 +22,11 @@ PAD_SENSOR_SIZE = 6
 """Numbers a pad: force and relative velocity in the contact's frame."""
 
 
-def simulation_spec(design: Design, physics: Physics | None = None, alterations: Sequence[Alteration] = ()) -> mujoco.MjSpec:
+def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.MjSpec:
     """Editable model of one robot as simulated here; motors on tendons, joint friction left to `actuation`.
 
     A state that is not finite stays as it is instead of being reset by MuJoCo, so that it can be reported. Controls are not
-    clamped: `actuation` holds them inside the motors' envelopes. Alterations make their edits last.
+    clamped: `actuation` holds them inside the motors' envelopes.
     """
     import mujoco
 
@@ -57,16 +57,17 @@ def simulation_spec(design: Design, physics: Physics | None = None, alterations:
             name=pad, type=mujoco.mjtSensor.mjSENS_CONTACT, objtype=geom_kind, objname=FLOOR, reftype=geom_kind, refname=pad,
             intprm=[data, strongest, slots],
         )  # fmt: skip
-    if damps_motors(alterations):
-        option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    for alteration in alterations:
-        alteration.edit(spec)
     return spec
 
 
 def simulation_model(design: Design, physics: Physics | None = None, alterations: Sequence[Alteration] = ()) -> mujoco.MjModel:
-    """Compiled `simulation_spec`."""
-    return simulation_spec(design, physics, alterations).compile()
+    """Compiled `simulation_spec`, with the edits of alterations."""
+    import mujoco
+
+    model = edited(simulation_spec(design, physics).compile(), alterations)
+    if damps_motors(alterations):
+        model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    return model
 
 
 def pad_forces(sensors: np.ndarray) -> np.ndarray:
