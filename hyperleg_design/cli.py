@@ -228,21 +228,29 @@ class Train:
 
 @dataclass(frozen=True, kw_only=True)
 class Campaign:
-    """Train whatever a campaign still lacks, side by side, or show where it stands."""
+    """Train whatever a campaign still lacks, side by side, show where it stands, or pack its policies for shipping."""
 
     action: Annotated[str, tyro.conf.Positional]
-    """run or status"""
+    """run, status or pack"""
     file: Annotated[str, tyro.conf.Positional] = "campaign"
     """Shipped name or YAML file."""
     out: Path = Path("results/campaign")
     """Folder of the trainings."""
+    source: Annotated[Path, tyro.conf.arg(name="from")] = Path("results/campaign")
+    """Folder of the trainings to pack."""
+    target: Annotated[Path, tyro.conf.arg(name="to")] = Path("sim/policies")
+    """Folder to pack into: policies, learning curves and what was trained."""
 
     def run(self) -> None:
-        """Run it, or print its state."""
+        """Run it, print its state, or pack it."""
+        from hyperleg_design.evaluation.shipped import pack, pack_text
         from hyperleg_design.learning.campaign import campaign_status, load_campaign, run_campaign, status_table
 
-        if self.action not in ("run", "status"):
-            raise InputError("campaign", "", self.action, "expects run or status")
+        if self.action not in ("run", "status", "pack"):
+            raise InputError("campaign", "", self.action, "expects run, status or pack")
+        if self.action == "pack":
+            print(pack_text(pack(self.source, self.target)))
+            return
         campaign = load_campaign(self.file)
         if self.action == "status":
             print(status_table(campaign_status(campaign, self.out)))

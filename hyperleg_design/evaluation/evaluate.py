@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import Policy, load_policy
@@ -58,16 +58,18 @@ def evaluate_many(
     protocol: Protocol | str | Path | None = None,
     *,
     workers: int = 2,
-    kept: int = 1,
+    kept: int | Sequence[int] = 1,
+    overrides: Sequence[Mapping[str, Any]] | None = None,
     progress: Callable[[Evaluation], None] | None = None,
 ) -> list[Evaluation]:
     """Evaluate ONNX files, each in a process of one thread.
 
     Args:
         policies: shipped names or files.
-        protocol: as in `evaluate`.
+        protocol: as in `evaluate`; where it is None, each policy has what suits its task.
         workers: processes; one works in this process.
-        kept: trials of each policy whose signals are kept.
+        kept: trials of each policy whose signals are kept, one number for all or one for each.
+        overrides: parameters of the robot to change, by path, for each policy; none by default.
         progress: called with each evaluation as it comes, in order.
 
     Returns:
@@ -80,25 +82,36 @@ def evaluate_many(
         raise InputError("evaluate", "workers", workers, "expects at least 1")
     run = load_protocol(protocol) if isinstance(protocol, str | Path) else protocol
     mapping = None if run is None else protocol_mapping(run)
-    for policy in policies:
+    for policy in dict.fromkeys(policies):
         load_policy(policy)  # a broken file is told before hours of work
+    count = len(policies)
+    jobs = list(
+        zip(policies, [mapping] * count, [kept] * count if isinstance(kept, int) else kept, overrides or [{}] * count, strict=True),
+    )
     found = []
-    if workers == 1 or len(policies) < 2:
-        for policy in policies:
-            found.append(_evaluated(policy, mapping, kept))
+    if workers == 1 or count < 2:
+        for job in jobs:
+            found.append(_evaluated(job))
             if progress is not None:
                 progress(found[-1])
         return found
     import multiprocessing
 
-    with ProcessPoolExecutor(min(workers, len(policies)), mp_context=multiprocessing.get_context("spawn")) as pool:
-        for one in pool.map(_evaluated, policies, [mapping] * len(policies), [kept] * len(policies)):
-            found.append(one)
-            if progress is not None:
-                progress(one)
+    with ProcessPoolExecutor(min(workers, count), mp_context=multiprocessing.get_context("spawn")) as pool:
+        try:
+            for one in pool.map(_evaluated, jobs):
+                found.append(one)
+                if progress is not None:
+                    progress(one)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
     return found
 
 
-def _evaluated(policy: str | Path, protocol: dict[str, object] | None, kept: int) -> Evaluation:
+def _evaluated(job: tuple[str | Path, dict[str, object] | None, int, Mapping[str, Any]]) -> Evaluation:
+    name, protocol, kept, overrides = job
     run = None if protocol is None else protocol_from_mapping(protocol, "protocol")
-    return evaluate(policy, run, threads=1).light(kept)
+    policy = load_policy(name)
+    design = policy.design.with_values(dict(overrides), "overrides") if overrides else None
+    return evaluate(policy, run, design=design, threads=1).light(kept)

@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.reading import short_name
 from hyperleg_design.robot.design import design_from_mapping
 from hyperleg_design.simulation.tasks import task_from_mapping
@@ -40,7 +40,6 @@ FORMAT = "hyperleg-policy-1"
 INPUT, OUTPUT = "observation", "action"
 NEEDED = ("columns", "joints", "task", "design")
 """Metadata without which a file is not evaluated."""
-SUFFIX = ".onnx"
 
 Policy = Callable[[np.ndarray], np.ndarray]
 """From observations `(n, size)` to actions `(n, J)`."""
@@ -90,12 +89,12 @@ def load_policy(name: str | Path) -> OnnxPolicy:
     """Read a policy.
 
     Args:
-        name: a shipped name, or an ONNX file.
+        name: an ONNX file, or the name of a shipped training, such as `walk-toe-0`.
 
     Raises:
         InputError: missing, truncated or foreign file, or metadata that does not fit its graph.
     """
-    path = resources.find("sim", name, SUFFIX)
+    path = find_policy(name)
     try:
         content = path.read_bytes()
     except OSError as error:

@@ -17,6 +17,7 @@ from hyperleg_design.evaluation.bearing import headings
 from hyperleg_design.evaluation.course import in_start_frame
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, policy_name
 from hyperleg_design.evaluation.protocol import protocol_mapping
+from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.provenance import git_commit, versions
 from hyperleg_design.writing import output_folder, write_bytes, write_json
 
@@ -64,11 +65,11 @@ class Evaluation:
     cycles: list[CyclePower | None] = field(default_factory=list)
     """Right-leg power over the steady strides of each walk; None where there is none."""
     trials: list[Trial] = field(default_factory=list)
-    """All signals, of the first trials where others were let go by `light`."""
+    """All signals, of some trials where others were let go by `light`."""
 
     def light(self, kept: int = 1) -> Evaluation:
-        """The same without the signals of all trials but the first `kept`; a trial's fill some 4 MB."""
-        return dataclasses.replace(self, trials=self.trials[:kept])
+        """The same without the signals of all trials but `kept`, those that arrived before others; a trial's fill some 4 MB."""
+        return dataclasses.replace(self, trials=sorted(self.trials, key=lambda trial: trial.outcome != ARRIVED)[:kept])
 
     def values(self, measure: str) -> np.ndarray:
         """A measure in all trials, `(n,)`.
@@ -206,7 +207,18 @@ def _path(trial: Trial) -> np.ndarray:
 
 
 def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
-    """A measure of the rows of a trial table, one array a training seed, as `statistics` takes it; checkpoints of a seed are pooled.
+    """A measure of the rows of a trial table, one array a training seed; checkpoints of a seed are pooled.
+
+    Policies that do not say their seed count as a seed each.
+
+    Raises:
+        InputError: no such column.
+    """
+    return [np.concatenate(seed) for seed in by_checkpoint(table, measure).values()]
+
+
+def by_checkpoint(table: pd.DataFrame, measure: str) -> dict[str, list[np.ndarray]]:
+    """A measure of the rows of a trial table by training seed, one array a checkpoint, as `statistics` takes them.
 
     Policies that do not say their seed count as a seed each.
 
@@ -216,4 +228,4 @@ def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
     if measure not in table:
         raise InputError("evaluation", "measure", measure, f"there are {', '.join(map(str, table.columns))}")
     key = table["seed"].astype(str).where(table["seed"] >= 0, table["policy"])
-    return [part[measure].to_numpy(float) for _, part in table.groupby(key, sort=True)]
+    return {str(seed): [own[measure].to_numpy(float) for _, own in part.groupby("policy", sort=True)] for seed, part in table.groupby(key, sort=True)}

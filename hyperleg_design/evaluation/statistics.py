@@ -1,16 +1,17 @@
 """What measured numbers say: intervals over seeds and trials, differences, effect sizes and verdicts.
 
 A training seed is one draw of a policy; the trials of its policies are draws of starting states. A design is judged by
-several seeds, so a group of values is a sequence with one array a seed, and a seed's trials (of all its late checkpoints)
-are that array. Values that could not be measured (no arrival, so no time) are NaN: they are left out of means, counted in
-`missing`, and never silently dropped.
+several seeds, so a group of values is a sequence with one entry a seed: an array of its trials, or, where several late
+checkpoints of a training were tried, a list of such arrays, one a checkpoint. Values that could not be measured (no
+arrival, so no time) are NaN: they are left out of means, counted in `missing`, and never silently dropped.
 
-Intervals rest on a hierarchical bootstrap: seeds are drawn with replacement, then trials within each drawn seed. With few
-seeds the bootstrap's spread is too small by sqrt((k - 1) / k) and percentiles cover too little, so its standard error is
-multiplied by sqrt(k / (k - 1)) and by Student's t with k - 1 degrees of freedom (Hesterberg, 2015, on both corrections).
+Intervals rest on a hierarchical bootstrap: seeds are drawn with replacement, then checkpoints of each drawn seed, then trials
+of each drawn checkpoint; a seed's mean is that of its checkpoints' means. With few seeds the bootstrap's spread is too small
+by sqrt((k - 1) / k) and percentiles cover too little, so its standard error is multiplied by sqrt(k / (k - 1)) and by
+Student's t with k - 1 degrees of freedom (Hesterberg, 2015, on both corrections).
 Drawing trials anew counts their spread twice, in the seeds' means and within them, so intervals are wider than they need
 be where trials of one seed differ more than seeds do, and never narrower.
-One seed alone gives an interval over its trials that cannot speak about seeds, and says so.
+One seed alone gives an interval over its checkpoints, or the trials of its one, that cannot speak about seeds, and says so.
 """
 
 from __future__ import annotations
@@ -40,7 +41,9 @@ _DRAWS = 2_000_000
 """Numbers drawn at once, so that memory stays small."""
 
 Groups = Sequence[Any]
-"""One array of values a seed."""
+"""One array of values a seed, or one list of arrays, an array a checkpoint."""
+_Seed = list[np.ndarray]
+"""Measured values of a seed, an array a checkpoint."""
 
 
 @dataclass(frozen=True)
@@ -130,10 +133,10 @@ def estimate(groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES
     """
     _check(level, resamples)
     kept, missing = _measured(groups)
-    trials = sum(len(g) for g in kept)
+    trials = sum(len(_flat(g)) for g in kept)
     if not kept:
         return Estimate(np.nan, np.nan, np.nan, np.nan, 0, 0, missing, level)
-    mean = float(np.mean([g.mean() for g in kept]))
+    mean = float(np.mean([_mean(g) for g in kept]))
     error, freedom = _standard_error(kept, _means(kept, resamples, np.random.default_rng(seed)))
     low, high = _interval(mean, error, freedom, level)
     return Estimate(mean, low, high, error, len(kept), trials, missing, level)
@@ -153,10 +156,10 @@ def share(groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES, s
     """
     from scipy.stats import beta
 
-    found = estimate([np.asarray(g, float) for g in groups], level=level, resamples=resamples, seed=seed)
+    found = estimate(groups, level=level, resamples=resamples, seed=seed)
     if not found.trials:
         return found
-    count, happened = found.trials, round(sum(float(np.nansum(np.asarray(g, float))) for g in groups))
+    count, happened = found.trials, round(sum(float(_flat(g).sum()) for g in _measured(groups)[0]))
     tail = (1 - level) / 2
     low = 0.0 if happened == 0 else float(beta.ppf(tail, happened, count - happened + 1))
     high = 1.0 if happened == count else float(beta.ppf(1 - tail, happened + 1, count - happened))
@@ -186,8 +189,8 @@ def difference(first: Groups, second: Groups, *, paired: bool = False, level: fl
     if not a or not b:
         nan = np.nan
         return Difference(nan, nan, nan, nan, nan, nan, nan, nan, "", paired, NOTHING_MEASURED, level)
-    base = float(np.mean([g.mean() for g in b]))
-    mean = float(np.mean([g.mean() for g in a])) - base
+    base = float(np.mean([_mean(g) for g in b]))
+    mean = float(np.mean([_mean(g) for g in a])) - base
     rng = np.random.default_rng(seed)
     if paired:
         error, freedom = _paired_error(a, b, resamples, rng)
@@ -197,7 +200,7 @@ def difference(first: Groups, second: Groups, *, paired: bool = False, level: fl
         freedom = _welch(error_a, freedom_a, error_b, freedom_b)
     low, high = _interval(mean, error, freedom, level)
     by_seed = len(a) > 1 and len(b) > 1
-    x, y = (np.array([g.mean() for g in s]) if by_seed else np.concatenate(s) for s in (a, b))
+    x, y = (np.array([_mean(g) for g in s]) if by_seed else np.concatenate([_flat(g) for g in s]) for s in (a, b))
     scale = abs(base) if base else np.nan
     return Difference(
         mean, low, high, mean / scale, low / scale, high / scale, hedges_g(x, y), cliffs_delta(x, y),
@@ -235,54 +238,81 @@ def _check(level: float, resamples: int) -> None:
         raise InputError("statistics", "resamples", resamples, "expects at least 100")
 
 
-def _measured(groups: Groups) -> tuple[list[np.ndarray], int]:
-    """Values of each seed that has any, and how many values are missing."""
-    arrays = [np.atleast_1d(np.asarray(g, float)) for g in groups]
-    if not arrays or any(a.ndim != 1 for a in arrays):
-        raise InputError("statistics", "groups", [list(a.shape) for a in arrays], "expects one array of values a seed")
-    if any(np.isinf(a).any() for a in arrays):
+def _checkpoints(group: Any) -> _Seed:
+    """A seed's values, an array a checkpoint."""
+    nested = isinstance(group, list | tuple) and len(group) > 0 and all(np.ndim(part) == 1 for part in group)
+    return [np.asarray(part, float) for part in group] if nested else [np.atleast_1d(np.asarray(group, float))]
+
+
+def _flat(seed: _Seed) -> np.ndarray:
+    """All values of a seed."""
+    return np.concatenate(seed)
+
+
+def _mean(seed: _Seed) -> float:
+    """Mean of the checkpoints' means."""
+    return float(np.mean([values.mean() for values in seed]))
+
+
+def _measured(groups: Groups) -> tuple[list[_Seed], int]:
+    """Values of each seed that has any, without empty checkpoints, and how many values are missing."""
+    seeds = [_checkpoints(g) for g in groups]
+    if not seeds or any(a.ndim != 1 for seed in seeds for a in seed):
+        raise InputError("statistics", "groups", [[list(a.shape) for a in s] for s in seeds], "expects one array of values a seed, or a list of them")
+    if any(np.isinf(a).any() for seed in seeds for a in seed):
         raise InputError("statistics", "groups", "infinite", "expects finite values, or NaN where nothing could be measured")
-    kept = [a[~np.isnan(a)] for a in arrays]
-    return [k for k in kept if len(k)], sum(len(a) for a in arrays) - sum(len(k) for k in kept)
+    kept = [[a[~np.isnan(a)] for a in seed] for seed in seeds]
+    missing = sum(len(a) for seed in seeds for a in seed) - sum(len(a) for seed in kept for a in seed)
+    return [found for found in ([a for a in seed if len(a)] for seed in kept) if found], missing
 
 
 def _pairs(first: Groups, second: Groups) -> tuple[list[Any], list[Any]]:
     if len(first) != len(second):
         raise InputError("statistics", "paired", [len(first), len(second)], "needs as many seeds on both sides")
-    both = [(x, y) for x, y in zip(first, second, strict=True) if np.isfinite(np.asarray(x, float)).any() and np.isfinite(np.asarray(y, float)).any()]
+    both = [(x, y) for x, y in zip(first, second, strict=True) if all(np.isfinite(_flat(_checkpoints(g))).any() for g in (x, y))]
     return [x for x, _ in both] or [[np.nan]], [y for _, y in both] or [[np.nan]]
 
 
-def _means(groups: list[np.ndarray], resamples: int, rng: np.random.Generator) -> np.ndarray:
-    """Means of hierarchical resamples, `(resamples,)`: seeds with replacement, then trials of each."""
-    return _drawn_means(groups, rng.integers(len(groups), size=(resamples, len(groups))), rng)
+def _means(groups: Groups, resamples: int, rng: np.random.Generator) -> np.ndarray:
+    """Means of hierarchical resamples, `(resamples,)`: seeds with replacement, then checkpoints of each, then trials of each."""
+    seeds = [_checkpoints(g) for g in groups]
+    return _drawn_means(seeds, rng.integers(len(seeds), size=(resamples, len(seeds))), rng)
 
 
-def _drawn_means(groups: list[np.ndarray], chosen: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Means over chosen seeds `(resamples, places)` of their trials drawn with replacement, `(resamples,)`."""
-    lengths = np.array([len(g) for g in groups])
-    values = np.zeros((len(groups), lengths.max()))
-    for row, group in zip(values, groups, strict=True):
-        row[: len(group)] = group
+def _drawn_means(groups: list[_Seed], chosen: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Means over chosen seeds `(resamples, places)` of their checkpoints and trials drawn with replacement, `(resamples,)`."""
+    counts = np.array([len(seed) for seed in groups])
+    lengths = np.zeros((len(groups), counts.max()), int)
+    for row, seed in zip(lengths, groups, strict=True):
+        row[: len(seed)] = [len(values) for values in seed]
+    table = np.zeros((*lengths.shape, lengths.max()))
+    for block, seed in zip(table, groups, strict=True):
+        for row, values in zip(block, seed, strict=False):
+            row[: len(values)] = values
     found = np.empty(len(chosen))
-    at_once = max(1, _DRAWS // (chosen.shape[1] * values.shape[1]))
+    picked = (rng.random((*chosen.shape, table.shape[1])) * counts[chosen][..., None]).astype(int)
+    at_once = max(1, _DRAWS // (chosen.shape[1] * table.shape[1] * table.shape[2]))
     for begin in range(0, len(chosen), at_once):
         seeds = chosen[begin : begin + at_once]
-        length = lengths[seeds][..., None]
-        trials = (rng.random((*seeds.shape, values.shape[1])) * length).astype(int)
-        drawn = values[seeds[..., None], trials]
-        drawn[np.arange(values.shape[1]) >= length] = 0.0  # of shorter groups, drawn for nothing
-        found[begin : begin + at_once] = (drawn.sum(-1) / length[..., 0]).mean(-1)
+        count = counts[seeds][..., None]
+        checkpoint = picked[begin : begin + at_once]
+        length = lengths[seeds[..., None], checkpoint][..., None]
+        trial = (rng.random((*checkpoint.shape, table.shape[2])) * length).astype(int)
+        drawn = table[seeds[..., None, None], checkpoint[..., None], trial]
+        drawn[np.arange(table.shape[2]) >= length] = 0.0  # of shorter checkpoints, drawn for nothing
+        means = drawn.sum(-1) / length[..., 0]
+        means[np.arange(table.shape[1]) >= count] = 0.0  # likewise of seeds with fewer checkpoints
+        found[begin : begin + at_once] = (means.sum(-1) / count[..., 0]).mean(-1)
     return found
 
 
-def _standard_error(groups: list[np.ndarray], means: np.ndarray) -> tuple[float, int]:
-    """Corrected for few seeds (few trials where there is one seed), and degrees of freedom."""
-    units = len(groups) if len(groups) > 1 else len(groups[0])
+def _standard_error(groups: list[_Seed], means: np.ndarray) -> tuple[float, int]:
+    """Corrected for few seeds (few checkpoints or trials where there is one seed), and degrees of freedom."""
+    units = next(n for n in (len(groups), len(groups[0]), len(groups[0][0])) if n > 1 or n == len(groups[0][0]))
     return (float(means.std() * np.sqrt(units / (units - 1))), units - 1) if units > 1 else (np.nan, 0)
 
 
-def _paired_error(a: list[np.ndarray], b: list[np.ndarray], resamples: int, rng: np.random.Generator) -> tuple[float, int]:
+def _paired_error(a: list[_Seed], b: list[_Seed], resamples: int, rng: np.random.Generator) -> tuple[float, int]:
     """Of the mean of the seeds' differences: seeds are drawn together, trials of each side apart."""
     seeds = len(a)
     if seeds == 1:

@@ -6,12 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.paper import Printed
-from hyperleg_design.evaluation.result import by_seed
+from hyperleg_design.evaluation.result import by_checkpoint
 from hyperleg_design.evaluation.statistics import AGREES, DIFFERS, TOO_FEW_SEEDS, Difference, Estimate
 
 if TYPE_CHECKING:
@@ -61,10 +59,10 @@ def paper_rows(table: pd.DataFrame, printed: Sequence[Printed], variants: tuple[
         if part.empty:
             raise InputError("comparison", "variant", variant, f"has no trials; there are {', '.join(sorted(set(table['variant'])))}")
         parts[variant] = part
-    return [_row(item, {v: by_seed(part, item.measure) for v, part in parts.items()}, variants, seed) for item in printed]
+    return [_row(item, {v: list(by_checkpoint(part, item.measure).values()) for v, part in parts.items()}, variants, seed) for item in printed]
 
 
-def _row(item: Printed, groups: Mapping[str, list[np.ndarray]], variants: tuple[str, str], seed: int) -> PaperRow:
+def _row(item: Printed, groups: Mapping[str, statistics.Groups], variants: tuple[str, str], seed: int) -> PaperRow:
     toe, ablation = (statistics.estimate(groups[v], seed=seed) for v in variants)
     difference = statistics.difference(groups[variants[0]], groups[variants[1]], seed=seed)
     verdicts = [_plain(toe.against(item.toe)), _plain(ablation.against(item.ablation)), change_verdict(difference, item.change)]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.evaluation.measures import OUTCOMES, T_TEST, WALK
-from hyperleg_design.evaluation.result import by_seed, trial_table
+from hyperleg_design.evaluation.result import by_checkpoint, trial_table
 from hyperleg_design.evaluation.statistics import Estimate, estimate, share
 from hyperleg_design.report.text import table
 
@@ -31,7 +31,7 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
         for measure in evaluations[0].measures[0]:
             if measure not in part:
                 continue
-            found = (share if measure in OUTCOMES else estimate)(by_seed(part, measure))
+            found = (share if measure in OUTCOMES else estimate)(list(by_checkpoint(part, measure).values()))
             rows.append({"variant": str(variant), "protocol": str(protocol), "measure": measure, "unit": UNITS.get(measure, ""), **_plain(found)})
     return rows
 

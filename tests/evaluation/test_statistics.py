@@ -66,6 +66,28 @@ def test_pairing_sees_what_a_common_spread_hides():
     assert difference(a, b, paired=True).verdict == statistics.DIFFERS
 
 
+def test_checkpoints_are_a_level_of_their_own():
+    """A seed's mean is that of its checkpoints' means, and their spread is drawn, not only that of pooled trials."""
+    nested = [[np.full(10, 1.0), np.full(2, 4.0)], [np.full(3, 2.0)]]
+    found = estimate(nested)
+    assert found.mean == pytest.approx((2.5 + 2.0) / 2)
+    assert (found.seeds, found.trials) == (2, 15)
+    rng = np.random.default_rng(11)
+    means = statistics._drawn_means([nested[0]], np.zeros((40_000, 1), int), rng)
+    assert sorted(set(means.tolist())) == [1.0, 2.5, 4.0]
+    assert means.var() == pytest.approx(1.5**2 / 2, rel=0.03)  # two draws of two values 3 apart
+    one = estimate([[rng.normal(0, 0.01, 10), rng.normal(1, 0.01, 10), rng.normal(2, 0.01, 10)]])
+    pooled = estimate([np.concatenate([rng.normal(k, 0.01, 10) for k in range(3)])])
+    assert one.high - one.low > 3 * (pooled.high - pooled.low)
+    assert "says nothing about seeds" in one.text()
+
+
+def test_a_share_counts_trials_of_all_checkpoints():
+    found = share([[np.zeros(10), np.ones(10)], [np.zeros(10)]])
+    assert found.mean == pytest.approx(0.25)
+    assert found.trials == 30
+
+
 def test_one_seed_cannot_speak_about_seeds():
     found = estimate([[1.0, 1.1, 0.9, 1.05]])
     assert not found.speaks_of_seeds
@@ -118,7 +140,7 @@ def test_groups_of_unequal_length_are_drawn_from_their_own_values():
     groups = [np.array([1.0, 2.0]), np.array([5.0] * 7), np.array([9.0])]
     rng = np.random.default_rng(8)
     for which, expected in ((0, 1.5), (1, 5.0), (2, 9.0)):
-        drawn_means = statistics._drawn_means(groups, np.full((20_000, 3), which), rng)
+        drawn_means = statistics._drawn_means([[g] for g in groups], np.full((20_000, 3), which), rng)
         assert drawn_means.mean() == pytest.approx(expected, abs=0.01)
         assert drawn_means.var() == pytest.approx(0.25 / 2 / 3 if which == 0 else 0, rel=0.05, abs=1e-12)
 
@@ -154,7 +176,7 @@ def test_effect_sizes_of_a_textbook_example():
     ("call", "field"),
     [
         (lambda: estimate([]), "groups"),
-        (lambda: estimate([[[1.0]]]), "groups"),
+        (lambda: estimate([[[[1.0]]]]), "groups"),
         (lambda: estimate([[np.inf]]), "groups"),
         (lambda: estimate([[1.0]], level=95), "level"),
         (lambda: estimate([[1.0]], resamples=3), "resamples"),

@@ -1,0 +1,193 @@
+"""Trained policies as they are shipped: one folder a training, named `group-design-seed`, such as `walk-toe-0`.
+
+| file | holds |
+|---|---|
+| `policy.onnx` | the last policy, weights in single precision, stored once (0.8 MB with three layers of 512, 256, 128) |
+| `late_*.onnx` | late policies before it, earliest first |
+| `run.json` | what was trained: task, design, preset (all resolved), seed, command, versions, commit |
+| `progress.jsonl` | the learning curve, at most `CURVE_ROWS` rows |
+
+A folder of finished trainings (`results/campaign`) has the same form and more files; `pack` keeps the four above.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import shutil
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.writing import output_folder, write_text
+
+POLICIES = "policies"
+"""Folder of the shipped policies in `sim/`."""
+POLICY, LATE, RUN, PROGRESS = "policy.onnx", "late_*.onnx", "run.json", "progress.jsonl"
+CURVE_ROWS = 200
+"""Rows of a packed learning curve."""
+CURVE = ("steps", "stage", "assist", "reward", "speed", "falls", "cost_of_transport")
+"""Numbers of a row of a learning curve; `falls` a minute and robot, `assist` relative."""
+_NAME = re.compile(r"(?P<group>[^.].*)-(?P<design>[^-]+)-(?P<seed>\d+)")
+
+
+@dataclass(frozen=True)
+class Shipped:
+    """One policy of one training."""
+
+    group: str
+    """Of the campaign: `walk`, `t_test`, `walk_paper`."""
+    design: str
+    """Ablation, by the name of its file."""
+    seed: int
+    """Of the training."""
+    late: int
+    """0 for the last policy of the training, 1 for the late one before it, and so on."""
+    path: Path
+    """The ONNX file."""
+
+    @property
+    def training(self) -> str:
+        """Name of the training's folder."""
+        return f"{self.group}-{self.design}-{self.seed}"
+
+    @property
+    def name(self) -> str:
+        """Folder and file without ending, as `OnnxPolicy.name` has it."""
+        return f"{self.path.parent.name}/{self.path.stem}"
+
+
+@dataclass(frozen=True)
+class Packed:
+    """What became of one training when a campaign was packed."""
+
+    training: str
+    policies: int
+    """ONNX files; 0 where the training is not finished and was left out."""
+    size: int
+    """Of its folder [byte]."""
+
+
+def shipped_folder() -> Path:
+    """Where the shipped policies are; may not exist."""
+    return resources.content_folder("sim") / POLICIES
+
+
+def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> list[Shipped]:
+    """Policies of all finished trainings of a folder, by group, design and seed, the last policy of each training first.
+
+    Args:
+        folder: of trainings; the shipped ones by default.
+        late: also the late policies.
+
+    Raises:
+        InputError: a folder that was asked for and is not there.
+    """
+    place = Path(folder) if folder is not None else shipped_folder()
+    if not place.is_dir():
+        if folder is None:
+            return []
+        raise InputError("policies", "", str(folder), "no such folder; expects one with a folder a training, such as walk-toe-0")
+    found = []
+    for training in place.iterdir():
+        name = _NAME.fullmatch(training.name)
+        if name is None or not (training / POLICY).is_file():
+            continue
+        files = [training / POLICY, *(sorted(training.glob(LATE), reverse=True) if late else [])]
+        found += [Shipped(name["group"], name["design"], int(name["seed"]), i, file) for i, file in enumerate(files)]
+    return sorted(found, key=lambda one: (one.group, one.design, one.seed, one.late))
+
+
+def find_policy(name: str | Path) -> Path:
+    """File of a policy: an ONNX file, or the name of a shipped training, whose last policy it is.
+
+    Raises:
+        InputError: neither; lists what is shipped.
+    """
+    path = Path(name)
+    if path.is_file():
+        return path
+    named = shipped_folder() / path / POLICY
+    if len(path.parts) == 1 and named.is_file():
+        return named
+    known = dict.fromkeys(one.training for one in shipped_policies(late=False))
+    raise InputError("policy", "", str(name), f"no such file; shipped: {', '.join(known) or 'none'}")
+
+
+def learning_curve(training: str | Path, rows: int = CURVE_ROWS) -> list[dict[str, float]]:
+    """Learning curve of a training's folder: rows of `CURVE`, means over stretches of equal length where there are more.
+
+    Numbers that were not measured (no step, so no speed) are left out of means; a row may lack some. A line cut off by a
+    kill is passed over. Empty where there is none.
+    """
+    lines = []
+    path = Path(training) / PROGRESS
+    if path.is_file():
+        for line in path.read_text(encoding="utf-8").splitlines():
+            try:
+                lines.append(json.loads(line))
+            except ValueError:
+                continue
+    length = max(1, math.ceil(len(lines) / rows))
+    return [_mean(lines[i : i + length]) for i in range(0, len(lines), length)]
+
+
+def pack(source: str | Path, target: str | Path) -> list[Packed]:
+    """Copy all finished trainings of a folder in the form in which they are shipped; each is written whole or not at all.
+
+    Trainings of the target that the source does not have stay.
+
+    Args:
+        source: folder of trainings, such as `results/campaign`.
+        target: such as `sim/policies`.
+
+    Returns:
+        One a training of the source, by name.
+
+    Raises:
+        InputError: no such folder, or no training in it.
+        OutputError: a training's folder in the target is somebody else's, or cannot be written.
+    """
+    place = Path(source)
+    if not place.is_dir():
+        raise InputError("pack", "from", str(source), "no such folder")
+    trainings = sorted(p for p in place.iterdir() if p.is_dir() and _NAME.fullmatch(p.name))
+    if not trainings:
+        raise InputError("pack", "from", str(source), "holds no training; expects folders such as walk-toe-0")
+    found = []
+    for training in trainings:
+        if not (training / POLICY).is_file():
+            found.append(Packed(training.name, 0, 0))
+            continue
+        files = [training / POLICY, *sorted(training.glob(LATE)), training / RUN]
+        with output_folder(Path(target) / training.name) as folder:
+            for file in files:
+                if file.is_file():
+                    shutil.copyfile(file, folder / file.name)
+            write_text(folder / PROGRESS, "".join(json.dumps(row) + "\n" for row in learning_curve(training)))
+        made = Path(target) / training.name
+        found.append(Packed(training.name, len(files) - 1, sum(f.stat().st_size for f in made.iterdir())))
+    return found
+
+
+def pack_text(found: Iterable[Packed]) -> str:
+    """What was packed, for a terminal: a line a training, and a sum."""
+    found = list(found)
+    lines = [f"{p.training:<34} {p.policies} policies, {p.size / 1e6:.1f} MB" if p.policies else f"{p.training:<34} not finished" for p in found]
+    done = [p for p in found if p.policies]
+    policies, size = sum(p.policies for p in done), sum(p.size for p in done)
+    return "\n".join([*lines, f"{len(done)} of {len(found)} trainings, {policies} policies, {size / 1e6:.1f} MB"])
+
+
+def _mean(rows: list[dict[str, Any]]) -> dict[str, float]:
+    """Mean of rows; steps and stage are those of the last."""
+    found: dict[str, float] = {}
+    for key in CURVE:
+        values = [row[key] for row in rows if isinstance(row.get(key), int | float)]
+        if values:
+            found[key] = values[-1] if key in ("steps", "stage") else float(f"{sum(values) / len(values):.5g}")
+    return found

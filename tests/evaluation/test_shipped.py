@@ -1,0 +1,98 @@
+"""Shipped policies: names say group, design and seed, packing keeps what matters and nothing else."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.evaluation import shipped
+from hyperleg_design.evaluation.policy import load_policy
+
+
+@pytest.fixture
+def campaign(tmp_path, make_onnx):
+    """Two finished trainings, one of which has late policies, and one that is at work."""
+    content = make_onnx().read_bytes()
+    place = tmp_path / "campaign"
+    for name, late in (("walk-toe-0", ("late_000800.onnx", "late_000900.onnx")), ("t_test-toe_removed_matched-11", ())):
+        folder = place / name
+        folder.mkdir(parents=True)
+        for file in ("policy.onnx", *late):
+            (folder / file).write_bytes(content)
+        (folder / "run.json").write_text(json.dumps({"seed": 0}))
+        (folder / "checkpoint.pt").write_bytes(b"x" * 10_000)
+        rows = [{"iteration": i, "steps": 10 * i, "reward": float(i), "speed": None, "losses": {"value": 1.0}} for i in range(1, 1001)]
+        (folder / "progress.jsonl").write_text("".join(json.dumps(r) + "\n" for r in rows) + '{"iteration": 10')
+    (place / "walk-toe-1").mkdir()
+    (place / "walk-toe-1" / "checkpoint.pt").write_bytes(b"x")
+    (place / "notes").mkdir()
+    return place
+
+
+def test_policies_are_listed_by_group_design_seed_and_lateness(campaign):
+    found = shipped.shipped_policies(campaign)
+    assert [(p.group, p.design, p.seed, p.late, p.path.name) for p in found] == [
+        ("t_test", "toe_removed_matched", 11, 0, "policy.onnx"),
+        ("walk", "toe", 0, 0, "policy.onnx"),
+        ("walk", "toe", 0, 1, "late_000900.onnx"),
+        ("walk", "toe", 0, 2, "late_000800.onnx"),
+    ]
+    assert found[0].training == "t_test-toe_removed_matched-11"
+    assert found[1].name == load_policy(found[1].path).name
+    assert len(shipped.shipped_policies(campaign, late=False)) == 2
+
+
+def test_a_packed_campaign_has_the_same_policies_and_little_else(campaign, tmp_path):
+    found = shipped.pack(campaign, tmp_path / "packed")
+    assert [(p.training, p.policies) for p in found] == [("t_test-toe_removed_matched-11", 1), ("walk-toe-0", 3), ("walk-toe-1", 0)]
+    folder = tmp_path / "packed" / "walk-toe-0"
+    names = {p.name for p in folder.iterdir()}
+    assert names == {".hyperleg", "policy.onnx", "late_000800.onnx", "late_000900.onnx", "run.json", "progress.jsonl"}
+    assert (folder / "policy.onnx").read_bytes() == (campaign / "walk-toe-0" / "policy.onnx").read_bytes()
+    assert found[1].size == sum(p.stat().st_size for p in folder.iterdir())
+    before, after = (shipped.shipped_policies(p) for p in (campaign, tmp_path / "packed"))
+    assert [(p.training, p.late) for p in before] == [(p.training, p.late) for p in after]
+    assert "walk-toe-1" in shipped.pack_text(found)
+    assert "2 of 3 trainings, 4 policies" in shipped.pack_text(found)
+    assert shipped.pack(campaign, tmp_path / "packed") == found  # again, over itself
+
+
+def test_a_learning_curve_is_thinned_by_means(campaign):
+    rows = shipped.learning_curve(campaign / "walk-toe-0")
+    assert len(rows) == shipped.CURVE_ROWS
+    assert rows[-1]["steps"] == 10_000
+    assert rows[0]["reward"] == pytest.approx(3.0)  # of 1 .. 5
+    assert np.mean([r["reward"] for r in rows]) == pytest.approx(500.5)
+    assert set(rows[0]) == {"steps", "reward"}
+    assert shipped.learning_curve(campaign / "walk-toe-1") == []
+
+
+def test_a_training_of_a_name_is_found(campaign, tmp_path, monkeypatch):
+    monkeypatch.setattr(shipped, "shipped_folder", lambda: campaign)
+    assert shipped.find_policy("walk-toe-0") == campaign / "walk-toe-0" / "policy.onnx"
+    assert load_policy("walk-toe-0").seed == 3
+    with pytest.raises(InputError, match=r"walk-toe-7.*shipped: t_test-toe_removed_matched-11, walk-toe-0"):
+        shipped.find_policy("walk-toe-7")
+
+
+def test_no_shipped_policy_is_no_error_but_a_wrong_folder_is(tmp_path, monkeypatch):
+    monkeypatch.setattr(shipped, "shipped_folder", lambda: tmp_path / "nothing")
+    assert shipped.shipped_policies() == []
+    with pytest.raises(InputError, match="no such folder"):
+        shipped.shipped_policies(tmp_path / "nothing")
+
+
+def test_nothing_foreign_is_packed_or_overwritten(campaign, tmp_path):
+    with pytest.raises(InputError, match="no such folder"):
+        shipped.pack(tmp_path / "nothing", tmp_path / "packed")
+    with pytest.raises(InputError, match="holds no training"):
+        shipped.pack(campaign / "walk-toe-0", tmp_path / "packed")
+    mine = tmp_path / "packed" / "walk-toe-0"
+    mine.mkdir(parents=True)
+    (mine / "thesis.txt").write_text("mine")
+    with pytest.raises(OutputError):
+        shipped.pack(campaign, tmp_path / "packed")
+    assert [p.name for p in mine.iterdir()] == ["thesis.txt"]
