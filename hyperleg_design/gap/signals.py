@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BaseMotion:
     """How the base moves; of a fixed base, there is none."""
 
@@ -30,13 +30,14 @@ class BaseMotion:
     """In the base's frame `(t, 3)` [rad/s^2]."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Signals:
     """One log on an even time base, `t` ticks, `n` joints, `m` motors, `f` feet; motion smoothed without delay.
 
     Balances, each what the log shows minus what the nominal model explains:
         motion: believed joint torque minus the torque that the logged motion needs `(t, n)` [Nm];
-        drive: measured motor torque minus the torque that the controller asks for `(t, m)` [Nm], where both are known;
+        drive: measured motor torque minus the torque that the controller asks for, within nominal limits `(t, m)` [Nm], where
+            both are known;
         base: of a floating base whose contact forces are logged, the six rows of the base `(t, 6)` [N, Nm];
         ground: logged contact force minus the nominal ground's at the logged motion `(t, 3 f)` [N].
     """
@@ -72,3 +73,13 @@ class Signals:
     """Ticks fit for use `(t,)`: no gap in the log near, not at its ends."""
     residual: dict[str, np.ndarray]
     """By balance that this log allows."""
+    pad_force: np.ndarray | None = None
+    """Force of the ground on each of `subject.pads`, world frame `(t, P, 3)` [N], where the place of the force is known."""
+    touching: np.ndarray | None = None
+    """Of a floating base: whether each foot touches the ground, or may `(t, f)`."""
+    bandwidth: np.ndarray | None = None
+    """Frequency above which smoothing takes motion for noise `(n,)` [Hz]; NaN for joints that this log lacks."""
+    noise: np.ndarray | None = None
+    """Standard deviation of the noise of a position sample, as the log itself tells `(n,)` [rad]."""
+    notes: tuple[str, ...] = ()
+    """What this log lacked and what was assumed in its place."""

@@ -170,7 +170,9 @@ def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, o
     path = _find(robot, logs)
     known = set().union(*(log.joints for log in logs)) if logs else None
     if path.suffix.lower() in (".yaml", ".yml"):
-        bare = _of_design(path, base or "floating", chosen, known)
+        from hyperleg_design.robot.design import load_design
+
+        bare = _of_design(load_design(path, overrides=chosen), path, base or "floating", known)
     else:
         if chosen:
             raise InputError(robot, "overrides", chosen[0], "belong to designs of ours; edit the file instead")
@@ -191,7 +193,7 @@ def _agreed(values: Sequence[str], field: str, logs: Sequence[Log]) -> str:
 def _find(robot: str, logs: Sequence[Log]) -> Path:
     """File of a robot: as it stands, beside the logs that name it, or a shipped design."""
     path = Path(robot)
-    folders = [Path(str(log.metadata.extra["folder"])) for log in logs if "folder" in log.metadata.extra]
+    folders = [Path(log.folder) for log in logs if log.folder]
     for place in (path, *(folder / path for folder in folders)):
         if place.suffix.lower() in (".xml", ".mjcf", ".urdf", ".yaml", ".yml") and place.is_file():
             return place
@@ -200,9 +202,14 @@ def _find(robot: str, logs: Sequence[Log]) -> Path:
     return resources.find("descriptions", robot)
 
 
-def _of_design(path: Path, base: str, overrides: tuple[str, ...], known: set[str] | None) -> Subject:
+def subject_of(design: Design) -> Subject:
+    """Nominal model of one of our robots as it stands in memory, its base floating."""
+    bare = _of_design(design, Path(f"{design.name}.yaml"), "floating", None)
+    return dataclasses.replace(bare, bare=bare)
+
+
+def _of_design(design: Design, path: Path, base: str, known: set[str] | None) -> Subject:
     from hyperleg_design.robot import transmission
-    from hyperleg_design.robot.design import load_design
     from hyperleg_design.robot.friction import FRICTION_SPEED as DESIGN_FRICTION_SPEED
     from hyperleg_design.robot.motors import find_motor, motor_arrays
     from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SIDES
@@ -210,7 +217,6 @@ def _of_design(path: Path, base: str, overrides: tuple[str, ...], known: set[str
     from hyperleg_design.simulation.model import simulation_spec
     from hyperleg_design.sizing.envelope import motor_envelope
 
-    design = load_design(path, overrides=overrides)
     moving = [j for j in build_tree(design).moving if known is None or j.name in known]
     every = [j.name for j in build_tree(design).moving]
     if not moving:

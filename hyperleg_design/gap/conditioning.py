@@ -1,0 +1,226 @@
+"""From a log to `Signals`: an even time base, motion smoothed without delay, torques believed, and the residuals of the balances.
+
+Motion comes from `smoothing` (a fixed-interval smoother whose noise the log itself tells). Everything else is interpolated onto
+the same ticks and not smoothed: whoever compares torques filters both sides alike. Gaps in the clock or in a joint's positions
+are bridged, and marked as not valid.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap import contact, rigid
+from hyperleg_design.gap.base_motion import base_motion
+from hyperleg_design.gap.signals import BaseMotion, Signals
+from hyperleg_design.gap.smoothing import smooth
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.log import Log
+    from hyperleg_design.gap.smoothing import Smooth
+    from hyperleg_design.gap.subject import Subject
+
+GAP = 2.5
+"""Ticks between two samples from which there is a gap."""
+EDGE = 4.0
+"""Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a log."""
+LONGEST_EDGE = 0.25
+"""[s] However slow the smoother."""
+
+
+def condition(log: Log, subject: Subject) -> Signals:
+    """Make a log ready for the balances.
+
+    Args:
+        log: with positions, and with targets, torque commands, torques or currents.
+        subject: the robot; what the log declares of it (gains, torque constants, payload) is applied here.
+
+    Raises:
+        InputError: none of the robot's joints moves in this log, or nothing tells the torque of any motor.
+    """
+    subject = subject.declare(log.metadata)
+    step = log.step
+    ticks = log.time[0] + step * np.arange(int(np.floor(log.duration / step + 1e-6)) + 1)
+    if len(ticks) < 16:
+        raise InputError(log.name, "t", len(ticks), "is too short a log: expects at least 16 ticks")
+    position = log.stack("position", subject.joints)
+    motion = smooth(log.time, position, ticks, log.stack("velocity", subject.joints))
+    lacking = ~np.isfinite(motion.value).any(0)
+    if lacking.all():
+        raise InputError(log.name, "position", sorted(log.joints)[:8], f"knows no joint of this robot, {', '.join(subject.joints)}")
+    notes = []
+    if lacking.any():
+        notes.append(f"joints without positions in this log, taken to stand still: {_names(subject.joints, lacking)}")
+        motion.value[:, lacking] = subject.default[lacking]
+        motion.first[:, lacking] = motion.second[:, lacking] = 0.0
+    base = None
+    if subject.floating:
+        base, derived = base_motion(log, subject, ticks)
+        notes += derived
+    command, target = _command(log, subject, ticks, motion)
+    measured = _measured(log, subject, ticks)
+    limited = None if command is None else limited_torque(subject, command, motion.first)
+    believed, more = _believed(log, subject, measured, limited)
+    notes += more
+    ground = contact.contacts(log, subject, ticks, motion.value, base)
+    needed = rigid.inverse_dynamics(subject, motion.value, motion.first, motion.second, base)
+    needed = needed + rigid.friction_torque(subject, motion.value, motion.first)
+    residual: dict[str, np.ndarray] = {}
+    if ground.pad_force is not None:
+        pushed, wrench = rigid.contact_torque(subject, motion.value, None if base is None else base.rotation, np.nan_to_num(ground.pad_force))
+        needed = needed - pushed
+        if base is not None:
+            own = rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
+            residual["base"] = np.where(np.isfinite(ground.pad_force).all((1, 2))[:, None], wrench - own, np.nan)
+    unknown = contact.unknown_rows(subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step)))
+    residual["motion"] = np.where(unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed)
+    if measured is not None and limited is not None:
+        residual["drive"] = measured - limited
+    valid = _valid(log, ticks, position[:, ~lacking], _edge(motion, lacking))
+    return Signals(
+        log=log, subject=subject, step=step, time=ticks, position=motion.value, velocity=motion.first, acceleration=motion.second, base=base,
+        target=target, command=command, measured=measured, believed=believed, rigid=needed,
+        temperature=resampled_or_none(log.time, of_motors(log, "motor_temperature", subject), ticks),
+        voltage=_voltage(log, ticks), contact=ground.foot_force, valid=valid, residual=residual, pad_force=ground.pad_force,
+        touching=ground.touching, bandwidth=motion.crossover / (2 * np.pi), noise=motion.level, notes=tuple(notes),
+    )  # fmt: skip
+
+
+def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Rows `(t, k)` through a matrix `(l, k)`, `(t, l)`; NaN only where something unknown is really needed."""
+    unknown = ~np.isfinite(values)
+    if not unknown.any():
+        return np.asarray(values @ matrix.T)
+    product = np.where(unknown, 0.0, values) @ matrix.T
+    product[(unknown.astype(float) @ np.abs(matrix).T) > 0] = np.nan
+    return np.asarray(product)
+
+
+def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Motor torques within peak torque and DC-motor line of the nominal motors `(t, m)` [Nm]; joint velocity `(t, n)` [rad/s]."""
+    torque = np.clip(torque, -subject.torque_limit, subject.torque_limit)
+    line = np.isfinite(subject.stall_torque) & np.isfinite(subject.no_load_speed)
+    if line.any():
+        speed = velocity @ subject.joint_from_motor[:, line]
+        stall = subject.stall_torque[line]
+        droop = stall / subject.no_load_speed[line] * speed
+        peak = subject.torque_limit[line]
+        torque[:, line] = np.clip(np.maximum(np.minimum(torque[:, line], stall - droop), -stall - droop), -peak, peak)
+    return torque
+
+
+def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
+    """A signal of the motors, under their names or those of their actuators `(s, m)`."""
+    own = log.stack(kind, subject.motors)
+    if subject.motor_aliases == subject.motors:
+        return own
+    return np.where(np.isfinite(own), own, log.stack(kind, subject.motor_aliases))
+
+
+def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+    """Channels `(s, k)` interpolated onto ticks `(t, k)`; NaN where a channel is unknown for more than `GAP` of its own steps."""
+    out = np.full((len(ticks), values.shape[1]), np.nan)
+    for column in range(values.shape[1]):
+        known = np.isfinite(values[:, column])
+        if known.sum() < 2:
+            continue
+        at = time[known]
+        found = np.interp(ticks, at, values[known, column])
+        reach = GAP * float(np.median(np.diff(at)))
+        after = np.clip(np.searchsorted(at, ticks), 0, len(at) - 1)
+        before = np.clip(after - 1, 0, len(at) - 1)
+        near = np.minimum(np.abs(at[after] - ticks), np.abs(ticks - at[before]))
+        out[:, column] = np.where(near <= reach / 2, found, np.nan)
+    return out
+
+
+def resampled_or_none(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray | None:
+    """`resampled`, None where nothing is known."""
+    return resampled(time, values, ticks) if np.isfinite(values).any() else None
+
+
+def _command(log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Motor torque that the controller asks for, and position targets."""
+    raw_target = log.stack("position_target", subject.joints)
+    logged = of_motors(log, "motor_torque_command", subject)
+    command = resampled(log.time, logged, ticks)
+    target = resampled_or_none(log.time, raw_target, ticks)
+    if target is not None:
+        speed = log.stack("velocity", subject.joints)
+        derived = np.stack([np.interp(log.time, ticks, v) for v in motion.first.T], -1)
+        speed = np.where(np.isfinite(speed), speed, derived)
+        stiffness, damping = subject.gains.T
+        asked = stiffness * (raw_target - log.stack("position", subject.joints)) - damping * speed
+        asked[:, subject.passive] = 0.0
+        torque = resampled(log.time, applied(subject.motor_from_joint, asked), ticks)
+        command = np.where(np.isfinite(command), command, torque)
+    if subject.one_to_one and subject.passive.any():
+        command[:, subject.passive] = 0.0
+    return (command if np.isfinite(command[:, _driven(subject)]).any() else None), target
+
+
+def _driven(subject: Subject) -> np.ndarray:
+    return ~subject.passive if subject.one_to_one else np.ones(len(subject.motors), bool)
+
+
+def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | None:
+    """Motor torque, else current times constant, else what joint torques tell; None where nothing was measured."""
+    torque = of_motors(log, "motor_torque", subject)
+    current = of_motors(log, "motor_current", subject) * subject.torque_constant
+    torque = np.where(np.isfinite(torque), torque, current)
+    from_joints = applied(subject.motor_from_joint, log.stack("joint_torque", subject.joints))
+    found = resampled(log.time, np.where(np.isfinite(torque), torque, from_joints), ticks)
+    if not np.isfinite(found).any():
+        return None
+    if subject.one_to_one:
+        found[:, subject.passive] = 0.0
+    return found
+
+
+def _believed(log: Log, subject: Subject, measured: np.ndarray | None, limited: np.ndarray | None) -> tuple[np.ndarray, list[str]]:
+    if measured is None and limited is None:
+        lacks = "gains (in the metadata, or in the robot's file) for its targets" if log.names("position_target") else "targets"
+        currents = log.names("motor_current")
+        if currents and not np.isfinite(subject.torque_constant).any():
+            lacks = f"torque_constant in the metadata for its currents, or {lacks}"
+        remedy = f"tells the torque of no motor: it has neither torques nor currents that can be read, and lacks {lacks}"
+        raise InputError(log.name, "motor_torque", None, remedy)
+    if measured is None or limited is None:
+        believed = measured if measured is not None else limited
+        assert believed is not None
+    else:
+        believed = np.where(np.isfinite(measured).any(0), measured, limited)
+    blind = ~np.isfinite(believed).any(0)
+    notes = [f"motors whose torque nothing tells: {_names(subject.motors, blind)}"] if blind.any() else []
+    return believed.copy(), notes
+
+
+def _voltage(log: Log, ticks: np.ndarray) -> np.ndarray | None:
+    found = resampled_or_none(log.time, log.column("battery_voltage")[:, None], ticks)
+    return None if found is None else found[:, 0]
+
+
+def _edge(motion: Smooth, lacking: np.ndarray) -> float:
+    return min(EDGE / float(np.nanmin(motion.crossover[~lacking])), LONGEST_EDGE)
+
+
+def _valid(log: Log, ticks: np.ndarray, position: np.ndarray, edge: float) -> np.ndarray:
+    """Ticks away from the ends and from gaps in the clock or in any joint's positions."""
+    step = log.step
+    edge = min(edge, 0.1 * log.duration)
+    valid = (ticks >= log.time[0] + edge) & (ticks <= log.time[-1] - edge)
+    for column in position.T:
+        at = log.time[np.isfinite(column)]
+        ends = np.concatenate([[log.time[0]], at, [log.time[-1]]])
+        for gap in np.flatnonzero(np.diff(ends) > GAP * step):
+            valid &= (ticks < ends[gap] - edge) | (ticks > ends[gap + 1] + edge)
+    return valid
+
+
+def _names(names: tuple[str, ...], which: np.ndarray) -> str:
+    return ", ".join(n for n, w in zip(names, which, strict=True) if w)
+
+
+__all__ = ["BaseMotion", "applied", "condition", "limited_torque", "of_motors", "resampled", "resampled_or_none"]
