@@ -70,7 +70,7 @@ class _Rotor(Live):
         given = compliance > 0
         # A rotor too light for its belt is taken heavier, play without compliance gets the stiffest belt that is resolved.
         stiffness = np.where(given, 1 / np.where(given, compliance, 1.0), 0.0)
-        self.inertia = np.maximum(inertia, np.where(given, stiffness / fastest, LIGHTEST))
+        self.inertia = np.maximum(np.where(inertia > 0, inertia, LIGHTEST), stiffness / fastest)
         self.stiffness = np.where(given, stiffness, self.inertia * fastest)
         standard = 2 * DAMPING_RATIO * np.sqrt(self.stiffness * self.inertia)
         self.damping = standard if belt.damping is None else full(belt.damping)
