@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import difflib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+
+from hyperleg_design.errors import InputError
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -61,6 +64,20 @@ class Effect(ABC):
     @abstractmethod
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Names of the places where it can sit on this robot."""
+
+    def place(self, location: str, subject: Subject) -> str:
+        """The one of `locations` that is meant.
+
+        Raises:
+            InputError: none.
+        """
+        found = self.locations(subject)
+        if location in found:
+            return location
+        if not found:
+            raise InputError(self.identifier, "location", location, f"this robot has no {self.kind} for it")
+        near = difflib.get_close_matches(location, found, n=1)
+        raise InputError(self.identifier, "location", location, f"did you mean {near[0]}?" if near else f"expects one of {', '.join(found)}")
 
     @abstractmethod
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:

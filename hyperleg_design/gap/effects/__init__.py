@@ -1,0 +1,36 @@
+"""The catalogue of effects; each module of this package that has an `Effect` is one more."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import inspect
+import pkgutil
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.effects.effect import Effect
+
+
+def _found() -> dict[str, Effect]:
+    found = {}
+    for module in sorted(m.name for m in pkgutil.iter_modules(__path__)):
+        for kind in vars(importlib.import_module(f"{__name__}.{module}")).values():
+            if inspect.isclass(kind) and issubclass(kind, Effect) and not inspect.isabstract(kind) and kind.__module__.endswith(f".{module}"):
+                found[kind.identifier] = kind()
+    return found
+
+
+EFFECTS: dict[str, Effect] = _found()
+"""By identifier, in the order of the alphabet."""
+
+
+def effect(identifier: str) -> Effect:
+    """An effect of the catalogue.
+
+    Raises:
+        InputError: no such effect.
+    """
+    if identifier in EFFECTS:
+        return EFFECTS[identifier]
+    near = difflib.get_close_matches(identifier, EFFECTS, n=1)
+    raise InputError("effect", "", identifier, f"did you mean {near[0]}?" if near else f"expects one of {', '.join(EFFECTS)}")
