@@ -78,6 +78,8 @@ class Log:
     signals: Mapping[str, np.ndarray]
     """By column, `(t,)` each; units in `UNITS`; NaN where unknown."""
     metadata: Metadata = field(default_factory=Metadata)
+    folder: str = ""
+    """In which it was found: a `robot` file of its metadata may stand there; not written into files."""
 
     def __post_init__(self) -> None:
         """Check."""
@@ -144,7 +146,7 @@ class Log:
 
     def part(self, rows: slice | np.ndarray, name: str = "") -> Log:
         """Some rows of it."""
-        return Log(name or self.name, self.time[rows], {c: v[rows] for c, v in self.signals.items()}, self.metadata)
+        return self.changed(name=name or self.name, time=self.time[rows], signals={c: v[rows] for c, v in self.signals.items()})
 
     def changed(self, **values: Any) -> Log:
         """A copy with fields replaced."""
@@ -208,10 +210,22 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         raise InputError(str(path), "", None, "does not exist") from None
     except (pyarrow.ArrowException, OSError, ValueError) as error:
         raise InputError(path.name, "", None, f"is no whole Parquet file ({' '.join(str(error).split())[:90]}): record or copy it again") from None
-    metadata = metadata_beside(path, _inside(inside, path))
+    return finished_log(path, time, signals, metadata_beside(path, _inside(inside, path)), remarks)
+
+
+def finished_log(
+    path: Path, time: np.ndarray, signals: Mapping[str, np.ndarray], metadata: Metadata, remarks: Iterable[str] = (), name: str = ""
+) -> Log:
+    """A log of what a reader found in a file: tidied, checked, its remarks noted.
+
+    Raises:
+        InputError: an unusable clock, or no position.
+    """
     time, signals, more = tidied(time, signals, path.name)
     _check_clock(time, path.name)
-    return Log(path.stem, time, signals, metadata.remarked(*remarks, *more))
+    if not any(column.startswith("position/") and np.isfinite(values).any() for column, values in signals.items()):
+        raise InputError(path.name, "position/...", None, "is missing: expects the measured angle of at least one joint, in position/JOINT")
+    return Log(name or path.stem, time, signals, metadata.remarked(*remarks, *more), str(path.resolve().parent))
 
 
 def metadata_beside(path: Path, inside: Mapping[str, Any]) -> Metadata:

@@ -31,7 +31,9 @@ VALUES = hnp.arrays(float, 7, elements=st.floats(allow_infinity=False))
     notes=st.text(), start=st.floats(-1e6, 1e6),
 )  # fmt: skip
 def test_round_trip(tmp_path_factory, joints, motors, gains, extra, notes, start):
-    signals = {f"position/{k}": v for k, v in joints.items()} | {f"motor_current/{k}": v for k, v in motors.items()}
+    signals = (
+        {"position/always": np.arange(7.0)} | {f"position/{k}": v for k, v in joints.items()} | {f"motor_current/{k}": v for k, v in motors.items()}
+    )
     metadata = Metadata(gains=gains, extra=extra, notes=notes, payload={"hand": (1.0, 0.0, 0.1, 0.2)}, role="reference")
     log = Log("one", start + np.arange(7) * 0.01, signals, metadata)
     path = write_log(tmp_path_factory.mktemp("logs") / "one.parquet", log)
