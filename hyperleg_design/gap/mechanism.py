@@ -205,7 +205,7 @@ def pinocchio_model(tree: Mechanism, gravity: np.ndarray) -> pinocchio.Model:
     if tree.floating:
         root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "floating_base")
         model.appendBodyToJoint(root, _pin_inertia(tree.base_inertial), pin.SE3.Identity())
-    places = []
+    places: list[int] = []
     for index, name in enumerate(tree.joints):
         kind = pin.JointModelRZ() if tree.hinge[index] else pin.JointModelPZ()
         above = root if tree.parent[index] == BASE else places[tree.parent[index]]

@@ -71,7 +71,8 @@ def smooth(time: np.ndarray, value: np.ndarray, ticks: np.ndarray, rate: np.ndar
         NaN for channels with fewer than 8 samples.
     """
     count = value.shape[1]
-    out = Smooth(*(np.full((len(ticks), count), np.nan) for _ in range(3)), np.full(count, np.nan), np.full(count, np.nan))
+    tables = [np.full((len(ticks), count), np.nan) for _ in range(3)]
+    out = Smooth(tables[0], tables[1], tables[2], np.full(count, np.nan), np.full(count, np.nan))
     step = float(np.median(np.diff(time)))
     for channel in range(count):
         known = np.isfinite(value[:, channel])
