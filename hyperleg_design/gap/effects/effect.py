@@ -103,6 +103,10 @@ class Effect(ABC):
             subject: the robot.
         """
 
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """Usual distances from the nulls at a place of a robot `(parameters,)`: scale of priors and of finite differences."""
+        return np.array([p.typical for p in self.parameters])
+
     @property
     def nulls(self) -> np.ndarray:
         """Values at which it is absent, `(parameters,)`."""

@@ -1,0 +1,97 @@
+"""An inertial sensor with a constant error."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap import rigid
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.simulation.alteration import Alteration, Live
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+IMU = "imu"
+GRAVITY = 9.81
+"""[m/s^2] by which an accelerometer's bias tilts what the policy takes for down."""
+_GYRO = "0.01 rad/s turn-on bias of consumer MEMS gyros (BMI088, ICM-42688 data sheets: 0.5-1 deg/s before calibration)"
+_ACCELEROMETER = "0.2 m/s^2, 20 mg zero-g offset of consumer MEMS accelerometers (BMI088, ICM-42688 data sheets)"
+
+
+class ImuBias(Effect):
+    """Constant errors of gyro and accelerometer, in the sensor's axes.
+
+    The motion of a floating base is known from them, so that the joint torques which it needs are off; a base whose motion
+    comes from elsewhere does not feel it. In simulation the policy is told a wrong angular velocity and a tilted gravity.
+    """
+
+    identifier: ClassVar[str] = "imu_bias"
+    kind: ClassVar[str] = "sensor"
+    summary: ClassVar[str] = "gyro and accelerometer are off by a constant"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        *(Parameter(f"gyro_{axis}", "rad/s", 0.0, -0.5, 0.5, 0.01, _GYRO) for axis in "xyz"),
+        *(Parameter(f"accelerometer_{axis}", "m/s^2", 0.0, -5.0, 5.0, 0.2, _ACCELEROMETER) for axis in "xyz"),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """The sensor, on a floating base."""
+        return (IMU,) if subject.floating else ()
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        subject, base = signals.subject, signals.base
+        values = np.atleast_2d(np.asarray(values, float))
+        if base is None:
+            return {}
+        by_gyro, by_accelerometer = (np.isfinite(signals.log.vector(kind)).any(0).all() for kind in ("gyro", "accelerometer"))
+        motion = signals.position, signals.velocity, signals.acceleration
+        arm = subject.imu_position
+
+        def centripetal(spin: np.ndarray) -> np.ndarray:
+            return np.cross(spin, np.cross(spin, arm))
+
+        needed = rigid.inverse_dynamics(subject, *motion, base)
+        wrench = rigid.base_wrench(subject, *motion, base) if "base" in signals.residual else None
+        rows, base_rows = np.zeros((len(values), *needed.shape)), []
+        for number, one in enumerate(values):
+            spin = base.angular_velocity - (subject.imu_rotation @ one[:3] if by_gyro else 0.0)
+            force = base.specific_force
+            if by_accelerometer:
+                force = force - subject.imu_rotation @ one[3:] + centripetal(base.angular_velocity) - centripetal(spin)
+            true = dataclasses.replace(base, angular_velocity=spin, specific_force=force)
+            rows[number] = rigid.inverse_dynamics(subject, *motion, true) - needed
+            if wrench is not None:
+                base_rows.append(rigid.base_wrench(subject, *motion, true) - wrench)
+        return {"motion": rows} | ({"base": np.stack(base_rows)} if base_rows else {})
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        values = np.asarray(values, float)
+        turned = subject.imu_rotation.T
+        return BiasedImu(values[..., :3] @ turned, values[..., 3:] @ turned)
+
+
+@dataclass(frozen=True, eq=False)
+class BiasedImu(Alteration):
+    """What the policy is told of the base's turning and of gravity is off."""
+
+    gyro: Any
+    """In the base's axes [rad/s], `(3,)` or `(n, 3)`."""
+    accelerometer: Any
+    """In the base's axes [m/s^2], `(3,)` or `(n, 3)`."""
+
+
+class _Imu(Live):
+    alteration: BiasedImu
+
+    def imu(self, angular_velocity: np.ndarray, gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        down = GRAVITY * gravity - self.alteration.accelerometer
+        return angular_velocity + self.alteration.gyro, down / np.linalg.norm(down, axis=-1, keepdims=True)
+
+
+BiasedImu.live = _Imu

@@ -1,0 +1,107 @@
+"""What effects that change a link's mass properties have in common: ten parameters added in the link's frame."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap import rigid
+from hyperleg_design.gap.effects.effect import Effect
+from hyperleg_design.gap.mechanism import BASE, inertial_parameters, mass_properties, quaternion_rotation
+from hyperleg_design.simulation.alteration import Alteration
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+
+class InertialEffect(Effect):
+    """Adds inertial parameters to a link, by its own name or that of the joint that carries it.
+
+    Its trace is the inertial regressor times what it adds, in the rows of the joints before the link and, where contact
+    forces are logged, in those of the base.
+    """
+
+    kind: ClassVar[str] = "link"
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Moving links, one of those that move as one body."""
+        tree = subject.tree
+        carriers = tree.link_joint.tolist()
+        return tuple(name for i, name in enumerate(tree.links) if carriers[i] not in carriers[:i])
+
+    def place(self, location: str, subject: Subject) -> str:
+        """The link that is meant; any moving link will do, or a joint, for the link that it carries."""
+        tree = subject.tree
+        return tree.links[tree.link(location)] if location in (*tree.links, *tree.joints) else super().place(location, subject)
+
+    @abstractmethod
+    def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Inertial parameters `(k, 10)` that it adds to those of the link itself `(10,)`, both in the link's frame."""
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        tree = signals.subject.tree
+        link = tree.link(location)
+        added = self.added(tree.link_inertial[link], np.atleast_2d(np.asarray(values, float)))
+        found = {}
+        if tree.link_joint[link] != BASE:
+            found["motion"] = np.einsum("tnp,kp->ktn", rigid.link_regressor(signals, tree.links[link]), added)
+        if "base" in signals.residual:
+            # what the ground must give more, it shows
+            found["base"] = np.einsum("trp,kp->ktr", rigid.base_regressor(signals, tree.links[link]), added)
+        return found
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        tree = subject.tree
+        link = tree.link(location)
+        values = np.asarray(values, float)
+        added = self.added(tree.link_inertial[link], np.atleast_2d(values))
+        if np.any(tree.link_inertial[link, 0] + added[:, 0] < 0):
+            remedy = f"takes more than the {tree.link_inertial[link, 0]:.3g} kg that {tree.links[link]} has"
+            raise InputError(self.identifier, "mass", float(added[:, 0].min()), remedy)
+        return AddedInertia(tree.links[link], added if values.ndim > 1 else added[0])
+
+
+@dataclass(frozen=True, eq=False)
+class AddedInertia(Alteration):
+    """Inertial parameters added to a body of the model."""
+
+    body: str
+    added: Any
+    """In the body's frame, `(10,)` or `(n, 10)`."""
+
+    def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
+        """Change the body's mass, centre of mass and inertia."""
+        import mujoco
+
+        added = self.added if self.added.ndim == 1 else self.added[simulation]
+        if not added.any():
+            return
+        index = model.body(self.body).id
+        turned = quaternion_rotation(model.body_iquat[index])
+        own = inertial_parameters(float(model.body_mass[index]), model.body_ipos[index], turned @ np.diag(model.body_inertia[index]) @ turned.T)
+        mass, com, inertia = mass_properties(own + added)
+        values, vectors = np.linalg.eigh(inertia)
+        if np.linalg.det(vectors) < 0:
+            vectors[:, 0] *= -1
+        quaternion = np.zeros(4)
+        mujoco.mju_mat2Quat(quaternion, vectors.ravel())
+        model.body_mass[index], model.body_ipos[index], model.body_inertia[index], model.body_iquat[index] = mass, com, values, quaternion
+        model.body_simple[index] = 0
+
+
+def carried_mass(subject: Subject, link: str) -> float:
+    """Mass of a link and of all that it carries [kg]."""
+    tree = subject.tree
+    joint = int(tree.link_joint[tree.link(link)])
+    return float(
+        sum(own[0] for own, carrier in zip(tree.link_inertial, tree.link_joint, strict=True) if joint == BASE or joint in tree.chain(int(carrier)))
+    )

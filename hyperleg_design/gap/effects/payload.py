@@ -1,0 +1,44 @@
+"""A mass that hangs on a link."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Parameter
+from hyperleg_design.gap.effects.inertial import InertialEffect, carried_mass
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.subject import Subject
+
+SHARE = 0.2
+"""Usual payload over the mass that moves with the link (assumed: tools and batteries; a UR10e carries 2.8 kg on 33 kg of arm)."""
+
+
+class Payload(InertialEffect):
+    """A point mass fixed to a link, over what the model or the log's metadata already put there.
+
+    The log's arm feels it by its mass and by its first moment mass times com, so com means nothing where mass is 0.
+    """
+
+    identifier: ClassVar[str] = "payload"
+    summary: ClassVar[str] = "a mass that hangs on a link and that the model does not have"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("mass", "kg", 0.0, -20.0, 100.0, 0.5, "UR10e logs with 2.8 kg; tools and batteries, 20 % of what the link moves (assumed)"),
+        Parameter("com_x", "m", 0.0, -1.0, 1.0, 0.05, "centre of mass in the link's frame: a hand's breadth (assumed)", shape=True),
+        Parameter("com_y", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
+        Parameter("com_z", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
+    )
+
+    def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Of the point mass, see `InertialEffect.added`."""
+        mass, (x, y, z) = values[:, 0], values[:, 1:].T
+        inertia = (y * y + z * z, -x * y, x * x + z * z, -x * z, -y * z, x * x + y * y)
+        return mass[:, None] * np.stack([np.ones_like(x), x, y, z, *inertia], -1)
+
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """A share of the mass that moves with the link."""
+        found = super().usual(location, subject)
+        found[0] = max(SHARE * carried_mass(subject, location), 0.01)
+        return found
