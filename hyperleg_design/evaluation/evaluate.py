@@ -17,6 +17,7 @@ from hyperleg_design.simulation.commands import WaypointCommands
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.tasks import Task
 
 
@@ -27,6 +28,7 @@ def evaluate(
     design: Design | None = None,
     task: Task | None = None,
     threads: int | None = None,
+    alterations: Alterations | None = None,
 ) -> Evaluation:
     """Run a protocol on a policy: deterministic, without assist.
 
@@ -36,6 +38,7 @@ def evaluate(
         design: the robot; an ONNX policy's own by default.
         task: which gives observations, physics and control; an ONNX policy's own by default.
         threads: of the simulation; the result does not depend on it.
+        alterations: of the simulated robot, or what makes them for a design, such as `Overlay.alterations`.
 
     Raises:
         InputError: a file that cannot be used, a policy that does not fit robot, task or protocol, or one whose output is not
@@ -47,9 +50,9 @@ def evaluate(
         protocol = "t_test" if isinstance(commands, WaypointCommands) else "walk"
     run = load_protocol(protocol) if isinstance(protocol, str | Path) else protocol
     if isinstance(run, TTestProtocol):
-        return evaluate_t_test(chosen, run, design=design, task=task, threads=threads)
+        return evaluate_t_test(chosen, run, design=design, task=task, threads=threads, alterations=alterations)
     if isinstance(run, WalkProtocol):
-        return evaluate_walk(chosen, run, design=design, task=task, threads=threads)
+        return evaluate_walk(chosen, run, design=design, task=task, threads=threads, alterations=alterations)
     raise InputError("evaluate", "protocol", run.name, "expects a WalkProtocol or a TTestProtocol")
 
 
@@ -60,6 +63,7 @@ def evaluate_many(
     workers: int = 2,
     kept: int | Sequence[int] = 1,
     overrides: Sequence[Mapping[str, Any]] | None = None,
+    alterations: Alterations | None = None,
     progress: Callable[[Evaluation], None] | None = None,
 ) -> list[Evaluation]:
     """Evaluate ONNX files, each in a process of one thread.
@@ -70,6 +74,7 @@ def evaluate_many(
         workers: processes; one works in this process.
         kept: trials of each policy whose signals are kept, one number for all or one for each.
         overrides: parameters of the robot to change, by path, for each policy; none by default.
+        alterations: as in `evaluate`, of all policies; they must pickle.
         progress: called with each evaluation as it comes, in order.
 
     Returns:
@@ -86,7 +91,14 @@ def evaluate_many(
         load_policy(policy)  # a broken file is told before hours of work
     count = len(policies)
     jobs = list(
-        zip(policies, [mapping] * count, [kept] * count if isinstance(kept, int) else kept, overrides or [{}] * count, strict=True),
+        zip(
+            policies,
+            [mapping] * count,
+            [kept] * count if isinstance(kept, int) else kept,
+            overrides or [{}] * count,
+            [alterations] * count,
+            strict=True,
+        ),
     )
     found = []
     if workers == 1 or count < 2:
@@ -109,9 +121,9 @@ def evaluate_many(
     return found
 
 
-def _evaluated(job: tuple[str | Path, dict[str, object] | None, int, Mapping[str, Any]]) -> Evaluation:
-    name, protocol, kept, overrides = job
+def _evaluated(job: tuple[str | Path, dict[str, object] | None, int, Mapping[str, Any], Alterations | None]) -> Evaluation:
+    name, protocol, kept, overrides, alterations = job
     run = None if protocol is None else protocol_from_mapping(protocol, "protocol")
     policy = load_policy(name)
     design = policy.design.with_values(dict(overrides), "overrides") if overrides else None
-    return evaluate(policy, run, design=design, threads=1).light(kept)
+    return evaluate(policy, run, design=design, threads=1, alterations=alterations).light(kept)

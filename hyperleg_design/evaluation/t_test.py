@@ -22,6 +22,7 @@ from hyperleg_design.sizing.energy import cost_of_transport
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.tasks import Task
 
 
@@ -32,6 +33,7 @@ def evaluate_t_test(
     design: Design | None = None,
     task: Task | None = None,
     threads: int | None = None,
+    alterations: Alterations | None = None,
 ) -> Evaluation:
     """Run the T-test protocol on a policy: deterministic, without assist.
 
@@ -41,6 +43,7 @@ def evaluate_t_test(
         design: the robot; an ONNX policy's own by default.
         task: which gives observations, physics and control; an ONNX policy's own by default.
         threads: of the simulation; the result does not depend on it.
+        alterations: of the simulated robot, or what makes them for a design, such as `Overlay.alterations`.
 
     Raises:
         InputError: another kind of protocol or task, a policy for another layout, or one whose output is not finite.
@@ -49,7 +52,9 @@ def evaluate_t_test(
     if not isinstance(chosen, TTestProtocol):
         raise InputError("t_test", "protocol", chosen.name, "expects a protocol of kind t_test")
     robot, task = rollout.resolved(policy, design, task)
-    environment = Environment(robot, t_test_task(task, chosen), simulations=int(chosen.trials), seed=int(chosen.seed), threads=threads)
+    environment = Environment(
+        robot, t_test_task(task, chosen), simulations=int(chosen.trials), seed=int(chosen.seed), threads=threads, alterations=alterations
+    )
     try:
         trials = rollout.record(policy, environment, chosen.time_limit)
     finally:

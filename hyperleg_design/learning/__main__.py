@@ -3,28 +3,41 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.errors import HyperlegError
 from hyperleg_design.learning import launch
 
+if TYPE_CHECKING:
+    from hyperleg_design.simulation.alteration import Alterations
 
-def main() -> int:
-    """Exit status: 0 done, 3 stopped with a checkpoint, 2 an error."""
+
+def main(arguments: Sequence[str] | None = None, alterations: Alterations | None = None, overlay: Mapping[str, Any] | None = None) -> int:
+    """Exit status: 0 done, 3 stopped with a checkpoint, 2 an error.
+
+    Args:
+        arguments: of the command line; the process's own by default.
+        alterations: as `train` takes them.
+        overlay: as `train` takes it.
+    """
     parser = argparse.ArgumentParser(prog="python -m hyperleg_design.learning", description="One training, or the rest of one.")
     for name in ("task", "design", "preset", "out"):
         parser.add_argument(f"--{name}", required=name == "out", default={"task": "walk", "design": "toe", "preset": "laptop"}.get(name))
     parser.add_argument("--start")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--threads", type=int, default=1)
-    given = parser.parse_args()
-    if any(os.environ.get(key) != value for key, value in launch.MALLOC.items()):
+    given = parser.parse_args(arguments)
+    if arguments is None and not launch.surrounded():
         launch.run_here(sys.argv[1:], given.threads)
     from hyperleg_design.learning.train import train
 
     try:
-        done = train(given.task, given.design, given.seed, given.preset, given.out, start=given.start, threads=given.threads, show=_show)
+        done = train(
+            given.task, given.design, given.seed, given.preset, given.out, start=given.start, threads=given.threads,
+            alterations=alterations, overlay=overlay, show=_show,
+        )  # fmt: skip
     except HyperlegError as error:
         sys.stderr.write(f"{error}\n")
         return 2

@@ -34,6 +34,11 @@ def start(arguments: Mapping[str, object], log: Path, threads: int = 1) -> subpr
         return subprocess.Popen(command(arguments), stdout=stream, stderr=stream, stdin=subprocess.DEVNULL, env=surroundings(threads))
 
 
-def run_here(arguments: Sequence[str], threads: int = 1) -> None:
+def run_here(arguments: Sequence[str], threads: int = 1, module: str = "hyperleg_design.learning") -> None:
     """Replace this process by a training's."""
-    os.execve(sys.executable, [sys.executable, "-m", "hyperleg_design.learning", *arguments], surroundings(threads))
+    os.execve(sys.executable, [sys.executable, "-m", module, *arguments], surroundings(threads))
+
+
+def surrounded() -> bool:
+    """Whether this process has a training's surroundings."""
+    return all(os.environ.get(key) == value for key, value in MALLOC.items())

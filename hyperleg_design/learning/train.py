@@ -21,7 +21,7 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +41,7 @@ from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, S
 from hyperleg_design.learning.trial import trial
 from hyperleg_design.learning.warm_start import StartPolicy, read_start, start_actor
 from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
 from hyperleg_design.simulation.tasks import Task, load_task
@@ -63,6 +64,8 @@ def train(
     start: str | Path | None = None,
     threads: int = 1,
     iterations: int | None = None,
+    alterations: Alterations | None = None,
+    overlay: Mapping[str, Any] | None = None,
     show: Callable[[str], None] | None = None,
 ) -> bool:
     """Train a policy, or go on with a training from its last checkpoint.
@@ -77,6 +80,8 @@ def train(
         threads: of physics and learning. One by default: trainings side by side use processors best. Resuming is bit for
             bit with the same number only.
         iterations: stop, with a checkpoint, after so many more; all by default.
+        alterations: of the simulated robot, or what makes them for a design.
+        overlay: what they are, as JSON takes it: written down, and compared when the training goes on.
         show: takes lines of progress.
 
     Returns:
@@ -95,13 +100,14 @@ def train(
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     folder = check_output_folder(out)
-    description = {**describe(task, design, seed, preset), "start": started and started.source, "command": command}
+    origin = {"start": started and started.source, "overlay": overlay and dict(overlay), "command": command}
+    description = {**describe(task, design, seed, preset), **origin}
     _check_same(folder, description)
     write_text(folder / MARKER, "made by hyperleg\n")
     with _alone(folder), _limited_threads(threads):
         if not (folder / RUN).exists():
             write_json(folder / RUN, description)
-        training = Training(task, design, seed, preset, folder, threads, description, started)
+        training = Training(task, design, seed, preset, folder, threads, description, started, alterations)
         return training.run(iterations, show or (lambda line: None))
 
 
@@ -132,10 +138,11 @@ class Training:
         threads: int,
         description: dict[str, Any],
         start: StartPolicy | None = None,
+        alterations: Alterations | None = None,
     ) -> None:
         self.task, self.design, self.preset, self.folder, self.description = task, design, preset, folder, description
-        self.schedule = Schedule(preset, task.name)
-        self.environment = Environment(design, task, simulations=int(preset.simulations), seed=seed, threads=threads)
+        self.schedule, self.alterations = Schedule(preset, task.name), alterations
+        self.environment = Environment(design, task, simulations=int(preset.simulations), seed=seed, threads=threads, alterations=alterations)
         self.schedule.apply(self.environment)
         torch.manual_seed(seed)
         self.observations = as_tensors(self.environment.reset())
@@ -289,7 +296,7 @@ class Training:
 
     def _try(self) -> None:
         commands = self.environment.chunks[0].commander.settings
-        self.latest_trial = trial(self.design, self.task.changed(commands=commands), self.policy, seed=TRIAL_SEED)
+        self.latest_trial = trial(self.design, self.task.changed(commands=commands), self.policy, seed=TRIAL_SEED, alterations=self.alterations)
 
     def _is_late(self) -> bool:
         """Whether the policy is one of the last to be kept besides the very last."""
@@ -298,7 +305,9 @@ class Training:
         return left > 0 and left % apart == 0 and left // apart < int(self.preset.late)
 
     def _export(self, name: str) -> None:
-        chosen = ("variant", "seed", "task", "design", "preset", "deviations", "start", "command", "commit", "versions")
+        chosen: tuple[str, ...] = ("variant", "seed", "task", "design", "preset", "deviations", "start", "command", "commit", "versions")
+        if self.description.get("overlay"):
+            chosen += ("overlay",)
         metadata = {key: self.description[key] for key in chosen}
         metadata |= {"seed": str(self.description["seed"]), "steps": str(self.schedule.iteration * self.preset.steps_per_iteration)}
         metadata |= {"columns": self.environment.observation_columns["policy"], "joints": list(self.environment.layout.joints)}
@@ -366,7 +375,7 @@ def _check_same(folder: Path, description: dict[str, Any]) -> None:
         found = json.loads(path.read_text())
     except (OSError, ValueError):
         raise InputError(f"{folder.name}/{RUN}", "", None, "cannot be read; choose another folder, or delete this one") from None
-    for key in ("variant", "seed", "task", "design", "preset", "start"):
+    for key in ("variant", "seed", "task", "design", "preset", "start", "overlay"):
         if found.get(key) != json.loads(json.dumps(description[key])):
             remedy = "the folder holds another training; choose another, or delete it"
             raise InputError(str(folder), key, found.get(key) if key in ("variant", "seed") else None, remedy)

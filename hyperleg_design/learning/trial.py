@@ -21,6 +21,7 @@ from hyperleg_design.simulation.terminations import COURSE_FINISHED
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.alteration import Alterations
 
 Policy = Callable[[np.ndarray], np.ndarray]
 """From observations `(n, size)` of the group `policy` to actions `(n, J)`."""
@@ -30,7 +31,9 @@ COURSE = 30.0
 """Time given to a course [s]."""
 
 
-def trial(design: Design, task: Task, policy: Policy, *, simulations: int = 32, seed: int = 0) -> dict[str, float]:
+def trial(
+    design: Design, task: Task, policy: Policy, *, simulations: int = 32, seed: int = 0, alterations: Alterations | None = None
+) -> dict[str, float]:
     """Try a policy: on the test's speed, or on the task's courses.
 
     Args:
@@ -39,6 +42,7 @@ def trial(design: Design, task: Task, policy: Policy, *, simulations: int = 32, 
         policy: deterministic.
         simulations: robots that try, once each.
         seed: of the starting states.
+        alterations: of the simulated robot, or what makes them for a design.
 
     Returns:
         Walking: `survival`, `speed` [m/s], `speed_error` (RMS over robots and time [m/s]), `cost_of_transport`,
@@ -46,14 +50,14 @@ def trial(design: Design, task: Task, policy: Policy, *, simulations: int = 32, 
         (mean of the finished [s]), `survival`, `speed`.
     """
     goal = isinstance(task.commands, WaypointCommands)
-    return _course(design, task, policy, simulations, seed) if goal else _walk(design, task, policy, simulations, seed)
+    return (_course if goal else _walk)(design, task, policy, simulations, seed, alterations)
 
 
-def _walk(design: Design, task: Task, policy: Policy, simulations: int, seed: int) -> dict[str, float]:
+def _walk(design: Design, task: Task, policy: Policy, simulations: int, seed: int, alterations: Alterations | None) -> dict[str, float]:
     given: Any = task.commands
     commands = dataclasses.replace(given, test_share=1.0, standing_share=0.0)
     task = task.changed(commands=commands, rewards={**task.rewards, "power": Reward(1.0)})
-    environment = Environment(design, task, simulations=simulations, seed=seed, threads=1)
+    environment = Environment(design, task, simulations=simulations, seed=seed, threads=1, alterations=alterations)
     duration, steps = task.physics.policy_step, round(WALK / task.physics.policy_step)
     observations, alive = environment.reset(), np.ones(simulations, bool)
     speeds, powers, stands = [], [], []
@@ -89,11 +93,11 @@ def _stands(environment: Environment) -> np.ndarray:
     return np.stack([load[:, left].sum(-1), load[:, ~left].sum(-1)], -1) > TOUCH
 
 
-def _course(design: Design, task: Task, policy: Policy, simulations: int, seed: int) -> dict[str, float]:
+def _course(design: Design, task: Task, policy: Policy, simulations: int, seed: int, alterations: Alterations | None) -> dict[str, float]:
     limits = dataclasses.replace(task.limits, duration=2 * COURSE)
     given: Any = task.commands
     task = task.changed(commands=dataclasses.replace(given, course_share=1.0), limits=limits)
-    environment = Environment(design, task, simulations=simulations, seed=seed, threads=1)
+    environment = Environment(design, task, simulations=simulations, seed=seed, threads=1, alterations=alterations)
     duration = task.physics.policy_step
     observations, running = environment.reset(), np.ones(simulations, bool)
     times, finished = np.full(simulations, np.nan), np.zeros(simulations, bool)
