@@ -215,6 +215,8 @@ class Train:
     """Folder of the training."""
     threads: int = 1
     """Of this process; two trainings of one thread each are the best use of two cores."""
+    overlay: str = ""
+    """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
 
     def run(self) -> None:
         """Become the training's process."""
@@ -223,7 +225,18 @@ class Train:
         _require("torch", "rsl_rl")
         given = {"task": self.task, "design": self.design, "seed": self.seed, "preset": self.preset, "out": self.out, "threads": self.threads}
         given |= {"start": self.start} if self.start else {}
-        launch.run_here([f"--{key}={value}" for key, value in given.items()], self.threads)
+        arguments = [f"--{key}={value}" for key, value in given.items()]
+        if not self.overlay:
+            launch.run_here(arguments, self.threads)
+        from hyperleg_design.gap.overlay import read_overlay
+
+        overlay = read_overlay(self.overlay)
+        overlay.alterations(load_design(self.design))  # a wrong place is told before the process is replaced
+        if not launch.surrounded():
+            launch.run_here(["train", *arguments, f"--overlay={self.overlay}"], self.threads, "hyperleg_design.cli")
+        from hyperleg_design.learning.__main__ import main as train_here
+
+        raise SystemExit(train_here(arguments, overlay.alterations, overlay.mapping()))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -272,6 +285,8 @@ class Evaluate:
     """Folder to write tables to."""
     workers: int = 2
     """Processes side by side."""
+    overlay: str = ""
+    """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
     json: bool = False
     """Print JSON."""
 
@@ -285,8 +300,16 @@ class Evaluate:
         if not self.policies:
             raise InputError("evaluate", "", None, "expects ONNX files")
         check_output_folder(self.out)
-        found = evaluate_many(self.policies, self.protocol or None, workers=self.workers)
+        overlay = None
+        if self.overlay:
+            from hyperleg_design.gap.overlay import read_overlay, write_overlay
+
+            overlay = read_overlay(self.overlay)
+        alterations = overlay.alterations if overlay else None
+        found = evaluate_many(self.policies, self.protocol or None, workers=self.workers, alterations=alterations)
         folder = write_results(self.out, found)
+        if overlay:
+            write_overlay(folder / "overlay.yaml", overlay)
         rows = evaluation_rows(found)
         if self.json:
             _emit({"folder": str(folder), "results": rows})
@@ -323,6 +346,102 @@ class Version:
             print("\n".join(f"{k} {v}" for k, v in found.items()))
 
 
+@dataclass(frozen=True, kw_only=True)
+class GapEffects:
+    """The catalogue of effects: where each can sit, its parameters, usual magnitudes and their source."""
+
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Print it."""
+        from hyperleg_design.gap.show import effects_table
+        from hyperleg_design.report.gap_show import effects_text
+
+        found = effects_table()
+        if self.json:
+            _emit(found)
+        else:
+            print(effects_text(found))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GapShow:
+    """One effect alone: the trace it leaves on a standard motion, and how a closed loop moves with and without it."""
+
+    effect: Annotated[str, tyro.conf.Positional]
+    """Identifier; `hyperleg gap effects` lists them."""
+    robot: str = ""
+    """Design, MJCF or URDF to show it on; by default what suits the effect: one joint on a servo, or the biped."""
+    location: str = ""
+    """Where it sits; the first place that it can by default."""
+    set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """PARAMETER=VALUE; a usual magnitude by default."""
+    out: Path = Path("results/gap_show")
+    """Folder of the figure."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Draw it."""
+        from hyperleg_design.gap.show import show
+        from hyperleg_design.report.gap_show import show_figure, show_summary, show_text
+
+        shown = show(self.effect, self.robot or None, location=self.location or None, settings=self.set)
+        path = show_figure(shown, self.out / f"{self.effect}.png")
+        summary = {**show_summary(shown), "figure": str(path)}
+        if self.json:
+            _emit(summary)
+        else:
+            print(show_text(summary))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GapApply:
+    """Write the causes of a diagnosis as an overlay that simulator, training and evaluation accept."""
+
+    diagnosis: Annotated[Path, tyro.conf.Positional]
+    """`diagnosis.json`."""
+    out: Path = Path("overlay.yaml")
+    """File to write."""
+    robot: str = ""
+    """Design, MJCF or URDF on which to check the places; unchecked by default."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Write it."""
+        from hyperleg_design.gap.overlay import overlay_of_diagnosis, write_overlay
+
+        overlay = overlay_of_diagnosis(self.diagnosis, self.robot)
+        if self.robot:
+            from hyperleg_design.gap.subject import load_subject
+
+            overlay.alterations(load_subject(self.robot))
+        path = write_overlay(self.out, overlay)
+        if self.json:
+            _emit({"file": str(path), **overlay.mapping()})
+        else:
+            effects = ", ".join(f"{effect} at {location}" for effect, location in overlay.change)
+            print(f"{effects} -> {path}")
+
+
+GAP_VERBS: dict[str, Any] = {
+    "effects": GapEffects,
+    "show": GapShow,
+    "apply": GapApply,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gap:
+    """Diagnose the gap between simulation and robot; `hyperleg gap --help` lists its verbs."""
+
+    def run(self) -> None:
+        """Show its verbs."""
+        _parse(["gap", "--help"])
+
+
 VERBS: dict[str, Any] = {
     "list": List,
     "build": Build,
@@ -334,6 +453,7 @@ VERBS: dict[str, Any] = {
     "train": Train,
     "campaign": Campaign,
     "evaluate": Evaluate,
+    "gap": Gap,
     "version": Version,
 }
 
@@ -341,12 +461,13 @@ VERBS: dict[str, Any] = {
 def _parse(arguments: list[str]) -> Any:
     """The command asked for; what is wrong with the arguments goes into one line."""
     errors = io.StringIO()
+    verbs, prog, about = VERBS, "hyperleg", "Design, size and compare legged robots with cooperative actuation."
+    if arguments[:1] == ["gap"]:
+        verbs, prog, about = GAP_VERBS, "hyperleg gap", "Where a robot differs from its simulation, and why."
+        arguments = arguments[1:] or ["--help"]
     try:
         with contextlib.redirect_stderr(errors):
-            return tyro.extras.subcommand_cli_from_dict(
-                VERBS, prog="hyperleg", description="Design, size and compare legged robots with cooperative actuation.",
-                args=arguments, config=(tyro.conf.FlagCreatePairsOff,),
-            )  # fmt: skip
+            return tyro.extras.subcommand_cli_from_dict(verbs, prog=prog, description=about, args=arguments, config=(tyro.conf.FlagCreatePairsOff,))
     except SystemExit as stop:
         if not stop.code:
             raise
