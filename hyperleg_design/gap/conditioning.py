@@ -14,6 +14,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import contact, rigid
 from hyperleg_design.gap.base_motion import base_motion
+from hyperleg_design.gap.ground import balance as ground_balance
 from hyperleg_design.gap.signals import BaseMotion, Signals
 from hyperleg_design.gap.smoothing import smooth
 
@@ -64,28 +65,32 @@ def condition(log: Log, subject: Subject) -> Signals:
     limited = None if command is None else limited_torque(subject, command, motion.first)
     believed, more = _believed(log, subject, measured, limited)
     notes += more
-    ground = contact.contacts(log, subject, ticks, motion.value, base)
+    own = None if base is None else rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
+    ground = contact.contacts(log, subject, ticks, motion.value, base, None if own is None else own[:, :3])
     needed = rigid.inverse_dynamics(subject, motion.value, motion.first, motion.second, base)
     needed = needed + rigid.friction_torque(subject, motion.value, motion.first)
     residual: dict[str, np.ndarray] = {}
     if ground.pad_force is not None:
         pushed, wrench = rigid.contact_torque(subject, motion.value, None if base is None else base.rotation, np.nan_to_num(ground.pad_force))
         needed = needed - pushed
-        if base is not None:
-            own = rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
+        if own is not None:
             residual["base"] = np.where(np.isfinite(ground.pad_force).all((1, 2))[:, None], wrench - own, np.nan)
     unknown = contact.unknown_rows(subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step)))
     residual["motion"] = np.where(unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed)
     if measured is not None and limited is not None:
         residual["drive"] = measured - limited
     valid = _valid(log, ticks, position[:, ~lacking], _edge(motion, lacking))
-    return Signals(
+    signals = Signals(
         log=log, subject=subject, step=step, time=ticks, position=motion.value, velocity=motion.first, acceleration=motion.second, base=base,
         target=target, command=command, measured=measured, believed=believed, rigid=needed,
         temperature=resampled_or_none(log.time, of_motors(log, "motor_temperature", subject), ticks),
         voltage=_voltage(log, ticks), contact=ground.foot_force, valid=valid, residual=residual, pad_force=ground.pad_force,
         touching=ground.touching, bandwidth=motion.crossover / (2 * np.pi), noise=motion.level, notes=tuple(notes),
     )  # fmt: skip
+    ground_residual = ground_balance(signals)
+    if ground_residual is not None:
+        residual["ground"] = ground_residual
+    return signals
 
 
 def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -1,0 +1,46 @@
+"""A ground softer or harder than modelled."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap import ground
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.ground_friction import ChangedGround, ground_trace
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.simulation.alteration import Alteration
+
+
+class GroundCompliance(Effect):
+    """Compliance of sole and ground under one foot [m/N], and how well it is damped, over the model's; shows in vertical forces.
+
+    Only where contact forces and the base's height are logged.
+    """
+
+    identifier: ClassVar[str] = "ground_compliance"
+    kind: ClassVar[str] = "foot"
+    summary: ClassVar[str] = "the ground or the sole is softer or harder under a foot"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("scale", "", 1.0, 0.1, 20.0, 1.0, "soles and mats: 1-5 mm under body weight against a fraction of that (engineering estimate)"),
+        Parameter("damping_scale", "", 1.0, 0.1, 5.0, 0.5, "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)"),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Feet."""
+        return subject.feet if subject.floating else ()
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        scale, damping = np.atleast_2d(np.asarray(values, float)).T
+        return ground_trace(signals, location, np.ones_like(scale), scale, damping)
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        values = np.asarray(values, float)
+        bodies = ground.foot_bodies(subject, subject.feet.index(location))
+        return ChangedGround(bodies, compliance=values[..., 0], damping=values[..., 1])

@@ -1,0 +1,87 @@
+"""A ground more or less slippery than modelled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap import ground
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.simulation.alteration import Alteration
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+
+class GroundFriction(Effect):
+    """The coefficient of sliding friction under one foot; shows where the foot slides, or holds beyond the nominal cone."""
+
+    identifier: ClassVar[str] = "ground_friction"
+    kind: ClassVar[str] = "foot"
+    summary: ClassVar[str] = "the ground is more or less slippery under a foot"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("scale", "", 1.0, 0.05, 5.0, 0.3, "rubber on dry to wet floors 0.9-0.4 (engineering tables), 30 % of a nominal 0.8"),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Feet."""
+        return subject.feet if subject.floating else ()
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        scale = np.atleast_2d(np.asarray(values, float))[:, 0]
+        return ground_trace(signals, location, scale, np.ones_like(scale), np.ones_like(scale))
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        return ChangedGround(ground.foot_bodies(subject, subject.feet.index(location)), friction=np.asarray(values, float)[..., 0])
+
+
+def ground_trace(signals: Signals, location: str, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray) -> dict[str, np.ndarray]:
+    """What a changed ground under one foot leaves in the ground balance; scales `(k,)` as of `ground.Footing.ground`."""
+    feet = ground.footings(signals)
+    if not feet:
+        return {}
+    place, one = signals.subject.feet.index(location), np.ones(1)
+    found = np.zeros((len(friction), len(signals.time), 3 * len(feet)))
+    own = feet[place]
+    found[..., 3 * place : 3 * place + 3] = own.ground(friction, compliance, damping) - own.ground(one, one, one)
+    return {"ground": found}
+
+
+@dataclass(frozen=True, eq=False)
+class ChangedGround(Alteration):
+    """Contact of some bodies with the floor, as it is mixed in the model, with friction, compliance and damping scaled."""
+
+    bodies: tuple[str, ...]
+    friction: Any = 1.0
+    compliance: Any = 1.0
+    damping: Any = 1.0
+
+    def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
+        """Give the bodies' shapes the pair's settings, scaled, and precedence over the floor's."""
+        friction, compliance, damping = (
+            float(v if np.ndim(v) == 0 else v[simulation]) for v in (np.asarray(x, float) for x in (self.friction, self.compliance, self.damping))
+        )
+        if friction == compliance == damping == 1.0:
+            return
+        floors = ground.floor_geoms(model)
+        top = int(model.geom_priority[floors].max()) if floors else 0
+        for geom in ground.foot_geoms(model, self.bodies):
+            mixed, solref, dimensions = ground.pair_settings(model, geom)
+            if solref[0] > 0:
+                # k' falls by the compliance, b' by its root, so that the damping ratio stays unless scaled itself
+                solref = solref * np.array([np.sqrt(compliance) / damping, damping])
+            else:
+                solref = solref * np.array([1 / compliance, damping / np.sqrt(compliance)])
+            model.geom_friction[geom] = mixed * np.array([friction, 1.0, 1.0])
+            model.geom_solref[geom], model.geom_condim[geom], model.geom_priority[geom] = (
+                solref,
+                dimensions,
+                max(top + 1, int(model.geom_priority[geom])),
+            )

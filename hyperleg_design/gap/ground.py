@@ -1,0 +1,201 @@
+"""Balance of the ground: logged contact forces against those of the nominal ground at the logged motion.
+
+Each foot is judged by its whole force F, world frame, and by its pads:
+
+    sliding, |v_t| > SLIDING   tangential force -mu F_z v_t / |v_t|
+    sticking                   any tangential force within the cone mu F_z: the logged one, cut to the cone
+    pressing                   F_z = sum over the pads below the floor of k d + c d', d the depth
+
+v_t is the velocity of the foot's loaded point. k and c are MuJoCo's of the foot's shapes under its own inertia at rest (their
+`solref`, `solimp` and the body's inverse weight); the floor lies where the nominal ground bears the logged mean force, since no
+log knows a floor to a tenth of a millimetre. A base whose height nobody measured leaves the vertical rows unknown, one whose
+velocity nobody measured knows no sliding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.gap import rigid
+from hyperleg_design.gap.contact import TOUCHING_FORCE
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+SLIDING = 0.05
+"""Speed from which a foot slides [m/s] (assumed: above what creep of a soft contact and noise of encoders make)."""
+LOADED = 10 * TOUCHING_FORCE
+"""Force from which a foot is judged [N]; below, directions are noise (assumed)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Footing:
+    """One foot on its ground in a log of t ticks."""
+
+    force: np.ndarray
+    """Logged `(t, 3)` [N]; NaN where unknown."""
+    slide: np.ndarray
+    """Horizontal velocity of its loaded point `(t, 2)` [m/s]; NaN where unknown."""
+    depth: np.ndarray
+    """Of its p pads below the floor `(t, p)` [m]; NaN where unknown."""
+    sink: np.ndarray
+    """Rate of that `(t, p)` [m/s]."""
+    friction: float
+    """mu, nominal."""
+    stiffness: float
+    """k, nominal, of one pad [N/m]."""
+    damping: float
+    """c, nominal, of one pad [Ns/m]."""
+
+    def ground(self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray) -> np.ndarray:
+        """Force of a ground with scaled properties at this motion `(k, t, 3)` [N].
+
+        Args:
+            friction: scale of mu `(k,)`.
+            compliance: scale of 1 / k `(k,)`.
+            damping: scale of the damping ratio c / (2 sqrt(k m)) `(k,)`.
+        """
+        normal = np.maximum(self.force[:, 2], 0.0)
+        limit = friction[:, None] * self.friction * normal
+        tangential = self.force[None, :, :2]
+        size = np.linalg.norm(self.force[:, :2], axis=-1)
+        cut = np.minimum(1.0, limit / np.maximum(size, 1e-9))[..., None] * tangential
+        speed = np.linalg.norm(self.slide, axis=-1)
+        along = self.slide / np.maximum(speed, 1e-9)[:, None]
+        sliding = (speed > SLIDING)[:, None]
+        tangential = np.where(sliding, -limit[..., None] * along, cut)
+        stiffness, rate = self.stiffness / compliance, self.damping * damping / np.sqrt(compliance)
+        pressing = np.stack([_pressing(self.depth, self.sink, k, c) for k, c in zip(stiffness, rate, strict=True)])
+        found = np.concatenate([tangential, pressing[..., None]], -1)
+        return np.where((normal > LOADED)[None, :, None], found, np.where(normal[None, :, None] <= 0, self.force[None], np.nan))
+
+
+def _pressing(depth: np.ndarray, sink: np.ndarray, stiffness: float, damping: float) -> np.ndarray:
+    """Vertical force on all pads together `(t,)` [N]; pads push and never pull."""
+    return np.asarray(np.where(depth > 0, np.maximum(stiffness * depth + damping * sink, 0.0), 0.0 * depth).sum(-1))
+
+
+_FOOTINGS: WeakKeyDictionary[Signals, tuple[Footing, ...]] = WeakKeyDictionary()
+
+
+def footings(signals: Signals) -> tuple[Footing, ...]:
+    """Every foot of a log with contact forces and a floating base; kept while the signals live."""
+    if signals not in _FOOTINGS:
+        _FOOTINGS[signals] = _footings(signals)
+    return _FOOTINGS[signals]
+
+
+def balance(signals: Signals) -> np.ndarray | None:
+    """Logged less nominal force of the ground on each foot `(t, 3 f)` [N]; NaN where unknown; None without logged forces."""
+    feet = footings(signals)
+    if not feet:
+        return None
+    one = np.ones(1)
+    return np.concatenate([foot.force - foot.ground(one, one, one)[0] for foot in feet], 1)
+
+
+def _footings(signals: Signals) -> tuple[Footing, ...]:
+    subject, base = signals.subject, signals.base
+    if signals.contact is None or base is None or not subject.pads:
+        return ()
+    points = base.position[:, None] + np.einsum("tij,tpj->tpi", base.rotation, rigid.pad_points(subject, signals.position, base.rotation))
+    relative = np.einsum("tij,tpj->tpi", base.rotation, rigid.pad_points(subject, signals.position, base.rotation))
+    velocity = np.einsum("tij,tj->ti", base.rotation, base.linear_velocity)[:, None] + np.gradient(relative, signals.step, axis=0)
+    of_foot = np.array([p.foot for p in subject.pads])
+    found = []
+    for index in range(len(subject.feet)):
+        own = np.flatnonzero(of_foot == index)
+        force = signals.contact[:, index]
+        lowest = own[np.argmin(np.nan_to_num(relative[:, own, 2]), 1)]
+        weight = _loads(signals, own, lowest)
+        slide = np.einsum("tp,tpi->ti", weight, velocity[:, own, :2])
+        height, sink = points[:, own, 2], -velocity[:, own, 2]
+        friction, stiffness, damping = nominal_ground(subject, index)
+        loaded = np.isfinite(force[:, 2]) & (np.nan_to_num(force[:, 2]) > LOADED) & np.isfinite(height).all(1) & signals.valid
+        floor = _floor(force[loaded, 2], height[loaded], sink[loaded], stiffness, damping) if loaded.any() else np.nan
+        found.append(Footing(force, slide, floor - height, sink, friction, stiffness, damping))
+    return tuple(found)
+
+
+def _floor(force: np.ndarray, height: np.ndarray, sink: np.ndarray, stiffness: float, damping: float) -> float:
+    """Height of a floor on which the nominal ground bears the mean of the logged forces [m]; bisection, as more floor is more force."""
+    mean = float(force.mean())
+    low, high = float(height.min()), float(height.max() + mean / stiffness)
+    for _ in range(60):
+        middle = (low + high) / 2
+        if _pressing(middle - height, sink, stiffness, damping).mean() < mean:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+def _loads(signals: Signals, own: np.ndarray, lowest: np.ndarray) -> np.ndarray:
+    """Share of each of a foot's pads in its load `(t, p)`; all on the lowest where nobody measured it."""
+    alone = (own[None, :] == lowest[:, None]).astype(float)
+    if signals.pad_force is None:
+        return alone
+    load = np.maximum(np.nan_to_num(signals.pad_force[:, own, 2]), 0.0)
+    total = load.sum(1, keepdims=True)
+    return np.where(total > TOUCHING_FORCE, load / np.maximum(total, 1e-9), alone)
+
+
+def foot_bodies(subject: Subject, foot: int) -> tuple[str, ...]:
+    """Links of a foot that may touch the ground."""
+    return tuple(dict.fromkeys(subject.tree.links[p.link] for p in subject.pads if p.foot == foot))
+
+
+def foot_geoms(model: mujoco.MjModel, bodies: tuple[str, ...]) -> list[int]:
+    """Shapes of these bodies that collide."""
+    ids = {model.body(name).id for name in bodies}
+    return [g for g in range(model.ngeom) if int(model.geom_bodyid[g]) in ids and (model.geom_contype[g] or model.geom_conaffinity[g])]
+
+
+def floor_geoms(model: mujoco.MjModel) -> list[int]:
+    """Shapes of the world that collide."""
+    return [g for g in range(model.ngeom) if model.geom_bodyid[g] == 0 and (model.geom_contype[g] or model.geom_conaffinity[g])]
+
+
+def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Friction `(3,)`, `solref` `(2,)` and number of contact dimensions between a shape and the floor, as MuJoCo mixes them."""
+    floor = floor_geoms(model)
+    if not floor:
+        return model.geom_friction[geom].copy(), model.geom_solref[geom].copy(), int(model.geom_condim[geom])
+    other = floor[0]
+    ranks = model.geom_priority[geom], model.geom_priority[other]
+    if ranks[0] != ranks[1]:
+        chosen = geom if ranks[0] > ranks[1] else other
+        return model.geom_friction[chosen].copy(), model.geom_solref[chosen].copy(), int(model.geom_condim[chosen])
+    friction = np.maximum(model.geom_friction[geom], model.geom_friction[other])
+    parts = model.geom_solmix[[geom, other]]
+    share = parts[0] / parts.sum() if parts.sum() > 0 else 0.5
+    own, theirs = model.geom_solref[geom], model.geom_solref[other]
+    solref = share * own + (1 - share) * theirs if own[0] > 0 and theirs[0] > 0 else np.minimum(own, theirs)
+    return friction, solref, int(max(model.geom_condim[geom], model.geom_condim[other]))
+
+
+def nominal_ground(subject: Subject, foot: int) -> tuple[float, float, float]:
+    """Friction coefficient [-], stiffness [N/m] and damping [Ns/m] of the model's ground under one pad of a foot at rest.
+
+    MuJoCo holds a pad at depth d with force (k' d + b' d') / R, R = (1 - i) / i times the body's inverse weight, i the impedance
+    at no depth, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of `solref` (T, r), or the two given as they are where negative.
+    """
+    model = subject.model
+    geom = foot_geoms(model, foot_bodies(subject, foot))[0]
+    friction, solref, _ = pair_settings(model, geom)
+    impedance = model.geom_solimp[geom]
+    least, most = float(np.clip(impedance[0], 1e-4, 0.9999)), float(np.clip(impedance[1], 1e-4, 0.9999))
+    weight = float(model.body_invweight0[model.geom_bodyid[geom], 0])
+    regularisation = (1 - least) / least * max(weight, 1e-9)
+    if solref[0] > 0:
+        spring, damper = 1 / (most * solref[0] * solref[1]) ** 2, 2 / (most * solref[0])
+    else:
+        spring, damper = -solref[0] / most**2, -solref[1] / most
+    return float(friction[0]), float(spring / regularisation), float(damper / regularisation)
