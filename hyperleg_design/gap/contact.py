@@ -20,6 +20,9 @@ TOUCHING_FORCE = 2.0
 TOUCHING_HEIGHT = 0.03
 """Height over the lowest foot up to which a foot may touch, where no force is logged [m]; assumed, a low swing."""
 
+FLIGHT = 0.1
+"""Force that the motion needs from outside, over the weight, below which no foot touches; assumed."""
+
 
 @dataclass(frozen=True, eq=False)
 class Ground:
@@ -33,8 +36,18 @@ class Ground:
     """Feet that touch, or may `(t, f)`; None of a fixed base without contact forces."""
 
 
-def contacts(log: Log, subject: Subject, ticks: np.ndarray, position: np.ndarray, base: BaseMotion | None) -> Ground:
+def contacts(
+    log: Log, subject: Subject, ticks: np.ndarray, position: np.ndarray, base: BaseMotion | None, needed: np.ndarray | None = None
+) -> Ground:
     """Contact of one log. Forces are logged by pad, or by foot, which is as good where a foot has one pad.
+
+    Args:
+        log: of this subject.
+        subject: the robot.
+        ticks: `(t,)` [s].
+        position: of the joints `(t, n)` [rad].
+        base: of a floating base.
+        needed: force that the motion of a floating base needs from outside `(t, 3)` [N]; in flight none.
 
     Raises:
         InputError: a force on a foot that the robot does not have.
@@ -51,6 +64,8 @@ def contacts(log: Log, subject: Subject, ticks: np.ndarray, position: np.ndarray
         return Ground(None, None, None)
     if not log.feet:
         touching = _may_touch(subject, position, base) if base is not None else None
+        if touching is not None and needed is not None:
+            touching &= (np.linalg.norm(needed, axis=1) > FLIGHT * _weight(subject))[:, None]
         return Ground(None, None, touching)
 
     def force(names: list[str] | tuple[str, ...]) -> np.ndarray:
@@ -102,3 +117,8 @@ def _may_touch(subject: Subject, position: np.ndarray, base: BaseMotion) -> np.n
     of_foot = np.array([p.foot for p in subject.pads])
     lowest = np.stack([height[:, of_foot == f].min(1) for f in range(len(subject.feet))], 1)
     return np.asarray(lowest < lowest.min(1, keepdims=True) + TOUCHING_HEIGHT)
+
+
+def _weight(subject: Subject) -> float:
+    mass = subject.tree.base_inertial[0] + subject.tree.inertial[:, 0].sum()
+    return float(mass * np.linalg.norm(subject.gravity))

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 LONGEST_STEP = 0.00125
 """Of the simulation, where nobody gives one [s]: above it the controllers' discretisation shows (assumed)."""
+FASTEST = 1e5
+"""Velocity from which a simulation has diverged [rad/s, m/s]."""
 INPUTS = ("target", "command", "torque")
 """What a replay can follow."""
 
@@ -81,8 +83,8 @@ def short_windows(signals: Signals, duration: float = 0.25, stride: float | None
     Raises:
         InputError: the log has no valid stretch that long.
     """
-    length = max(int(round(duration / signals.step)), 1)
-    every = max(int(round((stride or duration) / signals.step)), 1)
+    length = max(round(duration / signals.step), 1)
+    every = max(round((stride or duration) / signals.step), 1)
     total = np.concatenate([[0], np.cumsum(signals.valid)])
     starts = np.arange(0, len(signals.time) - length, every)
     starts = starts[total[starts + length + 1] - total[starts] == length + 1]
@@ -99,7 +101,7 @@ def whole_log(signals: Signals) -> Windows:
     """
     valid = np.flatnonzero(signals.valid)
     if len(valid) < 2:
-        raise InputError(signals.log.name, "t", int(len(valid)), "ticks are fit for use: the log is all gaps, or too short")
+        raise InputError(signals.log.name, "t", len(valid), "ticks are fit for use: the log is all gaps, or too short")
     return Windows(valid[:1], int(valid[-1] - valid[0]))
 
 
@@ -150,7 +152,7 @@ def _alterations(change: Change | Sequence[Alteration], subject: Subject) -> tup
         from hyperleg_design.gap.overlay import alterations
 
         return alterations(change, subject)  # type: ignore[arg-type]
-    return tuple(change)  # type: ignore[arg-type]
+    return tuple(change)
 
 
 def _inputs(signals: Signals, follow: str) -> np.ndarray:
@@ -252,9 +254,12 @@ class Plant:
         if len(self.alive):
             try:
                 self.batch.step(self.alive)
+                lost = self.alive[~(np.abs(self.qvel[self.alive]) < FASTEST).all(1)]
             except SimulationError as error:
-                self.qpos[error.ids], self.qvel[error.ids] = np.nan, np.nan
-                self.alive = np.setdiff1d(self.alive, error.ids)
+                lost = np.asarray(error.ids)
+            if len(lost):
+                self.qpos[lost], self.qvel[lost] = np.nan, np.nan
+                self.alive = np.setdiff1d(self.alive, lost)
         return driven
 
 

@@ -63,7 +63,8 @@ def read_spec(path: Path) -> Any:
     spec.compiler.fusestatic = False
     for index, joint in enumerate(spec.joints):
         joint.name = joint.name or f"joint_{index}"
-    for body in spec.bodies:
+    for index, body in enumerate(spec.bodies):
+        body.name = body.name or f"body_{index}"
         if body.explicitinertial and not body.mass and not np.nan_to_num(np.asarray(body.fullinertia)).any():
             body.fullinertia, body.inertia = [np.nan] * 6, [0.0] * 3
     return spec

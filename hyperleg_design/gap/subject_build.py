@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,7 +67,7 @@ def of_design(design: Design, path: Path, base: str, known: set[str] | None) -> 
     joints = {j.name: getattr(design.joints, j.name.split("_", 1)[1]) for j in moving}
     model = robot_file.compiled(spec, path)
     tree = mechanism_of(model)
-    pads = _pads(model, tree, None)
+    pads = _pads(model, tree)
     feet = tuple(f"{side}_foot" for side in SIDES)
     pads = tuple(dataclasses.replace(p, foot=0 if p.name.startswith(SIDES[0]) else 1) for p in pads)
     return _assembled(
@@ -151,33 +151,53 @@ def _add_rotors(spec: Any, joints: Sequence[str], motors: Sequence[str], matrix:
             tendon.wrap_joint(joints[row], matrix[row, column])
 
 
-def _pads(model: Any, tree: Mechanism, only: set[int] | None) -> tuple[Pad, ...]:
-    """Spheres, ends of capsules and corners of boxes that collide on moving links."""
+def _pads(model: Any, tree: Mechanism, feet: Mapping[str, int] | None = None) -> tuple[Pad, ...]:
+    """Spheres, ends of capsules and corners of boxes that collide on moving links.
+
+    Args:
+        model: compiled.
+        tree: of the same robot.
+        feet: foot of each link that belongs to one; by default all links do, to the first.
+    """
+    import mujoco
+
     found = []
     for geom in range(model.ngeom):
-        body = int(model.geom_bodyid[geom])
-        name = model.body(body).name or f"body_{body}"
-        if name not in tree.links or not (model.geom_contype[geom] or model.geom_conaffinity[geom]) or (only is not None and body not in only):
+        name = model.body(int(model.geom_bodyid[geom])).name
+        if name not in tree.links or not (model.geom_contype[geom] or model.geom_conaffinity[geom]):
             continue
+        sphere = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_SPHERE
+        if feet is not None and (name not in feet or (feet[name] < 0 and not sphere)):
+            continue
+        foot = 0 if feet is None else feet[name] if feet[name] >= 0 else -1 - feet[name]
         points, radius = robot_file.touching_points(model, geom)
         label = model.geom(geom).name or f"{name}_{geom}"
         for index, point in enumerate(points):
             title = label if len(points) == 1 else f"{label}_{index}"
-            found.append(Pad(title, 0, tree.links.index(name), (float(point[0]), float(point[1]), float(point[2])), radius))
+            found.append(Pad(title, foot, tree.links.index(name), (float(point[0]), float(point[1]), float(point[2])), radius))
     return tuple(found)
 
 
 def _feet_of_file(model: Any, tree: Mechanism) -> tuple[tuple[str, ...], tuple[Pad, ...]]:
-    """Feet: the outermost links with shapes that collide."""
-    names = [model.body(b).name or f"body_{b}" for b in range(model.nbody)]
+    """Feet: the outermost links with shapes that collide; spheres further up the same limb are pads of that foot too."""
+    names = [model.body(b).name for b in range(model.nbody)]
     touching = {int(b) for b, *kinds in zip(model.geom_bodyid, model.geom_contype, model.geom_conaffinity, strict=True) if any(kinds)}
-    outermost = set()
-    for leaf in set(range(1, model.nbody)) - set(model.body_parentid.tolist()):
+
+    def limb(body: int) -> bool:
+        return names[body] in tree.links and tree.link_joint[tree.links.index(names[body])] != BASE
+
+    feet: list[str] = []
+    foot_of: dict[str, int] = {}
+    for leaf in sorted(set(range(1, model.nbody)) - set(model.body_parentid.tolist())):
         body = leaf
         while body and body not in touching:
             body = int(model.body_parentid[body])
-        if names[body] in tree.links and tree.link_joint[tree.links.index(names[body])] != BASE:
-            outermost.add(body)
-    pads = _pads(model, tree, outermost)
-    feet = tuple(dict.fromkeys(tree.links[p.link] for p in pads))
-    return feet, tuple(dataclasses.replace(p, foot=feet.index(tree.links[p.link])) for p in pads)
+        if not limb(body) or names[body] in feet:
+            continue
+        foot_of[names[body]] = len(feet)
+        above = int(model.body_parentid[body])
+        while limb(above):
+            foot_of.setdefault(names[above], -1 - len(feet))  # below zero: spheres only
+            above = int(model.body_parentid[above])
+        feet.append(names[body])
+    return tuple(feet), _pads(model, tree, foot_of)

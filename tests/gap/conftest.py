@@ -14,3 +14,25 @@ def real_logs() -> Path:
     if not folder.is_dir():
         pytest.skip(f"no real logs in {folder}; set HYPERLEG_DATA to their folder")
     return folder
+
+
+@pytest.fixture(scope="session")
+def robot_files(tmp_path_factory) -> dict[str, Path]:
+    """MJCF files of other people's robots, by name."""
+    import robots
+
+    folder = tmp_path_factory.mktemp("robots")
+    found = {}
+    for name in ("pendulum", "arm", "coupled"):
+        found[name] = folder / f"{name}.xml"
+        found[name].write_text(getattr(robots, name.upper()))
+    return found
+
+
+@pytest.fixture(scope="session")
+def runs():
+    """Logs of ten seconds of each of those robots at 200 Hz, without noise."""
+    import robots
+
+    targets = {"pendulum": robots.waves(1, 0.4), "arm": robots.waves(6, 0.6, 0.1, 1.0), "coupled": robots.waves(2, [1.0, 1.0])}
+    return {name: robots.servo_run(getattr(robots, name.upper()), target, 10.0) for name, target in targets.items()}
