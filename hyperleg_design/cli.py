@@ -287,6 +287,8 @@ class Evaluate:
     """Processes side by side."""
     overlay: str = ""
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
+    logs: Path | None = None
+    """Folder to write a log of every trial to, as `hyperleg gap` reads them; none by default."""
     json: bool = False
     """Print JSON."""
 
@@ -299,23 +301,32 @@ class Evaluate:
 
         if not self.policies:
             raise InputError("evaluate", "", None, "expects ONNX files")
-        check_output_folder(self.out)
+        for folder in (self.out, self.logs):
+            if folder is not None:
+                check_output_folder(folder)
         overlay = None
         if self.overlay:
             from hyperleg_design.gap.overlay import read_overlay, write_overlay
 
             overlay = read_overlay(self.overlay)
         alterations = overlay.alterations if overlay else None
-        found = evaluate_many(self.policies, self.protocol or None, workers=self.workers, alterations=alterations)
+        found = evaluate_many(
+            self.policies, self.protocol or None, workers=self.workers, kept=1 if self.logs is None else sys.maxsize, alterations=alterations
+        )
         folder = write_results(self.out, found)
+        written = []
+        if self.logs is not None:
+            from hyperleg_design.gap.recording import write_logs
+
+            written = write_logs(self.logs, found)
         if overlay:
             write_overlay(folder / "overlay.yaml", overlay)
         rows = evaluation_rows(found)
         if self.json:
-            _emit({"folder": str(folder), "results": rows})
+            _emit({"folder": str(folder), "results": rows, "logs": [str(path) for path in written]})
         else:
             print(evaluation_text(rows))
-            print(f"tables in {folder}")
+            print(f"tables in {folder}" + (f"; {len(written)} logs in {self.logs}" if written else ""))
 
 
 def _require(*modules: str) -> None:
@@ -344,6 +355,35 @@ class Version:
             _emit(found)
         else:
             print("\n".join(f"{k} {v}" for k, v in found.items()))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GapCheck:
+    """Say what logs can and cannot show: rates, jitter, dropouts, units, excitation of each effect. Exit code 2 on errors."""
+
+    logs: Annotated[tuple[str, ...], tyro.conf.Positional]
+    """Files or folders: Parquet, CSV, PACE .pt, BAM JSON, SAGE folder, LeRobot dataset, MCAP or ROS 2 bag."""
+    robot: str = ""
+    """Shipped design, YAML, MJCF or URDF; compares names and ranges of joints."""
+    map: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """THEIRS=OURS, a CSV file's column and ours, such as q1=position/knee."""
+    out: Path | None = None
+    """Folder to write check.json and the logs as Parquet to."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Check them."""
+        from hyperleg_design.gap.checking import check_sources
+        from hyperleg_design.report.gap_text import checks_text
+
+        checks = check_sources(self.logs, robot=self.robot, mapping=self.map, out=self.out)
+        if self.json:
+            _emit([check.mapping() for check in checks])
+        else:
+            print(checks_text(checks))
+        if not all(check.usable for check in checks):
+            raise SystemExit(2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -427,6 +467,7 @@ class GapApply:
 
 
 GAP_VERBS: dict[str, Any] = {
+    "check": GapCheck,
     "effects": GapEffects,
     "show": GapShow,
     "apply": GapApply,

@@ -74,6 +74,10 @@ class Trial:
     """Sliding speed of each touching pad [m/s], `(t, P)`."""
     divergence: Divergence | None = None
     """State from which it diverged, where it did."""
+    joint_target: np.ndarray | None = None
+    """Angles that the joint controllers were asked for [rad], `(t, J)`; None where nobody recorded them."""
+    base_angular_velocity: np.ndarray | None = None
+    """In the pelvis's frame [rad/s], `(t, 3)`; None where nobody recorded it."""
 
     @property
     def samples(self) -> int:
@@ -100,6 +104,8 @@ SIGNALS = (
     "base_position",
     "base_orientation",
     "base_velocity",
+    "base_angular_velocity",
+    "joint_target",
     "joint_position",
     "joint_velocity",
     "driven_joint_torque",

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.sampling import quantum
+
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
     from hyperleg_design.gap.subject import Subject
@@ -26,6 +28,8 @@ BANDWIDTH = 10.0
 """Content of the command that tells a motor's bandwidth from delay [Hz]."""
 COMMAND = 0.5
 """Content of the command from which a delay shows [Hz]."""
+NOISE_MARGIN = 1.5
+"""Times the power of noise that does not count as motion."""
 WARMING, SAGGING = 10.0, 0.03
 """Rise of a motor's temperature [K], and spread of the voltage over its mean, that change torque visibly."""
 
@@ -99,10 +103,10 @@ def _motion(log: Log, subject: Subject | None) -> _Motion:
     with_gains = np.array([log.has("position_target", j) and j in gains and np.isfinite(gains[j]).all() for j in joints], bool)
     measured = anywhere("joint_torque", "motor_torque", "motor_current")
     asked = with_gains | anywhere("motor_torque_command")
-    commands = np.array([_content(_asked(log, joint), rate) for joint in joints])
+    commands = np.array([_content(_asked(log, joint), rate, noisy=False) for joint in joints])
     return _Motion(
         np.array(joints), reversals, spread, np.nanmax(position, 0) - np.nanmin(position, 0),
-        np.array([_content(velocity[:, i], rate) if moving[:, i].any() else 0.0 for i in range(len(joints))]),
+        np.array([_content(position[:, i], rate) if moving[:, i].any() else 0.0 for i in range(len(joints))]),
         commands, slow, measured | asked, measured, asked,
     )  # fmt: skip
 
@@ -110,7 +114,7 @@ def _motion(log: Log, subject: Subject | None) -> _Motion:
 def _asked(log: Log, joint: str) -> np.ndarray:
     for kind in ("position_target", "motor_torque_command"):
         if log.has(kind, joint):
-            return np.diff(log.column(f"{kind}/{joint}"), prepend=np.nan)
+            return log.column(f"{kind}/{joint}")
     return np.empty(0)
 
 
@@ -127,14 +131,25 @@ def _speed(log: Log, joint: str) -> np.ndarray:
     return np.asarray(rate)
 
 
-def _content(values: np.ndarray, rate: float) -> float:
-    """Frequency below which 98 % of a signal's power lies [Hz]."""
-    values = np.nan_to_num(values - np.nanmean(values)) if np.isfinite(values).any() else np.zeros(0)
-    if len(values) < 32 or not values.any():
+def _content(values: np.ndarray, rate: float, *, noisy: bool = True) -> float:
+    """Highest frequency above which a signal's rate still holds 2 % of its power, and more than its noise can [Hz].
+
+    Noise is white in the signal itself; its size is that of the top quarter of the spectrum, or of the quantisation.
+    """
+    step = quantum(values[np.isfinite(values)])
+    rates = np.diff(values)
+    rates = np.nan_to_num(rates - np.nanmean(rates)) if np.isfinite(rates).any() else np.zeros(0)
+    if len(rates) < 32 or not rates.any():
         return 0.0
-    power = np.abs(np.fft.rfft(values * np.hanning(len(values)))) ** 2
-    place = int(np.searchsorted(np.cumsum(power), 0.98 * power.sum()))
-    return float(place * rate / len(values))
+    window = np.hanning(len(rates))
+    power = np.abs(np.fft.rfft(rates * window)) ** 2
+    frequency = np.fft.rfftfreq(len(rates), 1 / rate)
+    scale = 4 * np.sin(np.pi * frequency / rate) ** 2  # of a difference
+    top = slice(3 * len(power) // 4, None)
+    variance = max(float(np.median(power[top] / scale[top])) / np.log(2), step**2 / 12 * float(window @ window))  # median of an exponential
+    above = np.cumsum(power[::-1])[::-1]
+    enough = np.flatnonzero(above >= max(0.02 * above[0], noisy * NOISE_MARGIN * variance * float(scale.sum())))
+    return float(frequency[enough[-1]]) if len(enough) else 0.0
 
 
 Rule = Callable[[str, "Log", _Motion], Excitation]

@@ -112,13 +112,17 @@ def held_rows(values: np.ndarray) -> int:
 
 
 def quantum(values: np.ndarray) -> float:
-    """Smallest step between values of a quantised signal `(t,)`; 0 where values hardly ever repeat."""
+    """Smallest step between values of a quantised signal `(t,)`; 0 where values hardly ever repeat, or are no multiples of one step."""
     levels = np.unique(values)
     if len(levels) < 2 or len(levels) > 0.5 * len(values):
         return 0.0
     gaps = np.diff(levels)
     real = gaps[gaps > 1e-6 * max(abs(levels[0]), abs(levels[-1]), 1e-12)]  # not the rounding of single precision
-    return float(real.min()) if len(real) else 0.0
+    if not len(real):
+        return 0.0
+    step = float(real.min())
+    ratio = real / step
+    return step if np.mean(np.abs(ratio - np.round(ratio)) < 0.1) > 0.9 else 0.0
 
 
 def noise(values: np.ndarray) -> float:

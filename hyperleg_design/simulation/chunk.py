@@ -131,6 +131,8 @@ class Chunk:
         """MuJoCo's position and velocity before each substep, kept while `recording`."""
         self.altered = None if self.drive.chain is None else np.zeros((substeps, 2, count, joints))
         """Torque through the transmission and friction that alterations make of them, kept while `recording`."""
+        self.target = np.zeros((count, joints))
+        """Joint angles that the controller was asked for in the last policy step [rad]."""
         self.recording = False
         self.thermal = ThermalState(task.thermal, (count, motors))
         self.commander = commander(task.commands, count)
@@ -204,7 +206,8 @@ class Chunk:
 
     def _physics(self) -> None:
         joints = len(self.layout.joints)
-        target = (self.layout.default + self.task.control.scale * self.smoothed).reshape(self.count, LEGS, joints // LEGS)
+        self.target = self.layout.default + self.task.control.scale * self.smoothed
+        target = self.target.reshape(self.count, LEGS, joints // LEGS)
         assisted = self.assist is not None and self.assist.active
         for substep in range(len(self.sensors)):
             if self.recording:
@@ -391,6 +394,7 @@ class Chunk:
             "base_orientation": position[..., 3:7],
             "base_velocity": velocity[..., :3],
             "base_angular_velocity": velocity[..., 3:_ROTORS_BEFORE],
+            "joint_target": np.broadcast_to(self.target, (substeps, *self.target.shape)),
             "joint_position": position[..., 7:],
             "joint_velocity": velocity[..., _ROTORS_BEFORE:],
             "motor_torque": self.motor_torque,

@@ -31,3 +31,19 @@ def test_a_truncated_policy_stops_before_anything_is_written(make_onnx, tmp_path
     assert code == 2
     assert "broken.onnx" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_every_trial_can_be_saved_as_a_log(make_onnx, tmp_path, capsys):
+    from hyperleg_design.gap.check import check_log
+    from hyperleg_design.gap.log import read_log
+
+    protocol = tmp_path / "short.yaml"
+    protocol.write_text((cli.resources.content_folder("sim") / "protocol_walk.yaml").read_text().replace("trials: 10", "trials: 3"))
+    arguments = ["evaluate", str(make_onnx()), "--protocol", str(protocol), "--out", str(tmp_path / "out"), "--workers", "1"]
+    assert cli.main([*arguments, "--logs", str(tmp_path / "logs"), "--json"]) == 0
+    paths = json.loads(capsys.readouterr().out)["logs"]
+    assert len(paths) == len(list((tmp_path / "logs").glob("*.parquet"))) == 3
+    log = read_log(paths[0])
+    assert len(log.joints) == len(log.motors) == 14
+    assert log.metadata.extra["outcome"] == "fell"
+    assert check_log(log).usable

@@ -1,0 +1,61 @@
+"""A check of logs as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.check import Check
+    from hyperleg_design.gap.sampling import Column
+
+MOST_PLACES = 4
+"""Names listed before the rest is counted."""
+
+
+def checks_text(checks: Sequence[Check]) -> str:
+    """What each log can and cannot show."""
+    return "\n\n".join(_text(check) for check in checks)
+
+
+def _text(check: Check) -> str:
+    clock = check.sampling
+    lines = [
+        f"{check.name}: {clock.duration:.4g} s at {clock.rate:.4g} Hz, {clock.ticks} ticks, jitter {100 * clock.jitter:.1f} % of a step, "
+        f"dropouts {100 * clock.dropouts:.1f} % of the time"
+    ]
+    for finding in check.findings:
+        place = f"{finding.signal} " if finding.signal else ""
+        lines.append(f"  {finding.severity:8}{place}{finding.what}{f': {finding.remedy}' if finding.remedy else ''}")
+    lines += [f"  signals {line}" for line in _signals(check.columns)]
+    shown = [e for e in check.excitation if e.shown]
+    lines += [f"  shows   {e.effect}{_places(e.where)}: {e.why}" for e in shown]
+    lines += [f"  cannot  {e.effect}: {e.why}" for e in check.excitation if not e.shown]
+    lines.append("  fit for a diagnosis" if check.usable else "  not fit for a diagnosis: mend the errors first")
+    return "\n".join(lines)
+
+
+def _places(where: tuple[str, ...]) -> str:
+    if not where:
+        return ""
+    more = f" and {len(where) - MOST_PLACES} more" if len(where) > MOST_PLACES else ""
+    return f" at {', '.join(where[:MOST_PLACES])}{more}"
+
+
+def _signals(columns: Sequence[Column]) -> list[str]:
+    """One line a kind of signal: how many, rate, quantisation, noise, saturation, the worst of its columns."""
+    kinds: dict[str, list[Column]] = {}
+    for one in columns:
+        kinds.setdefault(one.column.partition("/")[0], []).append(one)
+    lines = []
+    for kind, members in kinds.items():
+        quantum = max(c.quantum for c in members)
+        parts = [
+            f"{kind} ({len(members)})",
+            f"{min(c.rate for c in members):.4g} Hz",
+            f"steps of {quantum:.2g}" if quantum else "",
+            f"noise {max(c.noise for c in members):.2g}",
+            f"at a bound {100 * max(c.saturated for c in members):.2g} %" if max(c.saturated for c in members) > 0.005 else "",
+        ]
+        lines.append(", ".join(part for part in parts if part))
+    return lines
