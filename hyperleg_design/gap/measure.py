@@ -3,8 +3,8 @@
 Torque residuals count below `BAND` only: above it, noise of sensors and of differentiation outweighs what a model can explain.
 At the motors, torques are those of the controller's map from joints to motors, angles those of the transposed
 `joint_from_motor`. The floor, the size that a residual has when nothing is wrong, comes from reference logs; else from pairs of
-test logs with the same targets (half of the variance of their difference); else from the residual's own level above `BAND`,
-taken as white (the smooth-against-noisy split).
+test logs with the same targets (half of the variance of their difference); else from the smooth-against-noisy split: of torques
+the residual's own level above `BAND`, taken as white, of positions and velocities the smoother's own error.
 """
 
 from __future__ import annotations
@@ -206,7 +206,7 @@ def _sheet(
     regimes = _regimes(signals, kind, names, load if signal not in ("position", "velocity") else None, position, velocity)
     size = np.full(len(names), np.nan) if load is None else _rms(np.where(signals.valid[:, None], load, np.nan))
     if not banded:
-        return _Sheet(signal, kind, unit, names, residual, np.zeros(len(names)), size, regimes, {})
+        return _Sheet(signal, kind, unit, names, residual, _smoothing_error(signals, signal, kind), size, regimes, {})
     spectrum, frequency, weight = _spectrum(residual, signals.step)
     kept = _band(spectrum, frequency, weight, 0.0, BAND, residual)
     high = frequency > BAND
@@ -215,6 +215,20 @@ def _sheet(
         floor = np.sqrt(density * 2 * np.sum(frequency <= BAND)) / len(residual) / weight
     bands = {f"{low:g}-{top:g} Hz": _band(spectrum, frequency, weight, low, top, residual) for low, top in BANDS if low < 0.5 / signals.step}
     return _Sheet(signal, kind, unit, names, kept, np.nan_to_num(floor), size, regimes, bands)
+
+
+def _smoothing_error(signals: Signals, signal: str, kind: str) -> np.ndarray:
+    """Standard deviation of smoothed positions or velocities, at the joints `(n,)` or the motors `(m,)`.
+
+    White noise through a low-pass at the crossover keeps omega_c h / pi of its variance, its derivative omega_c^2 times that.
+    """
+    if signals.noise is None or signals.bandwidth is None:
+        return np.zeros(len(signals.subject.motors if kind == "motor" else signals.subject.joints))
+    crossover = 2 * np.pi * np.nan_to_num(signals.bandwidth)
+    error = np.nan_to_num(signals.noise) * np.sqrt(np.minimum(crossover * signals.step / np.pi, 1.0))
+    if signal == "velocity":
+        error = error * crossover
+    return np.sqrt(error**2 @ signals.subject.joint_from_motor**2) if kind == "motor" else error
 
 
 def _spectrum(residual: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -36,3 +36,11 @@ def runs():
 
     targets = {"pendulum": robots.waves(1, 0.4), "arm": robots.waves(6, 0.6, 0.1, 1.0), "coupled": robots.waves(2, [1.0, 1.0])}
     return {name: robots.servo_run(getattr(robots, name.upper()), target, 10.0) for name, target in targets.items()}
+
+
+@pytest.fixture(scope="session")
+def biped_runs():
+    """Our biped, standing and thrown up."""
+    import robots
+
+    return {"standing": robots.biped_run(), "thrown": robots.biped_run(height=4.0)}

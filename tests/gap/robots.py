@@ -144,3 +144,62 @@ def quantised(log: Log, size: float) -> Log:
     """Positions rounded to a grid, velocities taken out."""
     signals = {c: np.round(v / size) * size if c.startswith("position/") else v for c, v in log.signals.items() if not c.startswith("velocity/")}
     return log.changed(signals=signals)
+
+
+def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
+    """Our biped bending its knees, standing or thrown up, in plain MuJoCo at half a millisecond; all a log can hold.
+
+    Args:
+        height: of the soles over the floor at the start [m]; above 0 it also turns.
+        duration: [s]; standing, it topples after a second.
+        **metadata: of the log.
+    """
+    import copy
+
+    from hyperleg_design.gap.subject import load_subject
+    from hyperleg_design.simulation.actuation import friction_damping
+
+    subject = load_subject("hyperleg")
+    model = copy.copy(subject.model)
+    model.opt.timestep, model.opt.integrator = 0.0005, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    data = mujoco.MjData(model)
+    data.qpos[7:] = subject.default
+    mujoco.mj_kinematics(model, data)
+    data.qpos[2] += height - 0.0005 - min(data.geom(p.name).xpos[2] - p.radius for p in subject.pads)
+    data.qvel[3:6] = [0.5, -0.3, 0.2] if height else 0.0
+    stiffness, damping = subject.gains.T
+    pads = [p.name for p in subject.pads]
+    rows = []
+    for step in range(round(duration / model.opt.timestep)):
+        bend = np.array([0, 0, -1, 2, -1, 0, 0] * 2) * 0.08 * np.sin(2 * np.pi * 0.8 * data.time)
+        torque = stiffness * (subject.default + bend - data.qpos[7:]) - damping * data.qvel[6:]
+        data.qfrc_applied[6:] = torque
+        model.dof_damping[6:] = friction_damping(subject.coulomb, subject.viscous, data.qvel[6:], subject.friction_speed)
+        if step % 10 == 0:
+            mujoco.mj_forward(model, data)
+            felt = data.xmat[1].reshape(3, 3).T @ (data.qacc[:3] - model.opt.gravity)
+            pushed = np.zeros((len(pads), 3))
+            for number in range(data.ncon):
+                contact, wrench = data.contact[number], np.zeros(6)
+                mujoco.mj_contactForce(model, data, number, wrench)
+                force = contact.frame.reshape(3, 3).T @ wrench[:3]
+                first, second = (model.geom(g).name for g in (contact.geom1, contact.geom2))
+                pushed[pads.index(second if second in pads else first)] += force if second in pads else -force
+            state = [[data.time], data.qpos, data.qvel, torque, subject.default + bend, felt, pushed.ravel()]
+            rows.append(np.concatenate(state))
+        mujoco.mj_step(model, data)
+    time, place, turn, q, v, spin, _, torque, target, felt, force = np.split(np.array(rows), np.cumsum([1, 3, 4, 14, 3, 3, 14, 14, 14, 3]), 1)
+    columns = [(f"position/{j}", q[:, i]) for i, j in enumerate(subject.joints)] + [
+        (f"joint_torque/{j}", torque[:, i]) for i, j in enumerate(subject.joints)
+    ]
+    columns += [(f"position_target/{j}", target[:, i]) for i, j in enumerate(subject.joints)]
+    for kind, values in (("base_position", place), ("base_velocity", v), ("gyro", spin), ("accelerometer", felt)):
+        columns += [(f"{kind}/{axis}", values[:, i]) for i, axis in enumerate("xyz")]
+    columns += [(f"base_orientation/{axis}", turn[:, i]) for i, axis in enumerate("wxyz")]
+    columns += [(f"contact_force/{p}_{axis}", force[:, 3 * k + i]) for k, p in enumerate(pads) for i, axis in enumerate("xyz")]
+    return Log("biped", time[:, 0], dict(columns), Metadata(**{"robot": "hyperleg", "base": "floating", **metadata}))
+
+
+def without(log: Log, *kinds: str) -> Log:
+    """A log that lacks some signals."""
+    return log.changed(signals={c: v for c, v in log.signals.items() if c.partition("/")[0] not in kinds})
