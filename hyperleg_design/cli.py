@@ -183,6 +183,8 @@ class Study:
 
     out: Path = Path("results/study")
     """Folder to write; its index.html is the page."""
+    policies: Path | None = None
+    """Folder of trainings to evaluate, such as results/campaign; the shipped policies by default."""
     json: bool = False
     """Print JSON."""
 
@@ -190,7 +192,7 @@ class Study:
         """Run it."""
         from hyperleg_design.report.study import run_study
 
-        page = run_study(self.out, progress=not self.json)
+        page = run_study(self.out, policies=self.policies, progress=not self.json)
         if self.json:
             _emit({"page": str(page)})
         else:
@@ -327,6 +329,64 @@ class Evaluate:
         else:
             print(evaluation_text(rows))
             print(f"tables in {folder}" + (f"; {len(written)} logs in {self.logs}" if written else ""))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Paper:
+    """Evaluate the shipped policies, and put Tables III and IV and Figs. 4 to 7 beside the paper's on a page."""
+
+    policies: Path | None = None
+    """Folder of trainings, such as results/campaign; the shipped policies by default."""
+    out: Path = Path("results/paper")
+    """Folder to write; its index.html is the page."""
+    workers: int = 0
+    """Processes side by side; 0 for as many as the machine has processors."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Evaluate and write."""
+        from hyperleg_design.report.paper_page import read_tables, run_paper, tables_text
+
+        page = run_paper(self.policies, self.out, workers=self.workers or None, progress=not self.json)
+        tables = read_tables(self.out)
+        if self.json:
+            _emit({"page": str(page), "tables": tables})
+        else:
+            print(tables_text(tables))
+            print(f"open {page}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Replay:
+    """Show one trial of a policy: as a GIF file, or in the browser."""
+
+    policy: Annotated[str, tyro.conf.Positional]
+    """ONNX file, or name of a shipped training such as walk-toe-0."""
+    protocol: str = ""
+    """walk, t_test, or a YAML file; what suits the policy's task by default."""
+    seed: int | None = None
+    """Of the starting state; the protocol's by default."""
+    gif: Path | None = None
+    """File to write."""
+    viser: bool = False
+    """Show it in the browser; needs viser."""
+
+    def run(self) -> None:
+        """Replay it."""
+        from hyperleg_design.report import replay
+
+        if (self.gif is None) == (not self.viser):
+            raise InputError("replay", "", None, "expects --gif FILE or --viser")
+        if self.viser:
+            replay.check_browser()
+        found = replay.replay(self.policy, self.protocol or None, seed=self.seed)
+        print(f"{found.policy}: {found.outcomes[0].replace('_', ' ')} after {found.end_times[0]:.2f} s")
+        if self.gif is not None:
+            print(f"written to {replay.replay_gif(found, self.gif)}")
+        else:
+            print("open http://localhost:8080; Ctrl-C to stop", flush=True)
+            replay.replay_in_browser(found)
 
 
 def _require(*modules: str) -> None:
@@ -494,6 +554,8 @@ VERBS: dict[str, Any] = {
     "train": Train,
     "campaign": Campaign,
     "evaluate": Evaluate,
+    "replay": Replay,
+    "paper": Paper,
     "gap": Gap,
     "version": Version,
 }
@@ -504,7 +566,7 @@ def _parse(arguments: list[str]) -> Any:
     errors = io.StringIO()
     verbs, prog, about = VERBS, "hyperleg", "Design, size and compare legged robots with cooperative actuation."
     if arguments[:1] == ["gap"]:
-        verbs, prog, about = GAP_VERBS, "hyperleg gap", "Where a robot differs from its simulation, and why."
+        verbs, prog, about = GAP_VERBS, "hyperleg gap", "Diagnose the gap between simulation and robot: where they differ, and why."
         arguments = arguments[1:] or ["--help"]
     try:
         with contextlib.redirect_stderr(errors):

@@ -46,14 +46,19 @@ def evaluate(
     """
     chosen = load_policy(policy) if isinstance(policy, str | Path) else policy
     if protocol is None:
-        commands = getattr(task or getattr(chosen, "task", None), "commands", None)
-        protocol = "t_test" if isinstance(commands, WaypointCommands) else "walk"
+        protocol = protocol_for(chosen, task)
     run = load_protocol(protocol) if isinstance(protocol, str | Path) else protocol
     if isinstance(run, TTestProtocol):
         return evaluate_t_test(chosen, run, design=design, task=task, threads=threads, alterations=alterations)
     if isinstance(run, WalkProtocol):
         return evaluate_walk(chosen, run, design=design, task=task, threads=threads, alterations=alterations)
     raise InputError("evaluate", "protocol", run.name, "expects a WalkProtocol or a TTestProtocol")
+
+
+def protocol_for(policy: Policy, task: Task | None = None) -> Protocol:
+    """The shipped protocol that suits a task, a policy's own by default: `t_test` for waypoints, else `walk`."""
+    commands = getattr(task or getattr(policy, "task", None), "commands", None)
+    return load_protocol("t_test" if isinstance(commands, WaypointCommands) else "walk")
 
 
 def evaluate_many(

@@ -76,7 +76,7 @@ class Estimate:
         """Verdict on a number from elsewhere, such as the paper's: inside the interval it agrees."""
         if not np.isfinite(self.mean):
             return NOTHING_MEASURED
-        if not self.speaks_of_seeds:
+        if self.seeds < FEWEST_SEEDS:
             return TOO_FEW_SEEDS
         return AGREES if self.low <= value <= self.high else DIFFERS
 

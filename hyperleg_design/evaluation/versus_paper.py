@@ -36,7 +36,7 @@ class PaperRow:
     ablation_verdict: str
     """The same without the toe."""
     change_verdict: str
-    """The same for the relative change between the two."""
+    """Of `change_verdict`, for the relative change between the two."""
     why: str
     """Why it differs or cannot be reproduced, where that is known."""
 
@@ -72,10 +72,15 @@ def _row(item: Printed, groups: Mapping[str, statistics.Groups], variants: tuple
 
 
 def change_verdict(difference: Difference, change: float) -> str:
-    """Verdict on a printed relative change: it agrees inside the interval of ours."""
+    """Verdict on a printed relative change: it agrees inside an interval of ours that leaves zero out.
+
+    With zero inside too, ours can be told neither from the printed change nor from none.
+    """
     if difference.verdict in (statistics.NOTHING_MEASURED, TOO_FEW_SEEDS):
         return _plain(difference.verdict)
-    return AGREES if difference.relative_low <= change <= difference.relative_high else DIFFERS
+    if not difference.relative_low <= change <= difference.relative_high:
+        return DIFFERS
+    return statistics.NOT_TOLD_APART if difference.relative_low <= 0 <= difference.relative_high else AGREES
 
 
 def _plain(verdict: str) -> str:

@@ -75,12 +75,25 @@ def render(scene: Scene, path: str | os.PathLike[str]) -> Path:
     Raises:
         HyperlegError: this machine cannot draw (no OpenGL), or drawing fails.
     """
+    return write_bytes(path, drawn(scene, path))
+
+
+def drawn(what: Any, path: str | os.PathLike[str]) -> bytes:
+    """What `report.draw` makes of a scene or a motion, in a process of its own: a PNG file, or an `.npy` of frames.
+
+    Args:
+        what: anything that `report.draw` knows.
+        path: for messages.
+
+    Raises:
+        HyperlegError: this machine cannot draw (no OpenGL), or drawing fails.
+    """
     environment = dict(os.environ)
     if not environment.get("DISPLAY") and sys.platform.startswith("linux"):
         environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     with tempfile.TemporaryDirectory(prefix="hyperleg-") as folder:
-        source, target = Path(folder) / "scene.pickle", Path(folder) / "picture.png"
-        source.write_bytes(pickle.dumps(scene))
+        source, target = Path(folder) / "scene.pickle", Path(folder) / "picture"
+        source.write_bytes(pickle.dumps(what))
         command = [sys.executable, "-m", "hyperleg_design.report.draw", str(source), str(target)]
         try:
             done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT, env=environment, check=False)
@@ -89,7 +102,7 @@ def render(scene: Scene, path: str | os.PathLike[str]) -> Path:
         if done.returncode or not target.exists():
             last = (done.stderr.strip().splitlines() or ["no message"])[-1]
             raise HyperlegError(f"{path}: cannot draw in 3-D on this machine ({last}); install an OpenGL library such as libegl1")
-        return write_bytes(path, target.read_bytes())
+        return target.read_bytes()
 
 
 def robot_solids(
@@ -101,8 +114,9 @@ def robot_solids(
     opacity: float = 1.0,
     motors: bool = True,
     tree: Tree | None = None,
+    pelvis: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> list[Solid]:
-    """Solids of a robot that stands with its lowest sole pad at the height of `offset`.
+    """Solids of a robot that stands with its lowest sole pad at the height of `offset`, or has its pelvis where it is said.
 
     Args:
         design: one robot.
@@ -112,10 +126,11 @@ def robot_solids(
         opacity: 0 to 1.
         motors: draw the motors where the design houses them.
         tree: the design's tree, if it is already there.
+        pelvis: rotation `(3, 3)` and position [m] of the pelvis in the world, instead of `offset` and `yaw`.
     """
     tree = tree or build_tree(design)
     poses = link_poses(tree, angles)
-    base = np.asarray(offset, float) - np.array([0.0, 0.0, lowest_point(tree, poses)])
+    base = np.zeros(3) if pelvis is not None else np.asarray(offset, float) - np.array([0.0, 0.0, lowest_point(tree, poses)])
     solids = []
     for link in tree.links:
         rotation, position = poses[link.name]
@@ -131,6 +146,9 @@ def robot_solids(
         solids += [Solid("sphere", pad.size, rotation, base + position + rotation @ np.array(pad.position), PAD, opacity) for pad in link.pads]
     if motors:
         solids += _motor_solids(design, poses, base, opacity)
+    if pelvis is not None:
+        turn, place = pelvis
+        return [replace(s, rotation=turn @ s.rotation, position=place + turn @ s.position) for s in solids]
     if not yaw:
         return solids
     turn, centre = axis_rotation(np.array([0.0, 0.0, 1.0]), yaw), np.asarray(offset, float)

@@ -9,7 +9,9 @@ from typing import Any
 
 from hyperleg_design import provenance
 from hyperleg_design.errors import HyperlegError
+from hyperleg_design.evaluation.shipped import shipped_policies
 from hyperleg_design.report import page as pages
+from hyperleg_design.report import study_experiment
 from hyperleg_design.report import study_motion as motion
 from hyperleg_design.report import study_sections as sections
 from hyperleg_design.report.page import Missing, Page, Picture, Section
@@ -30,6 +32,7 @@ STEPS: Mapping[str, Callable[..., sections.Made]] = {
     "lightness": sections.lightness,
     "sweeps": sections.sweeps,
     "motors": sections.motors,
+    "policies": study_experiment.experiment,
     "parameters": sections.made_from,
 }
 """Parts in the order of the page."""
@@ -43,6 +46,10 @@ class Context:
     variants: dict[str, Design]
     folder: Path
     """Folder of the page."""
+    policies: Path | None = None
+    """Folder of trainings to evaluate; None for the shipped policies."""
+    progress: bool = False
+    """Show a bar in parts that take long."""
 
     def picture(self, name: str, caption: str, make: Callable[[Path], object], *, wide: bool = True) -> Picture | Missing:
         """A figure made by `make(path)`; a machine that cannot draw it costs this figure only."""
@@ -54,12 +61,13 @@ class Context:
         return Picture(file, caption, wide)
 
 
-def run_study(out: str | Path, *, design: Design | None = None, progress: bool = True) -> Path:
+def run_study(out: str | Path, *, design: Design | None = None, policies: str | Path | None = None, progress: bool = True) -> Path:
     """Run the study and write its page.
 
     Args:
         out: folder to write, replaced as a whole.
         design: robot with an active toe, the paper's by default.
+        policies: folder of trainings to evaluate; the shipped policies by default.
         progress: show a bar.
 
     Returns:
@@ -71,8 +79,9 @@ def run_study(out: str | Path, *, design: Design | None = None, progress: bool =
     from tqdm import tqdm
 
     design = design or load_design("hyperleg")
+    shipped_policies(policies)  # a folder that is not there is told before minutes of work
     with output_folder(out) as folder:
-        context = Context(design, variants(design), folder)
+        context = Context(design, variants(design), folder, None if policies is None else Path(policies), progress)
         (folder / FIGURES).mkdir()
         found: list[Section] = []
         facts: list[tuple[str, str]] = []

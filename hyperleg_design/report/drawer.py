@@ -1,0 +1,40 @@
+"""Parts of a page, and figures drawn into its folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design.errors import HyperlegError
+from hyperleg_design.report.page import Missing, Picture
+
+FIGURES = "figures"
+"""Folder of the figures beside the page."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A titled piece of a page."""
+
+    title: str
+    content: Sequence[Any]
+
+
+@dataclass(frozen=True)
+class Drawer:
+    """Draws figures into the folder of a page."""
+
+    folder: Path
+    prefix: str = ""
+    """In front of each figure's name."""
+
+    def __call__(self, name: str, caption: str, make: Callable[[Path], object], suffix: str = ".png", *, wide: bool = True) -> Picture | Missing:
+        """A figure made by `make(path)`; a machine that cannot draw it, or trials that do not suffice, cost this figure only."""
+        file = f"{FIGURES}/{self.prefix}{name}{suffix}"
+        try:
+            make(self.folder / file)
+        except HyperlegError as error:
+            return Missing(caption, str(error))
+        return Picture(file, caption, wide)
