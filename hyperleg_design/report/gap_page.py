@@ -1,0 +1,191 @@
+"""The page of a diagnosis: verdict, where, which effect, how far the gap shrinks, what else it could be, what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hyperleg_design import provenance
+from hyperleg_design.gap.evidence import Evidence, evidence
+from hyperleg_design.report import gap_figures
+from hyperleg_design.report.page import Cell, Details, Heading, Page, Picture, Section, Table, render
+from hyperleg_design.report.style import save
+from hyperleg_design.writing import write_text
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+
+FIGURES = "figures"
+VERDICTS = {
+    "explained": "One explanation closes the gap, and no other does as well.",
+    "ambiguous": "Several causes close the gap alike on these data; the experiment below would tell them apart.",
+    "none": "No gap beyond the repeatability floor.",
+    "unknown": "There is a gap, and no effect of the catalogue closes it; the shape of what is left is described below.",
+}
+
+
+def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals]) -> Path:
+    """Write `index.html` and its figures beside `diagnosis.json`.
+
+    Args:
+        folder: of the diagnosis, exists.
+        diagnosis: as `diagnosis.json` holds it.
+        signals: of the logs that were diagnosed, for the figures.
+    """
+    (folder / FIGURES).mkdir(exist_ok=True)
+    causes, rivals, gap = list(diagnosis["causes"]), list(diagnosis["rivals"]), diagnosis["gap"]
+    shown = [evidence(one, causes, _balance(one, causes)) for one in signals]
+    sections = [
+        Section("Where the gap lies", _where(folder, diagnosis, signals, shown)),
+        Section("Measured against predicted", _traces(folder, shown, causes)),
+        Section("Which effect, and how far the gap shrinks", _causes(folder, gap, causes, rivals)),
+        Section("What would tell the rivals apart", _next_steps(diagnosis)),
+        Section("What these data can show", _limits(diagnosis)),
+    ]
+    verdict = str(diagnosis["verdict"])
+    page = Page(
+        title=f"Gap diagnosis of {signals[0].subject.name}" if signals else "Gap diagnosis",
+        lead=f"Verdict: {verdict}. {VERDICTS[verdict]} {_sentence(causes)}",
+        sections=[section for section in sections if section.content],
+        facts=_facts(gap, causes),
+        provenance={**dict(diagnosis.get("provenance", {})), "page made by commit": provenance.git_commit()},
+    )
+    return write_text(folder / "index.html", render(page))
+
+
+def cause_text(cause: Mapping[str, Any]) -> str:
+    """`coulomb_friction at left_knee (torque 1.9 Nm, 1.7 .. 2.1)`."""
+    return f"{cause['effect']} at {cause['location']} ({', '.join(_parameter_texts(cause['parameters']))})"
+
+
+def _facts(gap: Mapping[str, Any], causes: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:
+    unit = str(gap["unit"])
+    facts = [(f"{float(gap['before']):.3g} {unit}", "gap before"), (f"{float(gap['floor']):.3g} {unit}", "repeatability floor")]
+    if causes:
+        low, high = (100 * float(v) for v in gap["closed_interval"])
+        facts.insert(1, (f"{float(gap['after']):.3g} {unit}", "gap after"))
+        facts.append((f"{100 * float(gap['closed']):.0f} %", f"of the excess closed on held-out data ({low:.0f} .. {high:.0f} %)"))
+        facts.append((f"{float(causes[0]['probability']):.2f}", f"probability of {causes[0]['effect']}"))
+    return facts
+
+
+def _sentence(causes: Sequence[Mapping[str, Any]]) -> str:
+    return f"Named: {'; '.join(cause_text(c) for c in causes)}." if causes else ""
+
+
+def _parameter_texts(parameters: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    return [f"{name} {p['value']:.4g} {p['unit']}, {p['low']:.4g} .. {p['high']:.4g}" for name, p in parameters.items()]
+
+
+def _balance(signals: Signals, causes: Sequence[Mapping[str, Any]]) -> str:
+    """The balance in which the first cause shows; motion without one."""
+    from hyperleg_design.gap.effects import effect
+
+    for cause in causes[:1]:
+        kind = effect(str(cause["effect"]))
+        traces = kind.trace(signals, str(cause["location"]), kind.nulls[None])
+        for balance in ("motion", *sorted(traces)):
+            if balance in traces and balance in signals.residual:
+                return balance
+    return "motion"
+
+
+def _where(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals], shown: Sequence[Evidence]) -> list[Any]:
+    rows = [[w["location"], w["kind"], w["regime"], f"{100 * float(w['share']):.0f} %"] for w in diagnosis["where"]]
+    if not rows:
+        return []
+    shares: dict[str, float] = {}
+    for entry in diagnosis["where"]:
+        shares[str(entry["location"])] = max(shares.get(str(entry["location"]), 0.0), float(entry["share"]))
+    content: list[Any] = []
+    if signals and max(shares.values()) > 0:
+        save(gap_figures.robot_figure(signals[0].subject, shares), folder / FIGURES / "where.png")
+        pictures = [Picture(f"{FIGURES}/where.png", "The robot at rest, its joints coloured by their share of the gap.", wide=False)]
+        alike = [one for one in shown if one.balance == shown[0].balance]
+        if len(alike[0].rows) > 1:
+            save(gap_figures.rows_figure(alike), folder / FIGURES / "rows.png")
+            pictures.append(Picture(f"{FIGURES}/rows.png", "Size of the gap, each joint or motor, before and after.", wide=False))
+        content.append(pictures)
+    content.append(Table(["location", "kind", "regime", "share of the gap"], rows[:12]))
+    if len(rows) > 12:
+        content.append(Details(f"All {len(rows)} places and regimes", [Table(["location", "kind", "regime", "share of the gap"], rows)]))
+    return content
+
+
+def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[str, Any]]) -> list[Any]:
+    content: list[Any] = []
+    says = "what the named causes predict, and what is left" if causes else "no cause is named"
+    for i, one in enumerate(shown[:2]):
+        name = f"trace-{i + 1}.png"
+        save(gap_figures.trace_figure(one), folder / FIGURES / name)
+        content.append(
+            Picture(f"{FIGURES}/{name}", f"{one.rows[one.worst]} in {one.log}: torque that the model lacks, {says}; right, against speed.")
+        )
+    return content
+
+
+def _causes(folder: Path, gap: Mapping[str, Any], causes: Sequence[Mapping[str, Any]], rivals: Sequence[Mapping[str, Any]]) -> list[Any]:
+    content: list[Any] = []
+    pictures: list[Picture] = []
+    if causes:
+        rows = [_cause_row(cause) for cause in causes]
+        content.append(Table(["effect", "where", "parameters with 95 % intervals", "closes (held out)", "probability"], rows))
+        save(gap_figures.waterfall_figure(gap, causes), folder / FIGURES / "waterfall.png")
+        says = "The gap on held-out data: before, taken off by each cause, after; dashed, the floor."
+        pictures.append(Picture(f"{FIGURES}/waterfall.png", says, wide=False))
+    if rivals:
+        save(gap_figures.rivals_figure(causes, rivals), folder / FIGURES / "rivals.png")
+        pictures.append(Picture(f"{FIGURES}/rivals.png", "What was tried: how much of the excess gap each closes on held-out data.", wide=False))
+    content += [pictures] if pictures else []
+    if rivals:
+        content.append(
+            Details("Rivals in full", [Table(["effect", "where", "parameters", "closes", "probability"], [_cause_row(r) for r in rivals])])
+        )
+    return content
+
+
+def _cause_row(cause: Mapping[str, Any]) -> list[Any]:
+    parameters = "; ".join(_parameter_texts(cause["parameters"]))
+    return [cause["effect"], cause["location"], parameters, f"{100 * float(cause['closed']):.0f} %", f"{float(cause['probability']):.2f}"]
+
+
+def _next_steps(diagnosis: Mapping[str, Any]) -> list[Any]:
+    content: list[Any] = []
+    for group in diagnosis["equivalent"]:
+        content.append("Cannot be told apart on these data: " + ", ".join(_name(member) for member in group) + ".")
+    experiment = diagnosis["separating_experiment"]
+    if experiment:
+        content.append(Heading("Cheapest experiment"))
+        content.append(Table(["", ""], [[str(key).replace("_", " "), _plain(value)] for key, value in experiment.items()]))
+    return content
+
+
+def _limits(diagnosis: Mapping[str, Any]) -> list[Any]:
+    content: list[Any] = []
+    if diagnosis.get("residual_shape"):
+        content += [Heading("Shape of what is left"), _plain(diagnosis["residual_shape"])]
+    if diagnosis.get("not_judged"):
+        rows = [
+            [_name(entry), _plain(entry.get("reason", entry.get("why", ""))) if isinstance(entry, Mapping) else ""]
+            for entry in diagnosis["not_judged"]
+        ]
+        content.append(Details(f"{len(rows)} effects that these logs cannot judge", [Table(["effect", "why"], rows)]))
+    if diagnosis.get("checks"):
+        remarks = [[Cell(_plain(entry), "note")] for entry in diagnosis["checks"]]
+        content.append(Details(f"{len(remarks)} remarks on the logs", [Table(["remark"], remarks)]))
+    return content
+
+
+def _name(entry: Any) -> str:
+    if isinstance(entry, Mapping):
+        return " at ".join(str(entry[key]) for key in ("effect", "location") if entry.get(key))
+    return " at ".join(str(part) for part in entry) if isinstance(entry, list | tuple) else str(entry)
+
+
+def _plain(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "; ".join(f"{str(key).replace('_', ' ')}: {_plain(part)}" for key, part in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(_plain(part) for part in value)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
