@@ -181,7 +181,11 @@ def _turned(x: np.ndarray, sin: np.ndarray, cos: np.ndarray) -> np.ndarray:
 
 def _cross(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Cross product over the first axis; `np.cross` copies its arguments about."""
-    return np.stack([x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]])
+    out = np.empty((3, max(x.shape[1], y.shape[1])))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        np.multiply(x[j], y[k], out=out[i])
+        out[i] -= x[k] * y[j]
+    return out
 
 
 _REGRESSORS: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
