@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.gap.excitation import Excitation, excitation_of
 from hyperleg_design.gap.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
 from hyperleg_design.gap.plausibility import implausible
@@ -24,6 +25,8 @@ FEW = 200
 """Ticks below which little can be held out."""
 JITTER, DROPOUTS, MISSING, SATURATED = 0.2, 0.01, 0.01, 0.005
 """Shares from which they are worth a word [-]."""
+SLOWEST, FASTEST = 2.0, 50_000.0
+"""Rates beyond which the time is in another unit [Hz]."""
 SLOW = 40.0
 """Rate below which friction and delay blur [Hz]."""
 BOUNDED = ("joint_torque", "motor_torque", "motor_torque_command", "motor_current", "motor_velocity", "velocity", "gyro", "accelerometer")
@@ -51,6 +54,15 @@ class Check:
     def errors(self) -> tuple[Finding, ...]:
         """That forbid a diagnosis."""
         return tuple(f for f in self.findings if f.severity == ERROR)
+
+    def refuse(self) -> None:
+        """Raise the first error there is, for whoever needs a log that is fit.
+
+        Raises:
+            InputError: what forbids a diagnosis, with its remedy.
+        """
+        for finding in self.errors:
+            raise InputError(self.name, finding.signal, None, f"{finding.what}; {finding.remedy}")
 
     @property
     def shown(self) -> tuple[str, ...]:
@@ -107,6 +119,9 @@ def _required(log: Log, subject: Subject | None) -> list[Finding]:
 
 def _clock(sampling: Sampling) -> list[Finding]:
     found = []
+    if not SLOWEST < sampling.rate < FASTEST:
+        text = f"rows come every {sampling.step:.3g} s: the time looks like {'milliseconds' if sampling.rate < 1 else 'another unit'}"
+        return [Finding(ERROR, "t", text, "give it in seconds")]
     if sampling.duration < SHORT or sampling.ticks < FEW:
         text = f"is short: {sampling.duration:.2g} s, {sampling.ticks} ticks"
         found.append(Finding(WARNING, "t", text, f"record {SHORT:.0f} s or more; 20 s leave enough to hold out"))

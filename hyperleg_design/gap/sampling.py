@@ -114,7 +114,7 @@ def held_rows(values: np.ndarray) -> int:
 def quantum(values: np.ndarray) -> float:
     """Smallest step between values of a quantised signal `(t,)`; 0 where values hardly ever repeat, or are no multiples of one step."""
     levels = np.unique(values)
-    if len(levels) < 2 or len(levels) > 0.5 * len(values):
+    if len(levels) < 2 or len(levels) > 0.95 * len(values):
         return 0.0
     gaps = np.diff(levels)
     real = gaps[gaps > 1e-6 * max(abs(levels[0]), abs(levels[-1]), 1e-12)]  # not the rounding of single precision

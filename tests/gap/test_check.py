@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from rig import rig_log, spoiled
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.gap.check import check_log
 from hyperleg_design.gap.finding import ERROR, NOTE, WARNING
 from hyperleg_design.gap.metadata import Metadata
@@ -46,6 +47,14 @@ def test_clock():
     assert "lost in dropouts, the longest 1" in found(log.changed(time=late), WARNING)[0][1]
     assert "is short" in found(log.part(slice(0, 150)), WARNING)[0][1]
     assert "friction at reversals" in found(log.part(slice(0, 4000, 8)), WARNING)[0][1]
+
+
+def test_time_in_another_unit():
+    log = rig_log()
+    assert found(log.changed(time=log.time * 1e3), ERROR) == [("t", "rows come every 5 s: the time looks like milliseconds")]
+    with pytest.raises(InputError, match=r"rig: t: rows come every 5 s.*; give it in seconds"):
+        check_log(log.changed(time=log.time * 1e3)).refuse()
+    check_log(log).refuse()
 
 
 def test_two_rates_and_gaps():

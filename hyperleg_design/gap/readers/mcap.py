@@ -54,22 +54,21 @@ def messages(path: Path, types: tuple[str, ...]) -> Iterator[Message]:
                     yield Message(topic, schemas[schema], encoding, time * 1e-9, body[22:])
 
     try:
+        size = path.stat().st_size
         with path.open("rb") as stream:
             if stream.read(len(MAGIC)) != MAGIC:
                 raise InputError(path.name, "", None, "is no MCAP file")
             while True:
                 head = stream.read(9)
-                if len(head) < 9:
+                code, length = (head[0], struct.unpack_from("<Q", head, 1)[0]) if len(head) == 9 else (0, size)
+                if length > size - stream.tell():
                     raise InputError(path.name, "", None, "is cut short: run `mcap recover` on it, or copy it again")
-                code, length = head[0], struct.unpack_from("<Q", head, 1)[0]
                 if code == DATA_END:
                     return
                 if code not in (SCHEMA, CHANNEL, MESSAGE, CHUNK):
                     stream.seek(length, 1)
                     continue
                 body = stream.read(length)
-                if len(body) < length:
-                    raise InputError(path.name, "", None, "is cut short: run `mcap recover` on it, or copy it again")
                 yield from from_records(_records(_unpacked(body, path.name)) if code == CHUNK else iter([(code, body)]))
     except (struct.error, UnicodeDecodeError, IndexError) as error:
         raise InputError(path.name, "", None, f"is damaged ({error})") from None

@@ -103,6 +103,8 @@ def _table(path: Path, lists: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np
     import pandas as pd
 
     where = f"{path.parent.name}/{path.name}"
+    if not path.is_file():
+        raise InputError(where, "", None, f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}")
     try:
         table = pd.read_csv(path)
     except (ValueError, pd.errors.ParserError, OSError) as error:
