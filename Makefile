@@ -12,8 +12,8 @@ $(VENV)/.ready: pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	@touch $@
 
-$(VENV)/.learning: $(VENV)/.ready  # torch and what goes with it, for training and its tests
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,learning]'
+$(VENV)/.learning: $(VENV)/.ready  # torch and what goes with it, for training; other tools' fits, for baselines; and the tests of both
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[baselines,dev,learning]'
 	@touch $@
 
 study: $(VENV)/.ready  ## Analyse the paper's biped and its ablations, sweep, and write results/study/index.html
