@@ -27,6 +27,10 @@ GAP = 2.5
 """Ticks between two samples from which there is a gap."""
 EDGE = 4.0
 """Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a log."""
+STOP = 0.003
+"""Distance from the end of a joint's range within which its stop may push [rad]; assumed, a few steps of a sensor."""
+NO_STOP = 0.1
+"""Distance beyond its range that shows that a joint has no stop there [rad]; assumed, more than any stop gives way."""
 LONGEST_EDGE = 0.25
 """[s] However slow the smoother."""
 
@@ -76,6 +80,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         if own is not None:
             residual["base"] = np.where(np.isfinite(ground.pad_force).all((1, 2))[:, None], wrench - own, np.nan)
     unknown = contact.unknown_rows(subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step)))
+    unknown = unknown | at_stop(subject, motion.value)
     residual["motion"] = np.where(unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed)
     if measured is not None and limited is not None:
         residual["drive"] = measured - limited
@@ -91,6 +96,17 @@ def condition(log: Log, subject: Subject) -> Signals:
     if ground_residual is not None:
         residual["ground"] = ground_residual
     return signals
+
+
+def wrong_limits(subject: Subject, position: np.ndarray) -> np.ndarray:
+    """Joints whose log goes so far beyond the nominal range that there is no stop `(n,)`; positions `(t, n)` [rad]."""
+    return np.asarray(((position < subject.position_low - NO_STOP) | (position > subject.position_high + NO_STOP)).any(0))
+
+
+def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
+    """Ticks at which a stop may push on a joint, with a force that nobody knows `(t, n)`; positions `(t, n)` [rad]."""
+    beyond = (position < subject.position_low + STOP) | (position > subject.position_high - STOP)
+    return np.asarray(beyond & ~wrong_limits(subject, position))
 
 
 def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -228,4 +244,4 @@ def _names(names: tuple[str, ...], which: np.ndarray) -> str:
     return ", ".join(n for n, w in zip(names, which, strict=True) if w)
 
 
-__all__ = ["BaseMotion", "applied", "condition", "limited_torque", "of_motors", "resampled", "resampled_or_none"]
+__all__ = ["BaseMotion", "applied", "at_stop", "condition", "limited_torque", "of_motors", "resampled", "resampled_or_none", "wrong_limits"]

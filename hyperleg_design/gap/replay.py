@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.conditioning import wrong_limits
 from hyperleg_design.gap.machine import machine_of
 from hyperleg_design.gap.rigid import pad_points
 from hyperleg_design.simulation import actuation
@@ -169,8 +170,8 @@ def _inputs(signals: Signals, follow: str) -> np.ndarray:
     return np.where(np.isfinite(held), held, at_rest)
 
 
-def replay_model(subject: Subject, chain: Chain, alterations: Sequence[Alteration], step: float) -> Any:
-    """MuJoCo model of a subject with the rotors, transmission and edits of alterations."""
+def replay_model(subject: Subject, chain: Chain, alterations: Sequence[Alteration], step: float, unlimited: np.ndarray | None = None) -> Any:
+    """MuJoCo model of a subject with the rotors, transmission and edits of alterations; `unlimited` joints `(n,)` have no stops."""
     import mujoco
 
     model = copy.copy(subject.model)
@@ -179,6 +180,8 @@ def replay_model(subject: Subject, chain: Chain, alterations: Sequence[Alteratio
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
     if not subject.floating:
         model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    if unlimited is not None:
+        model.jnt_limited[model.njnt - len(subject.joints) + np.flatnonzero(unlimited)] = 0
     for alteration in alterations:
         alteration.edit(model)
     machine, matrix = chain.machine, np.asarray(chain.machine.joint_from_motor)
@@ -199,12 +202,14 @@ def replay_model(subject: Subject, chain: Chain, alterations: Sequence[Alteratio
 class Plant:
     """Simulations of one subject side by side, stepped with its drives; the seam between MuJoCo and `Chain`."""
 
-    def __init__(self, subject: Subject, alterations: Sequence[Alteration], count: int, step: float, threads: int) -> None:
+    def __init__(
+        self, subject: Subject, alterations: Sequence[Alteration], count: int, step: float, threads: int, unlimited: np.ndarray | None = None
+    ) -> None:
         from mujoco.batch import Batch
 
         self.subject = subject
         self.chain = Chain(machine_of(subject), alterations, count, step)
-        self.model = replay_model(subject, self.chain, alterations, step)
+        self.model = replay_model(subject, self.chain, alterations, step, unlimited)
         self.batch = Batch(self.model, count, threads)
         self.qpos, self.qvel, self._applied = (self.batch.bind(name) for name in ("qpos", "qvel", "qfrc_applied"))
         joints = len(subject.joints)
@@ -268,7 +273,7 @@ def _run(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     subject, ticks = signals.subject, windows.ticks
     count, length = ticks.shape
-    plant = Plant(subject, alterations, count, signals.step / substeps, threads)
+    plant = Plant(subject, alterations, count, signals.step / substeps, threads, wrong_limits(subject, signals.position))
     first, half = windows.start, signals.step / substeps / 2
     base, base_velocity = base_states(signals, first, half) if subject.floating else (None, None)
     plant.start(signals.position[first], signals.velocity[first] - half * signals.acceleration[first], base, base_velocity)

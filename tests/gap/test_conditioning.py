@@ -113,3 +113,15 @@ def test_units_of_the_rows(robot_files, runs):
     assert signals.position.shape == signals.rigid.shape == signals.residual["motion"].shape == (2000, 2)
     assert signals.believed.shape == (2000, 2)
     assert signals.bandwidth.shape == (2,)
+
+
+def test_stops_push_with_a_force_that_nobody_knows(robot_files, runs, tmp_path):
+    """Range that ends inside the motion: rows there are unknown; a range that is exceeded by far is none."""
+    log = runs["pendulum"]
+    position = log.column("position/swing")
+    for margin, hits in ((0.05, True), (0.3, False)):
+        high = position.max() - margin
+        text = robots.PENDULUM.replace('name="swing"', f'name="swing" limited="true" range="-200 {np.rad2deg(high)}"')
+        (tmp_path / "stop.xml").write_text(text)
+        signals = condition(log, load_subject(tmp_path / "stop.xml"))
+        np.testing.assert_array_equal(np.isnan(signals.residual["motion"][:, 0]), hits & (signals.position[:, 0] > high - 0.003))
