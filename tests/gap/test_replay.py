@@ -87,3 +87,44 @@ def test_diverged_simulations_become_unknown(robot_files, runs):
     found = replay(dataclasses.replace(one, believed=believed), windows=Windows(np.array([100, 310]), 50), follow="torque")
     assert np.isfinite(found.position[0, 0]).all()
     assert not np.isfinite(found.position[0, 1]).all()
+
+
+INERTIA = 'mass="0.8" diaginertia="0.008 0.008 0.001"/>'
+"""Of the rig's shank."""
+
+
+@pytest.fixture(scope="module")
+def altered(robot_files):
+    """The coupled rig with another knee damping, rotor, and mass than its file says, one at a time."""
+    base = robots.COUPLED
+    texts = {
+        "viscous_friction": base.replace('axis="0 1 0" damping="0.03"', 'axis="0 1 0" damping="0.33"'),
+        "rotor_inertia": base.replace('name="front" armature="0.002"', 'name="front" armature="0.004"'),
+        "payload": base.replace(INERTIA, f'{INERTIA}<body><geom size="0.001" mass="0.5" pos="0 0 -0.2"/></body>'),
+        "encoder_offset": base + " ",
+    }  # fmt: skip
+    found = {}
+    for name, text in texts.items():
+        assert text != base
+        log = robots.servo_run(text, robots.waves(2, [1.0, 1.0]), 5.0)
+        if name == "encoder_offset":
+            log = log.changed(signals={**log.signals, "position/knee": log.column("position/knee") + 0.1})
+        found[name] = condition(log, load_subject(robot_files["coupled"], [log]))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("effect", "location", "values"),
+    [
+        ("viscous_friction", "knee", {"damping": 0.3}),
+        ("rotor_inertia", "m_front", {"inertia": 0.002}),
+        ("encoder_offset", "knee", {"offset": 0.1}),
+        ("payload", "shank", {"mass": 0.5, "com_z": -0.2}),
+    ],
+)
+def test_the_right_change_closes_the_gap_in_position(altered, effect, location, values):
+    one = altered[effect]
+    found = replay(one, ({}, {(effect, location): values}), follow="torque")
+    position, _ = found.errors(one)
+    before, after = (np.sqrt(np.nanmean(e**2)) for e in position)
+    assert after < 0.1 * before
