@@ -9,7 +9,8 @@ Each foot is judged by its whole force F, world frame, and by its pads:
 v_t is the velocity of the foot's loaded point. k and c are MuJoCo's of the foot's shapes under its own inertia at rest (their
 `solref`, `solimp` and the body's inverse weight); the floor lies where the nominal ground bears the logged mean force, since no
 log knows a floor to a tenth of a millimetre. A base whose height nobody measured leaves the vertical rows unknown, one whose
-velocity nobody measured knows no sliding.
+velocity nobody measured knows no sliding. MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no
+log tells a foot's acceleration so well. So vertical rows tell a ground in landings; while standing they are mostly error.
 """
 
 from __future__ import annotations
@@ -43,16 +44,38 @@ class Footing:
     """Logged `(t, 3)` [N]; NaN where unknown."""
     slide: np.ndarray
     """Horizontal velocity of its loaded point `(t, 2)` [m/s]; NaN where unknown."""
-    depth: np.ndarray
-    """Of its p pads below the floor `(t, p)` [m]; NaN where unknown."""
+    height: np.ndarray
+    """Of its p pads over the origin `(t, p)` [m]; NaN where unknown."""
     sink: np.ndarray
-    """Rate of that `(t, p)` [m/s]."""
+    """Rate at which they go down `(t, p)` [m/s]."""
     friction: float
     """mu, nominal."""
-    stiffness: float
-    """k, nominal, of one pad [N/m]."""
-    damping: float
-    """c, nominal, of one pad [Ns/m]."""
+    stiffness: np.ndarray
+    """k, nominal, of each pad `(p,)` [N/m]."""
+    damping: np.ndarray
+    """c, nominal, of each pad `(p,)` [Ns/m]."""
+    judged: np.ndarray
+    """Ticks by whose mean force the floor is found `(t,)`."""
+
+    def pressing(self, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
+        """Vertical force of a ground at this motion `(t,)` [N], its floor where it bears the mean of the logged forces.
+
+        Args:
+            stiffness: of each pad `(p,)` [N/m].
+            damping: of each pad `(p,)` [Ns/m].
+        """
+        if not self.judged.any():
+            return np.full(len(self.force), np.nan)
+        mean, height, sink = float(self.force[self.judged, 2].mean()), self.height[self.judged], self.sink[self.judged]
+        low, high = float(height.min()), float(height.max() + mean / stiffness.min())
+        for _ in range(50):
+            # bisection, as a higher floor bears more
+            middle = (low + high) / 2
+            if _pressing(middle - height, sink, stiffness, damping).mean() < mean:
+                low = middle
+            else:
+                high = middle
+        return _pressing((low + high) / 2 - self.height, self.sink, stiffness, damping)
 
     def ground(self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray) -> np.ndarray:
         """Force of a ground with scaled properties at this motion `(k, t, 3)` [N].
@@ -71,13 +94,13 @@ class Footing:
         along = self.slide / np.maximum(speed, 1e-9)[:, None]
         sliding = (speed > SLIDING)[:, None]
         tangential = np.where(sliding, -limit[..., None] * along, cut)
-        stiffness, rate = self.stiffness / compliance, self.damping * damping / np.sqrt(compliance)
-        pressing = np.stack([_pressing(self.depth, self.sink, k, c) for k, c in zip(stiffness, rate, strict=True)])
+        scales = zip(1 / compliance, damping / np.sqrt(compliance), strict=True)
+        pressing = np.stack([self.pressing(self.stiffness * k, self.damping * c) for k, c in scales])
         found = np.concatenate([tangential, pressing[..., None]], -1)
         return np.where((normal > LOADED)[None, :, None], found, np.where(normal[None, :, None] <= 0, self.force[None], np.nan))
 
 
-def _pressing(depth: np.ndarray, sink: np.ndarray, stiffness: float, damping: float) -> np.ndarray:
+def _pressing(depth: np.ndarray, sink: np.ndarray, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
     """Vertical force on all pads together `(t,)` [N]; pads push and never pull."""
     return np.asarray(np.where(depth > 0, np.maximum(stiffness * depth + damping * sink, 0.0), 0.0 * depth).sum(-1))
 
@@ -117,24 +140,11 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
         weight = _loads(signals, own, lowest)
         slide = np.einsum("tp,tpi->ti", weight, velocity[:, own, :2])
         height, sink = points[:, own, 2], -velocity[:, own, 2]
-        friction, stiffness, damping = nominal_ground(subject, index)
+        constants = [nominal_ground(subject, subject.tree.links[subject.pads[p].link]) for p in own]
+        friction, stiffness, damping = constants[0][0], np.array([c[1] for c in constants]), np.array([c[2] for c in constants])
         loaded = np.isfinite(force[:, 2]) & (np.nan_to_num(force[:, 2]) > LOADED) & np.isfinite(height).all(1) & signals.valid
-        floor = _floor(force[loaded, 2], height[loaded], sink[loaded], stiffness, damping) if loaded.any() else np.nan
-        found.append(Footing(force, slide, floor - height, sink, friction, stiffness, damping))
+        found.append(Footing(force, slide, height, sink, friction, stiffness, damping, loaded))
     return tuple(found)
-
-
-def _floor(force: np.ndarray, height: np.ndarray, sink: np.ndarray, stiffness: float, damping: float) -> float:
-    """Height of a floor on which the nominal ground bears the mean of the logged forces [m]; bisection, as more floor is more force."""
-    mean = float(force.mean())
-    low, high = float(height.min()), float(height.max() + mean / stiffness)
-    for _ in range(60):
-        middle = (low + high) / 2
-        if _pressing(middle - height, sink, stiffness, damping).mean() < mean:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
 
 
 def _loads(signals: Signals, own: np.ndarray, lowest: np.ndarray) -> np.ndarray:
@@ -181,14 +191,14 @@ def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndar
     return friction, solref, int(max(model.geom_condim[geom], model.geom_condim[other]))
 
 
-def nominal_ground(subject: Subject, foot: int) -> tuple[float, float, float]:
-    """Friction coefficient [-], stiffness [N/m] and damping [Ns/m] of the model's ground under one pad of a foot at rest.
+def nominal_ground(subject: Subject, link: str) -> tuple[float, float, float]:
+    """Friction coefficient [-], stiffness [N/m] and damping [Ns/m] of the model's ground under one pad of a link at rest.
 
     MuJoCo holds a pad at depth d with force (k' d + b' d') / R, R = (1 - i) / i times the body's inverse weight, i the impedance
     at no depth, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of `solref` (T, r), or the two given as they are where negative.
     """
     model = subject.model
-    geom = foot_geoms(model, foot_bodies(subject, foot))[0]
+    geom = foot_geoms(model, (link,))[0]
     friction, solref, _ = pair_settings(model, geom)
     impedance = model.geom_solimp[geom]
     least, most = float(np.clip(impedance[0], 1e-4, 0.9999)), float(np.clip(impedance[1], 1e-4, 0.9999))

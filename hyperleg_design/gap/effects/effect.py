@@ -107,6 +107,27 @@ class Effect(ABC):
         """Usual distances from the nulls at a place of a robot `(parameters,)`: scale of priors and of finite differences."""
         return np.array([p.typical for p in self.parameters])
 
+    def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
+        """Values `(parameters,)` at which it can be seen: `size` times the usual distance from the nulls, inside the bounds."""
+        values = self.nulls
+        for place, (parameter, usual) in enumerate(zip(self.parameters, self.usual(location, subject), strict=True)):
+            if not parameter.shape:
+                above = min(parameter.null + size * float(usual), parameter.high)
+                values[place] = above if above > parameter.null else max(parameter.null - size * float(usual), parameter.low)
+        return values
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """Least and largest values that are possible at a place of a robot `(2, parameters)`; never wider than the parameters' own."""
+        return np.array([[p.low for p in self.parameters], [p.high for p in self.parameters]])
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """Values from which a search for the best fit to a log is worth while `(s, parameters)`, inside the bounds."""
+        usual = self.usual(location, signals.subject)
+        sized = np.array([not p.shape for p in self.parameters])
+        low, high = self.bounds(location, signals.subject)
+        tried = np.clip(self.nulls + np.array([[1.0], [-1.0]]) * np.where(sized, usual, 0.0), low, high)
+        return np.asarray(tried[np.any(tried != self.nulls, 1)])
+
     @property
     def nulls(self) -> np.ndarray:
         """Values at which it is absent, `(parameters,)`."""

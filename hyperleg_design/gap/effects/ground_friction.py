@@ -37,6 +37,10 @@ class GroundFriction(Effect):
         scale = np.atleast_2d(np.asarray(values, float))[:, 0]
         return ground_trace(signals, location, scale, np.ones_like(scale), np.ones_like(scale))
 
+    def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
+        """Slippery, because a ground that holds better than needed does nothing."""
+        return np.maximum(self.nulls - size * self.usual(location, subject), self.parameters[0].low)
+
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
         return ChangedGround(ground.foot_bodies(subject, subject.feet.index(location)), friction=np.asarray(values, float)[..., 0])

@@ -42,3 +42,11 @@ class Payload(InertialEffect):
         found = super().usual(location, subject)
         found[0] = max(SHARE * carried_mass(subject, location), 0.01)
         return found
+
+    def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
+        """At half as far again from the link's origin as its own centre of mass; a load at a joint's axis is hardly felt."""
+        found = super().example(location, subject, size)
+        own = subject.tree.link_inertial[subject.tree.link(location)]
+        if own[0] > 0:
+            found[1:] = np.clip(1.5 * own[1:4] / own[0], -1.0, 1.0)
+        return found
