@@ -9,6 +9,7 @@ on posture here.
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
@@ -189,22 +190,38 @@ def _cross(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 _REGRESSORS: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
+_LOCK = threading.Lock()
+KEPT = 512 * 2**20
+"""Memory that kept regressors may take in all [bytes]; beyond it the oldest are forgotten."""
 
 
 def link_regressor(signals: Signals, link: str) -> np.ndarray:
-    """Joint torque over the inertial parameters of one link, at the logged motion `(t, n, 10)`.
+    """Joint torque over the inertial parameters of one link, at the logged motion `(t, n, 10)`, read-only.
 
     Columns: mass, mass times centre of mass (3), inertia about the link's origin (xx, xy, yy, xz, yz, zz), in the link's
-    frame. Torque is linear in them: what hangs on a link adds `link_regressor @ parameters`. Kept while `signals` live.
+    frame. Torque is linear in them: what hangs on a link adds `link_regressor @ parameters`. Kept while `signals` live and
+    memory lasts.
 
     Raises:
         InputError: no such link or joint.
     """
-    kept = _REGRESSORS.setdefault(signals, {})
-    if link not in kept:
-        kept[link] = regressor(signals.subject, signals.position, signals.velocity, signals.acceleration, signals.base, link)
-        kept[link].setflags(write=False)
-    return kept[link]
+    with _LOCK:
+        found = _REGRESSORS.setdefault(signals, {}).get(link)
+    if found is None:
+        found = regressor(signals.subject, signals.position, signals.velocity, signals.acceleration, signals.base, link)
+        found.setflags(write=False)
+        with _LOCK:
+            _forget(KEPT - found.nbytes)
+            _REGRESSORS.setdefault(signals, {})[link] = found
+    return found
+
+
+def _forget(room: int) -> None:
+    """Drop the oldest kept regressors until the others take no more than some room [bytes]."""
+    total = sum(r.nbytes for each in _REGRESSORS.values() for r in each.values())
+    for each in list(_REGRESSORS.values()):
+        while each and total > room:
+            total -= each.pop(next(iter(each))).nbytes
 
 
 def regressor(

@@ -99,3 +99,18 @@ def test_contact_forces_act_as_in_mujoco():
             expected += jacobian.T @ force[i, k]
         np.testing.assert_allclose(torque[i], expected[6:], atol=1e-9)
         np.testing.assert_allclose(wrench[i], np.r_[base.rotation[i].T @ expected[:3], expected[3:6]], atol=1e-9)
+
+
+def test_kept_regressors_are_bounded(robot_files, runs, monkeypatch):
+    from hyperleg_design.gap.conditioning import condition
+
+    signals = condition(runs["arm"], load_subject(robot_files["arm"]))
+    first = rigid.link_regressor(signals, "flange")
+    assert rigid.link_regressor(signals, "flange") is first
+    monkeypatch.setattr(rigid, "KEPT", int(2.5 * first.nbytes))
+    for link in signals.subject.links:
+        rigid.link_regressor(signals, link)
+    assert sum(r.nbytes for r in rigid._REGRESSORS[signals].values()) <= 2.5 * first.nbytes
+    again = rigid.link_regressor(signals, "flange")
+    assert again is not first
+    np.testing.assert_array_equal(again, first)
