@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
     from hyperleg_design.simulation.tasks import Task
 
-BROWSER_RATE = 30.0
+BROWSER_RATE = 20.0
 """Frames a second in the browser."""
 
 

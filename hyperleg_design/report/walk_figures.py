@@ -104,7 +104,8 @@ def impact_band_figure(band: Mapping[str, Mapping[float, Sequence[Evaluation]]],
                 told = np.array([f.speaks_of_seeds for f in found])
                 axes.vlines(x[told], *(np.array([getattr(f, end) for f in found])[told] for end in ("low", "high")), color=colour, lw=1.4)
             axes.set(xscale="log", xlabel="stiffness of the pad under a heel [kN/m]", title=title)
-            axes.set_ylim(bottom=0)
+            means = [line.get_ydata() for line in axes.get_lines()]
+            axes.set_ylim(0, 1.6 * float(np.nanmax([*np.concatenate(means), 1e-9])))  # wider intervals are cut
             ticks = [stiffness[c] * 1e-3 for c in next(iter(band.values()))]
             axes.set_xticks(ticks, [f"{t:.3g}" for t in ticks])
             axes.minorticks_off()
