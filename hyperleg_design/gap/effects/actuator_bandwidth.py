@@ -1,0 +1,87 @@
+"""Torque that follows its command with a lag."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, limited
+from hyperleg_design.gap.effects.series import lagged
+from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+
+class ActuatorBandwidth(Effect):
+    """A drive's torque follows the command within its limits through a first-order lag, T tau' = command - tau.
+
+    Trace, by the rule of `placing`: the lagged command minus the command.
+    """
+
+    identifier: ClassVar[str] = "actuator_bandwidth"
+    kind: ClassVar[str] = "motor"
+    summary: ClassVar[str] = "a drive's torque follows its command through a first-order lag"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("time_constant", "s", 0.0, 0.0, 0.1, 0.005, "torque loops of 15-100 Hz, 2-10 ms, on series-elastic and servo drives (assumed)"),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Motors."""
+        return driven_motors(subject)
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        motor = signals.subject.motors.index(location)
+        if not is_commanded(signals, motor):
+            return {}
+        given = limited(signals, motor, commanded(signals, motor))
+        lag = np.atleast_2d(np.asarray(values, float))[:, 0]
+        return before_measurement(signals, {motor: lagged(given, lag, signals.step) - given})
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        return LaggingTorque(location, np.asarray(values, float)[..., 0])
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """A few lags."""
+        return np.array([[0.003], [0.01], [0.03]])
+
+
+@dataclass(frozen=True, eq=False)
+class LaggingTorque(Alteration):
+    """A motor's torque follows its command with a lag; exact for a command that is held for a simulation step."""
+
+    motor: str
+    time_constant: Any
+    """`()` or `(n,)` [s]."""
+
+
+class _Lagging(Live):
+    kept: ClassVar[tuple[str, ...]] = ("given", "begun")
+
+    alteration: LaggingTorque
+
+    def prepare(self) -> None:
+        machine = self.machine
+        self.place = machine.motor(self.alteration.motor)
+        lag = np.asarray(self.alteration.time_constant, float)
+        self.gain = np.where(lag > 1e-9, -np.expm1(-self.step / np.maximum(lag, 1e-9)), 1.0)
+        self.nominal = Limits(machine.no_load_speed, machine.stall_torque, machine.peak_torque)
+        self.given, self.begun = np.zeros(self.count), np.zeros(self.count)
+
+    def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
+        wanted = self.nominal.clip(command, tick.motor_velocity)[:, self.place]
+        settled = np.where(self.begun == 0, wanted, self.given)
+        self.given[:] = settled + self.gain * (wanted - settled)
+        self.begun[:] = 1.0
+        lagging = np.broadcast_to(self.gain < 1, self.given.shape)
+        command[:, self.place] = np.where(lagging, self.given, command[:, self.place])
+        return command
+
+
+LaggingTorque.live = _Lagging

@@ -1,0 +1,57 @@
+"""Play between a motor and its joints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects import belt
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.placing import driven_motors
+from hyperleg_design.simulation.two_mass import Belt
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.simulation.alteration import Alteration
+
+
+class Backlash(Effect):
+    """A motor turns freely through a small angle before its joints follow; see `belt`.
+
+    The angle is the whole width of the dead zone, at the joint that the motor moves most. While the teeth cross it the belt
+    gives no torque and the rotor is caught up with; with encoders at the rotors (`side` 1) the joint lags by half the angle.
+    """
+
+    identifier: ClassVar[str] = "backlash"
+    kind: ClassVar[str] = "motor"
+    summary: ClassVar[str] = "a motor turns freely through a small angle before its joint follows"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("angle", "rad", 0.0, 0.0, 0.1, 0.006, "0.1-1 deg at the joint (engineering estimate)"),
+        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "0: positions are the joints' own, 1: the rotors'", shape=True),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Motors."""
+        return driven_motors(subject)
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        motor = signals.subject.motors.index(location)
+        angle, side = np.atleast_2d(np.asarray(values, float)).T
+        none = np.zeros_like(angle)
+        return belt.trace(signals, motor, belt.stretch(signals, motor, none, angle * _ratio(signals.subject, motor), none), side)
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        return Belt(location, play=np.asarray(values, float)[..., 0] * _ratio(subject, subject.motors.index(location)))
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """A small and a large angle, with encoders on either side."""
+        return np.array([[angle, side] for side in (0.0, 1.0) for angle in (0.003, 0.015)])
+
+
+def _ratio(subject: Subject, motor: int) -> float:
+    """Angle of a motor over that of the joint that it moves most [-]."""
+    return float(np.abs(subject.joint_from_motor[:, motor]).max())

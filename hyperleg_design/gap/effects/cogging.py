@@ -1,0 +1,119 @@
+"""Torque that varies with a motor's angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.placing import at_motor, driven_motors, motor_position, motor_strength
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+SHARE = 0.02
+"""Usual cogging over the torque that a motor is made for (EMBiR: cogging of a few per cent of rated torque)."""
+ORDERS = np.arange(1.0, 49.0)
+"""Periods a turn that a search tries."""
+TRIED = 3
+"""Best orders kept as starts of a search."""
+
+
+class Cogging(Effect):
+    """A motor resists with a torque that repeats `order` times a turn of M^T q: cosine cos(order M^T q) + sine sin(order M^T q).
+
+    Amplitude and phase are hypot(cosine, sine) and atan2(sine, cosine). Where M holds a gear's ratio, a turn is the rotor's;
+    where it is 1, the gear's output's. Trace: that torque.
+    """
+
+    identifier: ClassVar[str] = "cogging"
+    kind: ClassVar[str] = "motor"
+    summary: ClassVar[str] = "a motor's torque varies with its angle, some periods a turn"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("cosine", "Nm", 0.0, -20.0, 20.0, 0.1, "a few per cent of the rated torque of BLDC motors (assumed; MuJoCo's dcmotor `cogging`)"),
+        Parameter("sine", "Nm", 0.0, -20.0, 20.0, 0.1, "as the cosine"),
+        Parameter("order", "1/turn", 6.0, 0.5, 200.0, 4.0, "least common multiple of slots and poles, or its fractions", shape=True),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Motors."""
+        return driven_motors(subject)
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        motor = signals.subject.motors.index(location)
+        cosine, sine, order = np.atleast_2d(np.asarray(values, float)).T[..., None]
+        angle = order * motor_position(signals, motor)
+        return at_motor(signals, motor, cosine * np.cos(angle) + sine * np.sin(angle))
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        values = np.asarray(values, float)
+        return CoggingTorque(location, values[..., 0], values[..., 1], values[..., 2])
+
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """A share of the torque that the motor is made for."""
+        share = SHARE * motor_strength(subject, subject.motors.index(location))
+        return np.array([share, share, self.parameters[2].typical])
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """Amplitudes up to the torque that the motor is made for."""
+        found = super().bounds(location, subject)
+        most = min(found[1, 0], motor_strength(subject, subject.motors.index(location)))
+        found[0, :2], found[1, :2] = -most, most
+        return found
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """The orders that by themselves explain most of the residual of this log, with their amplitudes."""
+        subject = signals.subject
+        motor = subject.motors.index(location)
+        main = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
+        ratio = subject.joint_from_motor[main, motor]
+        residual = signals.residual["motion"][:, main] / ratio
+        known = np.isfinite(residual) & signals.valid
+        if known.sum() < 16:
+            return super().starts(signals, location)
+        angle, wanted = motor_position(signals, motor)[known], residual[known]
+        wanted = wanted - wanted.mean()
+        found = []
+        for order in ORDERS:
+            waves = np.stack([np.cos(order * angle), np.sin(order * angle)], -1)
+            waves -= waves.mean(0)
+            gram = waves.T @ waves
+            gram[np.diag_indices(2)] += 1e-9 * max(float(np.trace(gram)), 1e-12)
+            right = waves.T @ wanted
+            fitted = np.linalg.solve(gram, right)
+            found.append((float(right @ fitted), *fitted.tolist(), float(order)))
+        found.sort(reverse=True)
+        low, high = self.bounds(location, subject)
+        return np.clip(np.array([row[1:] for row in found[:TRIED]]), low, high)
+
+
+@dataclass(frozen=True, eq=False)
+class CoggingTorque(Alteration):
+    """Torque that a rotor resists with, over its angle."""
+
+    motor: str
+    cosine: Any
+    sine: Any
+    order: Any
+    """`()` or `(n,)` each [Nm, Nm, 1/turn]."""
+
+
+class _Cogging(Live):
+    alteration: CoggingTorque
+
+    def prepare(self) -> None:
+        self.place = self.machine.motor(self.alteration.motor)
+
+    def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
+        one, angle = self.alteration, tick.motor_position[:, self.place]
+        torque[:, self.place] -= one.cosine * np.cos(one.order * angle) + one.sine * np.sin(one.order * angle)
+        return torque
+
+
+CoggingTorque.live = _Cogging

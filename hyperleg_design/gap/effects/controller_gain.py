@@ -1,0 +1,92 @@
+"""Controllers with other gains than declared."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, limited
+from hyperleg_design.simulation.alteration import Alteration, Machine
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+
+class ControllerGain(Effect):
+    """A joint's controller is stiffer or more damped than its declared gains.
+
+    Its torque K (target - q) - D q_dot changes by ((scale_K - 1) K (target - q) - (scale_D - 1) D q_dot), and with it those of
+    the motors. Trace, by the rule of `placing`: what that changes within the nominal limits. Of motors whose commands are
+    logged, and so known to be what the controller asked for, it shows in the balance of the control instead.
+    """
+
+    identifier: ClassVar[str] = "controller_gain"
+    kind: ClassVar[str] = "joint"
+    summary: ClassVar[str] = "a joint controller is stiffer or more damped than declared"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("stiffness_scale", "", 1.0, 0.1, 5.0, 0.2, "servos' registers are nominal: 20 % off (assumed; XL330 and STS3215 fits in BAM)"),
+        Parameter("damping_scale", "", 1.0, 0.0, 5.0, 0.2, "as the stiffness"),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Joints with known gains."""
+        known = np.isfinite(subject.gains).all(1) & (subject.gains != 0).any(1) & ~subject.passive
+        return tuple(name for name, here in zip(subject.joints, known, strict=True) if here)
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        subject = signals.subject
+        joint = subject.joints.index(location)
+        if signals.target is None or not np.isfinite(signals.target[:, joint]).any():
+            return {}
+        scale = np.atleast_2d(np.asarray(values, float))[..., None] - 1.0
+        stiffness, damping = subject.gains[joint]
+        error = signals.target[:, joint] - signals.position[:, joint]
+        more = scale[:, 0] * (stiffness * error) - scale[:, 1] * (damping * signals.velocity[:, joint])
+        changes, control = {}, None
+        for motor in np.flatnonzero(subject.motor_from_joint[:, joint]).tolist():
+            if subject.motors[motor] not in driven_motors(subject) or not is_commanded(signals, motor):
+                continue
+            share = subject.motor_from_joint[motor, joint] * more
+            if _logged(signals, motor):
+                if "control" in signals.residual:
+                    control = np.zeros((*share.shape, len(subject.motors))) if control is None else control
+                    control[..., motor] = share
+                continue
+            asked = commanded(signals, motor)
+            changes[motor] = limited(signals, motor, asked + share) - limited(signals, motor, asked)
+        return before_measurement(signals, changes) | ({} if control is None else {"control": control})
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        values = np.asarray(values, float)
+        return ScaledGains(location, values[..., 0], values[..., 1])
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """Softer and stiffer, with and without the damping."""
+        return np.array([[0.8, 0.8], [1.25, 1.25], [0.8, 1.0], [1.25, 1.0], [1.0, 0.8], [1.0, 1.25]])
+
+
+def _logged(signals: Signals, motor: int) -> bool:
+    subject, log = signals.subject, signals.log
+    return any(log.has("motor_torque_command", name) for name in (subject.motors[motor], subject.motor_aliases[motor]))
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledGains(Alteration):
+    """Gains of a joint's controller over those of the machine."""
+
+    joint: str
+    stiffness: Any
+    damping: Any
+    """`()` or `(n,)` each [-]."""
+
+    def machine(self, machine: Machine) -> Machine:
+        """With the other gains."""
+        place = machine.joint(self.joint)
+        machine = machine.changed("stiffness", place, lambda own: own * self.stiffness)
+        return machine.changed("damping", place, lambda own: own * self.damping)

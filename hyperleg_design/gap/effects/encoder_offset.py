@@ -1,0 +1,127 @@
+"""Joint encoders with a wrong zero."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.gap import rigid
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.simulation.alteration import Alteration, Live
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+NODES = 5
+"""Positions at which the torque is computed: it is a trigonometric polynomial of second degree in one joint's angle."""
+
+Basis = dict[str, tuple[np.ndarray, np.ndarray]]
+_BASES: WeakKeyDictionary[Signals, dict[int, Basis]] = WeakKeyDictionary()
+
+
+class EncoderOffset(Effect):
+    """A joint stands at the logged position minus `offset`; controller and log read the same wrong angle.
+
+    Targets are absolute and torques follow from readings, so all that the offset leaves is the torque that another posture
+    needs: gravity, inertia, springs and the levers of contact forces. Trace: needed(q - offset) - needed(q), exact.
+    """
+
+    identifier: ClassVar[str] = "encoder_offset"
+    kind: ClassVar[str] = "joint"
+    summary: ClassVar[str] = "a joint's encoder reads a constant angle too much"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("offset", "rad", 0.0, -0.3, 0.3, 0.03, "up to 0.1 rad on calibrated legs (PACE, arXiv 2509.06342)"),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Joints."""
+        return subject.joints
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        joint = signals.subject.joints.index(location)
+        offset = np.atleast_2d(np.asarray(values, float))[:, 0]
+        turns = signals.subject.tree.hinge[joint]
+        powers = _waves(offset) if turns else np.stack([offset, offset**2], -1)
+        kept = _BASES.setdefault(signals, {})
+        if joint not in kept:
+            kept[joint] = _basis(signals, joint)
+        found = {}
+        for balance, (rows, parts) in kept[joint].items():
+            count = len(signals.subject.joints) if balance == "motion" else 6
+            found[balance] = np.zeros((len(offset), len(signals.time), count))
+            found[balance][..., rows] = np.tensordot(powers, parts, 1)
+        found["motion"][..., joint] -= signals.subject.spring[joint] * offset[:, None]
+        return found
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        return ShiftedEncoder(location, np.asarray(values, float)[..., 0])
+
+
+def _waves(offset: np.ndarray) -> np.ndarray:
+    """Functions of an offset that vanish at 0 `(k, 4)`."""
+    return np.stack([np.cos(offset) - 1, np.sin(offset), np.cos(2 * offset) - 1, np.sin(2 * offset)], -1)
+
+
+def _basis(signals: Signals, joint: int) -> Basis:
+    """By balance: rows that an offset changes, and how, in the functions of the offset `(functions, t, rows)`."""
+    hinge = bool(signals.subject.tree.hinge[joint])
+    nodes = 2 * np.pi / NODES * np.arange(1, NODES) if hinge else np.array([-0.1, 0.1])
+    matrix = np.linalg.inv(_waves(nodes) if hinge else np.stack([nodes, nodes**2], -1))
+    here = _needed(signals, signals.position)
+    shifts = []
+    for node in nodes:
+        position = signals.position.copy()
+        position[:, joint] -= node
+        there = _needed(signals, position)
+        shifts.append({balance: there[balance] - here[balance] for balance in here})
+    found = {}
+    for balance in here:
+        differences = np.stack([shift[balance] for shift in shifts])
+        rows = np.flatnonzero(np.nanmax(np.abs(differences), (0, 1)) > 1e-12)
+        found[balance] = (rows, np.tensordot(matrix, differences[..., rows], 1))
+    return found
+
+
+def _needed(signals: Signals, position: np.ndarray) -> dict[str, np.ndarray]:
+    """Torque that the motion needs at other positions, less what contact gives `(t, n)`, and the base's wrench `(t, 6)`."""
+    subject, base = signals.subject, signals.base
+    motion = position, signals.velocity, signals.acceleration
+    found = {"motion": rigid.inverse_dynamics(subject, *motion, base)}
+    if "base" in signals.residual and base is not None:
+        found["base"] = rigid.base_wrench(subject, *motion, base)
+    if signals.pad_force is not None:
+        rotation = None if base is None else base.rotation
+        torque, wrench = rigid.contact_torque(subject, position, rotation, np.nan_to_num(signals.pad_force))
+        found["motion"] = found["motion"] - torque
+        if "base" in found:
+            found["base"] = found["base"] - wrench
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class ShiftedEncoder(Alteration):
+    """What controller, policy and log are told of a joint's position is off."""
+
+    joint: str
+    offset: Any
+    """`()` or `(n,)` [rad]."""
+
+
+class _Shifted(Live):
+    alteration: ShiftedEncoder
+
+    def prepare(self) -> None:
+        self.place = self.machine.joint(self.alteration.joint)
+
+    def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        position[:, self.place] += self.alteration.offset
+        return position, velocity
+
+
+ShiftedEncoder.live = _Shifted

@@ -1,0 +1,106 @@
+"""What effects of friction share: which way a joint slides, and friction in a simulation.
+
+Near rest the sign of a velocity is noise, and friction at rest is whatever balances the torques, up to its size. So the way
+of sliding is taken from the position: it turns over while the joint moves `2 z`, as bristles bend (Prandtl's stop operator,
+the elastic-plastic limit of the Dahl and LuGre models),
+
+    s_i = clip(s_(i-1) + (q_i - q_(i-1)) / z, -1, 1),
+
+and a joint that comes to rest keeps it. That is right on ramps slower than the noise of the velocity, and in holds that a damped
+controller creeps into; where a joint sticks while its controller pulls it the other way, `resting` says so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+
+PRESLIDING = 5e-4
+"""z: half the way over which friction turns over [rad]; assumed, of the order of 1 mrad as bristles of small gears."""
+NOISES = 5.0
+"""Least z over the noise of the smoothed position."""
+WIDTH = 0.01
+"""Velocity at which friction in a simulation has three quarters of its size [rad/s]; a sign, softened below what logs resolve."""
+REST = 0.2
+"""Time within which a joint that moves less than `2 z` counts as resting [s]; assumed."""
+
+_SLIDING: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
+
+
+def sliding(signals: Signals) -> np.ndarray:
+    """Which way each joint slides, from -1 to 1 `(t, n)`; kept while `signals` live."""
+    if signals not in _SLIDING:
+        position = signals.position
+        moved = np.diff(position, axis=0) / presliding(signals)
+        out = np.empty_like(position)
+        first = np.sign(np.where(np.abs(position - position[0]) > presliding(signals), position - position[0], 0.0))
+        start = np.argmax(first != 0, 0)
+        state = first[start, np.arange(position.shape[1])]
+        out[0] = state
+        for tick, step in enumerate(moved, 1):
+            state = out[tick]
+            np.add(out[tick - 1], step, out=state)
+            np.minimum(state, 1.0, out=state)
+            np.maximum(state, -1.0, out=state)
+        out.setflags(write=False)
+        _SLIDING[signals] = out
+    return _SLIDING[signals]
+
+
+def presliding(signals: Signals) -> np.ndarray:
+    """Half the way of turning over, z, of each joint `(n,)` [rad]."""
+    count = len(signals.subject.joints)
+    if signals.noise is None or signals.bandwidth is None:
+        return np.full(count, PRESLIDING)
+    passed = np.sqrt(np.clip(2 * np.nan_to_num(signals.bandwidth) * signals.step, 0.0, 1.0))
+    return np.maximum(PRESLIDING, NOISES * np.nan_to_num(signals.noise) * passed)
+
+
+def resting(signals: Signals) -> np.ndarray:
+    """Where a joint's friction is anything up to its size, as it does not move `(t, n)` of bool."""
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+    span = max(round(REST / signals.step), 1)
+    moved = maximum_filter1d(signals.position, span, axis=0) - minimum_filter1d(signals.position, span, axis=0)
+    return np.asarray(moved < 2 * presliding(signals))
+
+
+@dataclass(frozen=True, eq=False)
+class JointFriction(Alteration):
+    """Friction at a joint: (coulomb + breakaway exp(-(v/speed)^2) + share |torque|) sign(v) + viscous v, its sign softened."""
+
+    joint: str
+    coulomb: Any = 0.0
+    viscous: Any = 0.0
+    breakaway: Any = 0.0
+    speed: Any = 1.0
+    share: Any = 0.0
+    """Of the torque that the motors give at the joint; `()` or `(n,)` each [Nm, Nms/rad, Nm, rad/s, -]."""
+    width: float = WIDTH
+    """[rad/s]"""
+
+
+class _Friction(Live):
+    alteration: JointFriction
+
+    def prepare(self) -> None:
+        self.place = self.machine.joint(self.alteration.joint)
+
+    def joint_damping(self, tick: Tick) -> np.ndarray:
+        one, velocity = self.alteration, tick.velocity[:, self.place]
+        assert tick.joint_torque is not None
+        size = one.coulomb + one.breakaway * np.exp(-((velocity / one.speed) ** 2)) + one.share * np.abs(tick.joint_torque[:, self.place])
+        out = np.zeros_like(tick.velocity)
+        out[:, self.place] = resistance(size, velocity, one.width) + one.viscous
+        return out
+
+
+JointFriction.live = _Friction

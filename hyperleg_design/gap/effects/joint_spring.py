@@ -1,0 +1,93 @@
+"""Springs at joints that the model does not have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+SHARE = 0.05
+"""Usual stiffness a radian, and preload, over the torque that a joint is made for (assumed: cables and seals)."""
+
+
+class JointSpring(Effect):
+    """A cable, a seal or a spring pulls a joint back: stiffness (q - default) + preload, default the robot's posture at rest.
+
+    It rests at default - preload / stiffness. Trace: that torque.
+    """
+
+    identifier: ClassVar[str] = "joint_spring"
+    kind: ClassVar[str] = "joint"
+    summary: ClassVar[str] = "a cable or a spring pulls a joint towards some angle"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("stiffness", "Nm/rad", 0.0, -100.0, 500.0, 2.0, "cable bundles and seals, 5 % of the joint's torque a radian (assumed)"),
+        Parameter("preload", "Nm", 0.0, -100.0, 100.0, 2.0, "as the stiffness, at the posture of rest (assumed)"),
+    )
+    linear: ClassVar[bool] = True
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Joints."""
+        return subject.joints
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        joint = signals.subject.joints.index(location)
+        stiffness, preload = np.atleast_2d(np.asarray(values, float)).T[..., None]
+        return at_joint(signals, joint, stiffness * (signals.position[:, joint] - signals.subject.default[joint]) + preload)
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        values = np.asarray(values, float)
+        return Spring(location, values[..., 0], values[..., 1], float(subject.default[subject.joints.index(location)]))
+
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """A share of the torque that the joint is made for."""
+        return np.full(2, SHARE * joint_strength(subject)[subject.joints.index(location)])
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """Less stiff than the model's springs by no more than these; preload up to the torque that the joint is made for."""
+        joint = subject.joints.index(location)
+        strength = joint_strength(subject)[joint]
+        found = super().bounds(location, subject)
+        return np.array([np.maximum(found[0], [-subject.spring[joint], -strength]), np.minimum(found[1], [20 * strength, strength])])
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """A spring, and a bare preload either way."""
+        usual = self.usual(location, signals.subject)
+        return np.array([[usual[0], 0.0], [0.0, usual[1]], [0.0, -usual[1]]])
+
+
+@dataclass(frozen=True, eq=False)
+class Spring(Alteration):
+    """Pulls a joint by -(stiffness (q - rest) + preload)."""
+
+    joint: str
+    stiffness: Any
+    preload: Any
+    """`()` or `(n,)` each [Nm/rad, Nm]."""
+    rest: float
+    """[rad]"""
+
+
+class _Pull(Live):
+    alteration: Spring
+
+    def prepare(self) -> None:
+        self.place = self.machine.joint(self.alteration.joint)
+
+    def joint_torque(self, tick: Tick) -> np.ndarray:
+        one, out = self.alteration, np.zeros_like(tick.position)
+        out[:, self.place] = -(one.stiffness * (tick.position[:, self.place] - one.rest) + one.preload)
+        return out
+
+
+Spring.live = _Pull

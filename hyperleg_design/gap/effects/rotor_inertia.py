@@ -1,0 +1,76 @@
+"""Rotors heavier or lighter than the model's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.placing import at_motor, driven_motors, joint_inertia
+from hyperleg_design.simulation.alteration import Alteration, Machine
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+SHARE = 0.3
+"""Usual error over the rotor's inertia, or, where the model has none, over that of its joint (assumed)."""
+
+
+class RotorInertia(Effect):
+    """Inertia of a rotor and what turns with it, beyond the model's, on the motor's side of the transmission.
+
+    Trace: inertia times the motor's acceleration M^T q_ddot.
+    """
+
+    identifier: ClassVar[str] = "rotor_inertia"
+    kind: ClassVar[str] = "motor"
+    summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("inertia", "kg m^2", 0.0, -5.0, 5.0, 0.05, "0.03-0.1 kg m^2 reflected on leg joints; `usual` knows the motor's side"),
+    )
+    linear: ClassVar[bool] = True
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Motors."""
+        return driven_motors(subject)
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        motor = signals.subject.motors.index(location)
+        acceleration = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
+        return at_motor(signals, motor, np.atleast_2d(values)[:, :1] * acceleration)
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`; what is taken away never exceeds the model's."""
+        own = subject.rotor_inertia[subject.motors.index(location)]
+        return AddedRotor(location, np.maximum(np.asarray(values, float)[..., 0], -own))
+
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """A share of the rotor's own inertia, or of its joints' as the motor feels it."""
+        motor = subject.motors.index(location)
+        own = float(subject.rotor_inertia[motor])
+        column = subject.joint_from_motor[:, motor]
+        main = int(np.argmax(np.abs(column)))
+        return np.array([SHARE * max(own, 0.03 * float(joint_inertia(subject)[main]) / column[main] ** 2)])
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """No less than no rotor at all."""
+        found = super().bounds(location, subject)
+        found[0] = -subject.rotor_inertia[subject.motors.index(location)]
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class AddedRotor(Alteration):
+    """Inertia added to a rotor."""
+
+    motor: str
+    inertia: Any
+    """`()` or `(n,)` [kg m^2]."""
+
+    def machine(self, machine: Machine) -> Machine:
+        """With the heavier rotor."""
+        return machine.changed("rotor_inertia", machine.motor(self.motor), lambda own: own + self.inertia)

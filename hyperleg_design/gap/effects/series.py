@@ -1,0 +1,88 @@
+"""Operations on evenly sampled signals that traces share: delay, first-order lag, second derivative; NaN stays NaN."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def delayed(values: np.ndarray, delay: np.ndarray, step: float) -> np.ndarray:
+    """Signal some time ago, by linear interpolation; before its beginning, its first value.
+
+    Args:
+        values: `(t,)`.
+        delay: `(k,)` [s], not negative.
+        step: of the time base [s].
+
+    Returns:
+        `(k, t)`.
+    """
+    out = np.empty((len(delay), len(values)))
+    for row, ticks in enumerate(np.maximum(delay, 0.0) / step):
+        whole = min(int(ticks), len(values) - 1)
+        part = ticks - whole
+        late = np.concatenate([np.full(whole, values[0]), values[: len(values) - whole]])
+        if part:
+            late = np.concatenate([late[:1], (1 - part) * late[1:] + part * late[:-1]])
+        out[row] = late
+    return out
+
+
+def lagged(values: np.ndarray, time_constant: np.ndarray, step: float) -> np.ndarray:
+    """Signal after a first-order lag T y' = u - y, exact for a signal that is straight between ticks; it starts settled.
+
+    Args:
+        values: `(t,)`; unknown ticks are bridged, and unknown in the result.
+        time_constant: `(k,)` [s], not negative.
+        step: of the time base [s].
+
+    Returns:
+        `(k, t)`.
+    """
+    from scipy.signal import lfilter
+
+    known = np.isfinite(values)
+    out = np.full((len(time_constant), len(values)), np.nan)
+    if not known.any():
+        return out
+    ticks = np.arange(len(values))
+    filled = values if known.all() else np.interp(ticks, ticks[known], values[known])
+    for row, lag in enumerate(time_constant):
+        if lag <= 1e-6 * step:
+            out[row] = values
+            continue
+        ratio = step / lag
+        keep = np.exp(-ratio)
+        new = 1 - (1 - keep) / ratio
+        old = 1 - keep - new
+        settled = filled[0] - new * filled[0]
+        out[row] = lfilter([new, old], [1.0, -keep], filled, zi=[settled])[0]
+    if not known.all():
+        out[:, ~known] = np.nan
+    return out
+
+
+def band_limited(values: np.ndarray, step: float, cutoff: float) -> np.ndarray:
+    """Signal `(t,)` without what lies above a frequency [Hz], no delay; unknown ticks are bridged."""
+    from scipy.signal import butter, sosfiltfilt
+
+    known = np.isfinite(values)
+    if not known.any():
+        return values
+    ticks = np.arange(len(values))
+    filled = values if known.all() else np.interp(ticks, ticks[known], values[known])
+    if cutoff >= 0.45 / step or len(values) < 20:
+        return filled
+    return np.asarray(sosfiltfilt(butter(2, cutoff, fs=1 / step, output="sos"), filled, padlen=min(len(values) - 1, 100)))
+
+
+def second_derivative(values: np.ndarray, step: float) -> np.ndarray:
+    """Central second difference along the last axis `(..., t)`; its ends repeat their neighbours."""
+    out = np.empty_like(values)
+    out[..., 1:-1] = (values[..., 2:] - 2 * values[..., 1:-1] + values[..., :-2]) / step**2
+    out[..., 0], out[..., -1] = out[..., 1], out[..., -2]
+    return out
+
+
+def first_derivative(values: np.ndarray, step: float) -> np.ndarray:
+    """Central difference along the last axis `(..., t)`."""
+    return np.asarray(np.gradient(values, step, axis=-1))

@@ -1,0 +1,66 @@
+"""Friction that falls as a joint breaks away."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.friction import JointFriction, sliding
+from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.simulation.alteration import Alteration
+
+SHARE = 0.04
+"""Usual excess over the torque that a joint is made for: RMD-X8, 2 Nm of 40 Nm."""
+
+
+class StribeckFriction(Effect):
+    """Breakaway friction in excess of sliding friction, which is gone at speeds above the Stribeck speed.
+
+    Trace: torque exp(-(v / speed)^2) times the way in which the joint slides, `friction.sliding`. Sliding friction itself is
+    `coulomb_friction`.
+    """
+
+    identifier: ClassVar[str] = "stribeck_friction"
+    kind: ClassVar[str] = "joint"
+    summary: ClassVar[str] = "a joint sticks: friction is larger at rest and at low speed than in fast motion"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("torque", "Nm", 0.0, 0.0, 50.0, 2.0, "breakaway 2.4-3.3 Nm against 0.7 Nm sliding on an RMD-X8"),
+        Parameter("speed", "rad/s", 0.1, 0.01, 2.0, 0.1, "0.01-0.3 rad/s (Armstrong-Helouvry et al. 1994; BAM fits)", shape=True),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Joints."""
+        return subject.joints
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        joint = signals.subject.joints.index(location)
+        torque, speed = np.atleast_2d(np.asarray(values, float)).T[..., None]
+        fall = np.exp(-((signals.velocity[:, joint] / np.maximum(speed, 1e-6)) ** 2))
+        return at_joint(signals, joint, torque * fall * sliding(signals)[:, joint])
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        values = np.asarray(values, float)
+        return JointFriction(location, breakaway=values[..., 0], speed=np.maximum(values[..., 1], 1e-6))
+
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """A share of the torque that the joint is made for."""
+        return np.array([SHARE * joint_strength(subject)[subject.joints.index(location)], self.parameters[1].typical])
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """Excess no larger than the torque that the joint is made for."""
+        found = super().bounds(location, subject)
+        found[1, 0] = min(found[1, 0], joint_strength(subject)[subject.joints.index(location)])
+        return found
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """The usual excess at several Stribeck speeds."""
+        usual = self.usual(location, signals.subject)[0]
+        return np.array([[usual, speed] for speed in (0.03, 0.1, 0.3)])

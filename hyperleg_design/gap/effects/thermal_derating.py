@@ -1,0 +1,107 @@
+"""Motors that lose torque as they warm up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.placing import at_motor, driven_motors, machine, motor_strength
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+COLD = 25.0
+"""Temperature at which a motor has the torque of its data sheet [degC]."""
+RATED_RISE = 60.0
+"""Rise at rated torque for ever [K]: continuous torque is rated so that windings reach 80-90 degC (assumed)."""
+TIME_CONSTANT = 60.0
+"""Of a motor's windings and iron [s]; assumed."""
+RATED_SHARE = 1 / 3
+"""Rated over largest torque where nobody gives it (assumed)."""
+
+
+class ThermalDerating(Effect):
+    """A motor's torque falls short of what its current says by a share for each kelvin above 25 degC.
+
+    Temperature as logged; else that of a first-order model heated by the squared torques of the log itself, from cold.
+    Trace: coefficient (T - 25 degC) times the believed torque.
+    """
+
+    identifier: ClassVar[str] = "thermal_derating"
+    kind: ClassVar[str] = "motor"
+    summary: ClassVar[str] = "a motor loses torque as it warms up"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("coefficient", "1/K", 0.0, 0.0, 0.012, 0.002, "flux of NdFeB -0.12 %/K, of ferrites -0.2 %/K; copper 0.39 %/K with voltage drives"),
+    )
+    linear: ClassVar[bool] = True
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Motors."""
+        return driven_motors(subject)
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        motor = signals.subject.motors.index(location)
+        torque = signals.believed[:, motor]
+        return at_motor(signals, motor, np.atleast_2d(values)[:, :1] * (rise(signals, motor) * torque))
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        return DeratedMotor(location, np.asarray(values, float)[..., 0], rated_torque(subject, subject.motors.index(location)))
+
+
+def rise(signals: Signals, motor: int) -> np.ndarray:
+    """Temperature of a motor above 25 degC `(t,)` [K], logged or modelled."""
+    if signals.temperature is not None and np.isfinite(signals.temperature[:, motor]).any():
+        return signals.temperature[:, motor] - COLD
+    from scipy.signal import lfilter
+
+    heat = RATED_RISE * (np.nan_to_num(signals.believed[:, motor]) / rated_torque(signals.subject, motor)) ** 2
+    keep = np.exp(-signals.step / TIME_CONSTANT)
+    return np.asarray(lfilter([0.0, 1 - keep], [1.0, -keep], heat))
+
+
+def rated_torque(subject: Subject, motor: int) -> float:
+    """Continuous torque of a motor [Nm]."""
+    known = float(machine(subject).rated_torque[motor])
+    return known if np.isfinite(known) else RATED_SHARE * motor_strength(subject, motor)
+
+
+@dataclass(frozen=True, eq=False)
+class DeratedMotor(Alteration):
+    """A motor that loses torque with temperature: measured, or modelled from cold."""
+
+    motor: str
+    coefficient: Any
+    """`()` or `(n,)` [1/K]."""
+    rated: float
+    """Continuous torque [Nm]."""
+
+
+class _Derated(Live):
+    kept: ClassVar[tuple[str, ...]] = ("rise",)
+
+    alteration: DeratedMotor
+
+    def prepare(self) -> None:
+        self.place = self.machine.motor(self.alteration.motor)
+        self.rise = np.zeros(self.count)
+
+    def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
+        one = self.alteration
+        heat = RATED_RISE * (torque[:, self.place] / one.rated) ** 2
+        rise = self.rise.copy()
+        if tick.temperature is not None:
+            known = tick.temperature[:, self.place] - COLD
+            rise = np.where(np.isfinite(known), known, rise)
+        self.rise += -np.expm1(-self.step / TIME_CONSTANT) * (heat - self.rise)
+        torque[:, self.place] *= np.clip(1 - one.coefficient * rise, 0.0, None)
+        return torque
+
+
+DeratedMotor.live = _Derated

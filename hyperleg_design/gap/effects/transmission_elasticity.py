@@ -1,0 +1,79 @@
+"""Belts, cables and gears that give under load."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects import belt
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.placing import driven_motors
+from hyperleg_design.simulation.two_mass import DAMPING_RATIO, Belt
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.simulation.alteration import Alteration
+
+RESONANCE = 12.0
+"""Usual frequency of a rotor on its belt, its joint held [Hz]: belts ring at 5-30 Hz."""
+RESONANCES = (40.0, 20.0, 10.0, 5.0)
+"""That a search starts from [Hz]."""
+SLOWEST = 0.5
+"""Lowest frequency of a rotor on its belt that is searched [Hz]."""
+
+
+class TransmissionElasticity(Effect):
+    """A motor and its joints are joined by a spring, on the motor's side of the transmission; see `belt`.
+
+    The rotor on its belt, the joint held, rings at 1 / (2 pi sqrt(J compliance)).
+    """
+
+    identifier: ClassVar[str] = "transmission_elasticity"
+    kind: ClassVar[str] = "motor"
+    summary: ClassVar[str] = "a belt, cable or gear gives under load, so motor and joint move apart"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("compliance", "rad/Nm", 0.0, 0.0, 1e4, 0.01, "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor"),
+        Parameter("damping_ratio", "", DAMPING_RATIO, 0.0, 1.0, 0.05, "steel-corded belts ring for a few periods (assumed)", shape=True),
+        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "0: positions are the joints' own, 1: the rotors'", shape=True),
+    )
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Motors."""
+        return driven_motors(subject)
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        motor = signals.subject.motors.index(location)
+        compliance, damping_ratio, side = np.atleast_2d(np.asarray(values, float)).T
+        return belt.trace(signals, motor, belt.stretch(signals, motor, compliance, np.zeros_like(compliance), damping_ratio), side)
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`."""
+        values = np.asarray(values, float)
+        compliance, ratio = values[..., 0], values[..., 1]
+        inertia = belt.rotor(subject, subject.motors.index(location))
+        damping = 2 * ratio * np.sqrt(inertia / np.where(compliance > 0, compliance, np.inf))
+        return Belt(location, compliance=compliance, damping=damping)
+
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """Compliance at which the rotor rings at the usual frequency."""
+        found = super().usual(location, subject)
+        found[0] = self._compliance(RESONANCE, location, subject)
+        return found
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """No softer than a rotor that rings at half a hertz."""
+        found = super().bounds(location, subject)
+        found[1, 0] = min(found[1, 0], self._compliance(SLOWEST, location, subject))
+        return found
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """Several resonances, with encoders on either side."""
+        stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
+        return np.array([[c, DAMPING_RATIO, side] for side in (0.0, 1.0) for c in stiff])
+
+    def _compliance(self, frequency: float, location: str, subject: Subject) -> float:
+        inertia = belt.rotor(subject, subject.motors.index(location))
+        return float(1 / (inertia * (2 * np.pi * frequency) ** 2))

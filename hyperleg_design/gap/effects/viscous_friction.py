@@ -1,0 +1,54 @@
+"""Friction that grows with speed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.friction import JointFriction
+from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.simulation.alteration import Alteration
+
+SHARE = 0.02
+"""Usual viscous friction at 1 rad/s over the torque that a joint is made for: 1.3-9.7 Nms/rad on harmonic drives of 100 Nm (BAM)."""
+
+
+class ViscousFriction(Effect):
+    """A joint resists motion in proportion to its velocity, beyond (or, negative, short of) the model; trace: damping times velocity."""
+
+    identifier: ClassVar[str] = "viscous_friction"
+    kind: ClassVar[str] = "joint"
+    summary: ClassVar[str] = "a joint resists motion in proportion to its velocity"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("damping", "Nms/rad", 0.0, -50.0, 100.0, 2.0, "1.3-9.7 Nms/rad on harmonic drives (BAM, arXiv 2410.08650)"),
+    )
+    linear: ClassVar[bool] = True
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Joints."""
+        return subject.joints
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """See `Effect.trace`."""
+        joint = signals.subject.joints.index(location)
+        return at_joint(signals, joint, np.atleast_2d(values)[:, :1] * signals.velocity[:, joint])
+
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        """See `Effect.alteration`; what is taken away never exceeds the model's."""
+        joint = subject.joints.index(location)
+        return JointFriction(location, viscous=np.maximum(np.asarray(values, float)[..., 0], -subject.viscous[joint]))
+
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """A share of the torque that the joint is made for."""
+        return np.array([SHARE * joint_strength(subject)[subject.joints.index(location)]])
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """No less than no friction at all."""
+        joint = subject.joints.index(location)
+        return np.array([[-subject.viscous[joint]], [min(self.parameters[0].high, joint_strength(subject)[joint])]])
