@@ -252,10 +252,12 @@ class Plant:
                 self._tendon_damping[:] = driven.motor_damping
             else:
                 damping = damping + actuation.applied(np.asarray(matrix) ** 2, driven.motor_damping)
-        stiffness = np.maximum(damping * self._softness, 1e-9)
-        implicit = np.maximum(0.5, 1 - 1 / stiffness)
-        self._applied[:, self._first :] = torque - (1 - implicit) * damping * velocity
-        self._damping[:, self._first :] = self._own_damping[:, self._first :] + implicit * damping
+        implicit = np.maximum(0.5, self._implicit(damping))
+        torque, damping = torque - (1 - implicit) * damping * velocity, implicit * damping
+        if follow == "target":
+            torque, damping = self._with_controller(torque, damping, velocity, driven)
+        self._applied[:, self._first :] = torque
+        self._damping[:, self._first :] = self._own_damping[:, self._first :] + damping
         if len(self.alive):
             try:
                 self.batch.step(self.alive)
@@ -266,6 +268,25 @@ class Plant:
                 self.qpos[lost], self.qvel[lost] = np.nan, np.nan
                 self.alive = np.setdiff1d(self.alive, lost)
         return driven
+
+    def _implicit(self, damping: np.ndarray) -> np.ndarray:
+        """Part of a damping that must act on the velocity after the step for the step to be stable: 1 - 1 / x, x = D h / I."""
+        return np.asarray(1 - 1 / np.maximum(damping * self._softness, 1e-9))
+
+    def _with_controller(self, torque: np.ndarray, damping: np.ndarray, velocity: np.ndarray, driven: Driven) -> tuple[np.ndarray, np.ndarray]:
+        """Gains too stiff for a joint's inertia made implicit as far as they must be; those of other joints stay as they are.
+
+        A servo's model without its rotor has such joints. Where a motor is at its limit the controller has no say.
+        """
+        machine = self.chain.machine
+        gain = np.asarray(machine.damping + self.chain.step * machine.stiffness)
+        implicit = np.broadcast_to(np.maximum(0.0, self._implicit(gain)), velocity.shape)
+        if not implicit.any() or driven.command is None:
+            return torque, damping
+        limited = np.abs(driven.believed - driven.command) > 1e-9
+        reached = actuation.applied(np.abs(np.asarray(machine.joint_from_motor)), limited.astype(float)) > 0
+        implicit = np.where(reached, 0.0, implicit)
+        return torque + implicit * machine.damping * velocity, damping + implicit * gain
 
 
 def _run(

@@ -128,3 +128,15 @@ def test_the_right_change_closes_the_gap_in_position(altered, effect, location, 
     position, _ = found.errors(one)
     before, after = (np.sqrt(np.nanmean(e**2)) for e in position)
     assert after < 0.1 * before
+
+
+def test_gains_too_stiff_for_a_joint_without_rotor_stay_stable(tmp_path):
+    """Ten times what an explicit step can stand; the joint follows its target as a stiff servo does."""
+    text = robots.PENDULUM.replace('armature="0.003"', "").replace('diaginertia="0.0006 0.0006 0.0001"', 'diaginertia="1e-5 1e-5 1e-5"')
+    text = text.replace('pos="0 0 -0.1" mass="0.5"', 'pos="0 0 -0.01" mass="0.05"')
+    text = text.replace('<motor name="servo" joint="swing" ctrlrange="-3 3"/>', '<position name="servo" joint="swing" kp="9" kv="0.5"/>')
+    (tmp_path / "servo.xml").write_text(text)
+    log = robots.servo_run(text.replace("RK4", "implicitfast"), robots.waves(1, 0.4), 3.0)
+    one = condition(log, load_subject(tmp_path / "servo.xml", [log]))
+    position, _ = replay(one, windows=whole_log(one)).errors(one)
+    assert rms(position)[0] < 1.5 * one.step / 2 * np.sqrt(np.mean(one.velocity**2))
