@@ -28,6 +28,8 @@ BANDWIDTH = 10.0
 """Content of the command that tells a motor's bandwidth from delay [Hz]."""
 COMMAND = 0.5
 """Content of the command from which a delay shows [Hz]."""
+SEGMENT = 16384
+"""Most rows of which one spectrum is made."""
 NOISE_MARGIN = 1.5
 """Times the power of noise that does not count as motion."""
 WARMING, SAGGING = 10.0, 0.03
@@ -141,9 +143,11 @@ def _content(values: np.ndarray, rate: float, *, noisy: bool = True) -> float:
     rates = np.nan_to_num(rates - np.nanmean(rates)) if np.isfinite(rates).any() else np.zeros(0)
     if len(rates) < 32 or not rates.any():
         return 0.0
-    window = np.hanning(len(rates))
-    power = np.abs(np.fft.rfft(rates * window)) ** 2
-    frequency = np.fft.rfftfreq(len(rates), 1 / rate)
+    length = min(len(rates), SEGMENT)
+    window = np.hanning(length)
+    segments = rates[: len(rates) // length * length].reshape(-1, length)
+    power = np.mean([np.abs(np.fft.rfft(segment * window)) ** 2 for segment in segments], axis=0)
+    frequency = np.fft.rfftfreq(length, 1 / rate)
     scale = 4 * np.sin(np.pi * frequency / rate) ** 2  # of a difference
     top = slice(3 * len(power) // 4, None)
     variance = max(float(np.median(power[top] / scale[top])) / np.log(2), step**2 / 12 * float(window @ window))  # median of an exponential

@@ -58,8 +58,8 @@ UNITS = {
 """By signal."""
 SCHEMA_KEY = b"hyperleg"
 """Of the Parquet schema's metadata."""
-MAX_VALUES = 128 * 1024 * 1024
-"""Numbers that one log may hold in memory (1 GiB); of longer recordings, blocks spread evenly over them are read."""
+MAX_VALUES = 32 * 1024 * 1024
+"""Numbers that one log may hold (256 MiB, half an hour of 100 columns at 200 Hz); of longer ones, blocks spread evenly are read."""
 BLOCK_ROWS = 16384
 """Rows that are read or left out together, at full rate."""
 
