@@ -93,8 +93,21 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
         *_columns(columns, sampling),
         *implausible(log, subject),
     ]
-    ordered = tuple(sorted(found, key=lambda f: SEVERITIES.index(f.severity)))
+    ordered = tuple(sorted(_merged(found), key=lambda f: SEVERITIES.index(f.severity)))
     return Check(log.name, sampling, columns, ordered, excitation_of(log, subject))
+
+
+def _merged(findings: list[Finding]) -> list[Finding]:
+    """Notes that many columns of one signal share, told once."""
+    alike: dict[tuple[str, ...], list[Finding]] = {}
+    for one in findings:
+        kind, slash, _ = one.signal.partition("/")
+        same = (kind, one.what, one.remedy) if one.severity == NOTE and slash else (str(id(one)),)
+        alike.setdefault(same, []).append(one)
+    return [
+        group[0] if len(group) == 1 else dataclasses.replace(group[0], signal=group[0].signal.partition("/")[0], what=f"{group[0].what} ({len(group)} columns)")
+        for group in alike.values()
+    ]  # fmt: skip
 
 
 def _required(log: Log, subject: Subject | None) -> list[Finding]:

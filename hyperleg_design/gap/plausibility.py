@@ -223,7 +223,7 @@ def _robot(log: Log, subject: Subject) -> list[Finding]:
     if lacking:
         text = f"joints of the robot without positions: {', '.join(lacking[:6])}"
         found.append(Finding(WARNING, "", text, "they are taken to stand still; log them if they move"))
-    lower, upper = np.broadcast_to(subject.lower, len(subject.joints)), np.broadcast_to(subject.upper, len(subject.joints))
+    lower, upper = np.broadcast_to(subject.position_low, len(subject.joints)), np.broadcast_to(subject.position_high, len(subject.joints))
     outside = []
     for i, joint in enumerate(subject.joints):
         if joint in own and upper[i] > lower[i]:

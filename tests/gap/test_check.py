@@ -64,6 +64,8 @@ def test_two_rates_and_gaps():
     assert found(slow, WARNING) == [("motor_torque/hip", "is given at 40 Hz in a log of 200 Hz")]
     held = spoiled(log, position_target__hip=lambda v: v[np.arange(4000) // 4 * 4])
     assert ("position_target/hip", "is held at 50 Hz in a log of 200 Hz") in found(held, NOTE)
+    both = spoiled(held, position_target__knee=lambda v: v[np.arange(4000) // 4 * 4])
+    assert found(both, NOTE) == [("position_target", "is held at 50 Hz in a log of 200 Hz (2 columns)")]
     lost = spoiled(log, position__hip=lambda v: np.where((log.time > 3) & (log.time < 5), np.nan, v))
     assert any(s == "position/hip" and "10.0 % of its values are missing" in w for s, w in found(lost, WARNING))
     empty = spoiled(log, motor_torque__hip=lambda v: v * np.nan)

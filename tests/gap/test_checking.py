@@ -67,3 +67,19 @@ def test_command_line(tmp_path, capsys):
     assert cli.main(["gap", "check", str(path), "--out", str(tmp_path / "out")]) == 2
     assert "no whole Parquet file" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_simulation_passes_the_check_against_its_own_robot(tmp_path):
+    from hyperleg_design.gap.recording import log_of_recording
+    from hyperleg_design.robot.design import load_design
+    from hyperleg_design.simulation.environment import Environment
+    from hyperleg_design.simulation.rollout import rollout
+    from hyperleg_design.simulation.tasks import load_task
+
+    environment = Environment(load_design(), load_task("walk"), simulations=1, threads=1)
+    steps = iter(range(200))
+    recording = rollout(environment, lambda o: np.full((1, 14), 0.2 * np.sin(0.3 * next(steps))), 120)
+    path = write_log(tmp_path / "run.parquet", log_of_recording(environment, recording))
+    (check,) = check_sources([path])
+    assert check.usable
+    assert not [f for f in check.findings if "robot" in f.what or "swapped" in f.remedy]

@@ -10,7 +10,7 @@ class Robot:
     """As much of a subject as this looks at."""
 
     joints = ("hip", "knee")
-    lower, upper = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
+    position_low, position_high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
 
 
 def errors(log, subject=None):
@@ -109,7 +109,7 @@ def test_logs_of_other_robots():
     assert any("without positions: knees" in what for what in found)
 
     class Small(Robot):
-        lower, upper = np.array([-0.1, -1.0]), np.array([0.1, 1.0])
+        position_low, position_high = np.array([-0.1, -1.0]), np.array([0.1, 1.0])
 
     assert "beyond the robot's range" in errors(log, Small())[0][1]
 
