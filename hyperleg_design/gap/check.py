@@ -104,10 +104,12 @@ def _merged(findings: list[Finding]) -> list[Finding]:
         kind, slash, _ = one.signal.partition("/")
         same = (kind, one.what, one.remedy) if one.severity == NOTE and slash else (str(id(one)),)
         alike.setdefault(same, []).append(one)
-    return [
-        group[0] if len(group) == 1 else dataclasses.replace(group[0], signal=group[0].signal.partition("/")[0], what=f"{group[0].what} ({len(group)} columns)")
-        for group in alike.values()
-    ]  # fmt: skip
+    merged = []
+    for one, *others in alike.values():
+        if others:
+            one = dataclasses.replace(one, signal=one.signal.partition("/")[0], what=f"{one.what} ({1 + len(others)} columns)")
+        merged.append(one)
+    return merged
 
 
 def _required(log: Log, subject: Subject | None) -> list[Finding]:
