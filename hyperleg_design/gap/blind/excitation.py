@@ -116,7 +116,7 @@ def _sweep(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator) ->
     for size in amplitude:
         frequency = rng.permutation(np.geomspace(0.2, 4.5, 10))[stages]
         phase = 2 * np.pi * np.cumsum(frequency) * (time[1] - time[0])
-        weight = uniform_filter1d(np.minimum(1.0, 0.45 / frequency), max(1, round(0.4 / (time[1] - time[0]))))
+        weight = uniform_filter1d(np.minimum(1.0, 0.4 / frequency) ** 1.3, max(1, round(0.4 / (time[1] - time[0]))))
         columns.append(size * weight * np.sin(phase))
     return np.stack(columns, -1)
 

@@ -24,6 +24,8 @@ REFERENCES = 0.5
 """Share of cases with logs of the healthy robot from another day."""
 ONE_JOINT_CANNOT = ("link_mass", "link_com", "cross_coupling", "tilted_gravity")
 """Effects that are another one's double on a single pendulum; they go to the arm."""
+NEED_DRIVES = ("thermal_derating", "voltage_sag")
+"""Effects whose cause, a temperature or a voltage, is then logged."""
 WALKING_ONES = (
     "coulomb_friction", "viscous_friction", "torque_constant", "command_delay", "encoder_offset", "controller_gain", "payload", "link_mass",
     "imu_bias", "ground_friction", "ground_compliance", "joint_spring",
@@ -97,7 +99,7 @@ def plan_cases(count: int, seed: int, *, plants: Sequence[str] = tuple(PLANTS), 
             recorder=Recorder(
                 rate=200.0 if walking else float(own.choice([200.0, 250.0, 100.0], p=[0.6, 0.25, 0.15])), jitter=float(own.uniform(0.05e-3, 0.4e-3)),
                 dropped=float(own.choice([0.0, 0.002, 0.01], p=[0.4, 0.4, 0.2])), torque=_one(TORQUES, own) if not walking else "motor_torque",
-                velocity=bool(own.random() < 0.8), drives=bool(own.random() < 0.6),
+                velocity=bool(own.random() < 0.8), drives=bool(own.random() < 0.6) or bool(set(effects) & set(NEED_DRIVES)),
             ),
             duration=round(float(own.uniform(*duration)), 1), seed=(seed, index),
         ))  # fmt: skip

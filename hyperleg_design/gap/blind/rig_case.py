@@ -12,7 +12,7 @@ from hyperleg_design.gap.blind import excitation
 from hyperleg_design.gap.blind.chain import Chain, chain
 from hyperleg_design.gap.blind.nuisance import Nuisance, of_day, of_robot
 from hyperleg_design.gap.blind.plan import Plan
-from hyperleg_design.gap.blind.plant_other import simulate_other
+from hyperleg_design.gap.blind.plant_other import BELT_STIFFNESS, simulate_other
 from hyperleg_design.gap.blind.plant_rig import Trace, simulate
 from hyperleg_design.gap.blind.recorder import Recorder, record
 from hyperleg_design.gap.blind.residual import multiple, residual
@@ -86,7 +86,8 @@ def rig_case(plan: Plan) -> Case:
         references = healthy.run([((), moves[k], int(rng.integers(2**31))) for k in range(2)], rig.recorder)
     return Case(
         plan=plan, robot=robot.robot, mjcf=robot.mjcf, logs=tuple(logs), references=tuple(references), wrongs=tuple(wrongs), multiples=reached,
-        parameters=tuple(parameters(w, robot, rig.day, rig.reach) for w in wrongs), also=tuple(places(w, robot) for w in wrongs),
+        parameters=tuple(parameters(w, robot, rig.day, rig.reach, belts=1.0 if plan.plant == "rig" else BELT_STIFFNESS) for w in wrongs),
+        also=tuple(places(w, robot) for w in wrongs),
     )  # fmt: skip
 
 
@@ -132,7 +133,7 @@ def _sized(rig: _Rig, effect: str, wanted: float, rng: np.random.Generator, take
     best: tuple[float, Wrong] | None = None
     for _ in range(ATTEMPTS):
         draft = draw(rig.chain, effect, rng, taken)
-        moves = rig.motions(2, PROBE, rng)
+        moves = rig.motions(2, min(PROBE, rig.plan.duration), rng)
         seeds = [int(s) for s in rng.integers(2**31, size=2)]
         if rig.reach is None:
             rig.reach = reach_of(rig.traces([((), moves[k], seeds[k]) for k in range(2)]))
@@ -221,7 +222,7 @@ def draw(robot: Chain, effect: str, rng: np.random.Generator, taken: Sequence[st
         matrix = np.abs(robot.joint_from_motor)
         column = list(motors).index(location)
         # Periods a turn of the rotor behind gears; of a servo's output, teeth.
-        order = float(rng.integers(6, 15)) if matrix[:, column].max() == 1 else float(rng.integers(1, 4))
+        order = float(rng.integers(6, 30)) if matrix[:, column].max() == 1 else float(rng.integers(1, 4))
         shape = {"order": order, "phase": float(rng.uniform(-np.pi, np.pi))}
     elif effect == "joint_spring":
         at = list(robot.joints).index(location)

@@ -34,8 +34,16 @@ def places(wrong: Wrong, robot: Chain) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None) -> dict[str, float]:
-    """What was put in, by the catalogue's names and units; effects outside it, none."""
+def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None, *, belts: float = 1.0) -> dict[str, float]:
+    """What was put in, by the catalogue's names and units; effects outside it, none.
+
+    Args:
+        wrong: the effect.
+        robot: nominal robot.
+        day: what is off besides.
+        reach: of a clean recording; of limits.
+        belts: stiffness of the plant's belts over the first plant's.
+    """
     if not wrong.listed:
         return {}
     joint_peak = np.abs(robot.joint_from_motor) @ robot.peak_torque
@@ -49,7 +57,7 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None) -
         case "viscous_friction":
             return {"damping": torque}
         case "stribeck_friction":
-            return {"torque": torque}
+            return {"torque": torque, "speed": wrong.shape["speed"]}
         case "load_dependent_friction":
             return {"coefficient": wrong.size}
         case "torque_constant":
@@ -57,6 +65,10 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None) -
         case "torque_saturation":
             assert reach is not None
             return {"limit": float(min((1.0 - wrong.size) * reach.command[motor], robot.peak_torque[motor]))}
+        case "thermal_derating":
+            return {"coefficient": wrong.size / 100.0}
+        case "voltage_sag":
+            return {"limits": 1.0}
         case "command_delay":
             return {"delay": wrong.size}
         case "actuator_bandwidth":
@@ -65,7 +77,7 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None) -
             return {"inertia": float(wrong.size * robot.rotor_inertia[motor])}
         case "transmission_elasticity":
             rotor = robot.rotor_inertia[motor] * day.rotor[motor]
-            return {"stiffness": float(rotor * (2 * np.pi * day.resonance[motor]) ** 2 / wrong.size)}
+            return {"compliance": float(wrong.size / (belts * rotor * (2 * np.pi * day.resonance[motor]) ** 2))}
         case "backlash":
             return {"angle": wrong.size}
         case "transmission_ratio":
@@ -81,7 +93,7 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None) -
         case "link_com":
             return {axis: wrong.size * wrong.shape[axis] for axis in "xyz"}
         case "cogging":
-            return {"amplitude": float(wrong.size * robot.peak_torque[motor])}
+            return {"order": wrong.shape["order"]}
         case "joint_spring":
             return {"stiffness": torque}
     return {}

@@ -27,7 +27,7 @@ RECORDINGS = 2
 """Logs of a case."""
 PROBE = 4.0
 """Length of the runs that seek an effect's size [s]."""
-PROBED = 4
+PROBED = 3
 """Sizes tried."""
 ATTEMPTS = 3
 """Places tried."""
@@ -241,6 +241,8 @@ def _ground_parameters(wrong: Wrong) -> dict[str, float]:
     if wrong.effect == "imu_bias":
         kind, factor = ("gyro", 1.0) if wrong.shape["gyro"] else ("accelerometer", 10.0)
         return {f"{kind}_{a}": factor * wrong.size * wrong.shape[a] for a in "xyz"}
+    if wrong.effect == "ground_friction":
+        return {"scale": 1.0 - wrong.size}
     return {}
 
 

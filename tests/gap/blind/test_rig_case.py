@@ -1,0 +1,56 @@
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.blind.chain import ROBOTS, chain
+from hyperleg_design.gap.blind.nuisance import of_day, of_robot, perfect
+from hyperleg_design.gap.blind.rig_build import Reach, build_rig
+from hyperleg_design.gap.blind.rig_case import draw, size_at
+from hyperleg_design.gap.blind.truth import parameters, places
+from hyperleg_design.gap.blind.wrong import SIZES, Wrong
+
+
+def test_size_is_found_between_the_tried_ones():
+    size, reached = size_at(np.array([0.1, 1.0, 10.0]), np.array([0.2, 2.0, 20.0]), 4.0, 0.1)
+    assert size == pytest.approx(2.0)
+    assert reached == 4.0
+
+
+def test_size_below_and_above_the_tried_ones():
+    assert size_at(np.array([0.1, 1.0]), np.array([5.0, 50.0]), 1.0, 0.1)[0] == pytest.approx(0.02)
+    assert size_at(np.array([1.5, 15.0]), np.array([2.0, 20.0]), 1.0, 1.5)[0] == pytest.approx(1.25)  # a factor
+    assert size_at(np.array([0.1, 1.0]), np.array([0.1, 0.5]), 3.0, 0.1) == (1.0, 0.5)
+
+
+def test_wild_rigs_are_not_taken():
+    assert size_at(np.array([0.1, 1.0, 10.0]), np.array([0.5, 1.0, np.inf]), 3.0, 0.1) == (1.0, 1.0)
+    assert size_at(np.array([0.1, 1.0]), np.array([np.inf, np.inf]), 3.0, 0.1)[1] == 0.0
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("effect", sorted(SIZES))
+def test_every_effect_changes_every_robot_and_says_what_it_is(name, effect):
+    robot, rng = chain(name), np.random.default_rng(0)
+    if name == "servo" and effect == "cross_coupling":
+        return
+    day = of_day(robot, of_robot(robot, rng), rng)
+    reach = Reach(robot.peak_torque * 0.5, robot.no_load_speed * 0.3)
+    drawn = draw(robot, effect, rng)
+    wrong = Wrong(effect, drawn.location, drawn.size * SIZES[effect].largest * 0.9, drawn.shape)
+    before, after = build_rig(robot, day, (), reach), build_rig(robot, day, [wrong], reach)
+    same = all(np.array_equal(getattr(before, k), getattr(after, k)) for k in vars(before) if k != "model")
+    bodies = [np.concatenate([i.toDynamicParameters() for i in list(p.model.inertias)[1:]]) for p in (before, after)]
+    unmoved = np.array_equal(*bodies) and np.array_equal(before.model.gravity.linear, after.model.gravity.linear)
+    assert not (same and unmoved)
+    values = parameters(wrong, robot, day, reach)
+    assert all(np.isfinite(v) for v in values.values())
+    assert bool(values) == wrong.listed
+    assert wrong.location in places(wrong, robot)
+
+
+def test_a_healthy_rig_is_the_data_sheet():
+    robot = chain("arm")
+    plant = build_rig(robot, perfect(robot))
+    np.testing.assert_array_equal(plant.joint_from_motor, robot.joint_from_motor)
+    np.testing.assert_array_equal(plant.rotor_inertia, robot.rotor_inertia)
+    np.testing.assert_array_equal(plant.torque_scale, 1.0)
+    assert not plant.offset.any()
