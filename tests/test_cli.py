@@ -137,3 +137,17 @@ def test_training_without_torch_says_what_to_install(capsys, tmp_path: Path, mon
     assert code == 2
     assert "torch" in err
     assert "learning" in err
+
+
+def test_a_campaign_is_packed_for_shipping(capsys, tmp_path: Path):
+    folder = tmp_path / "campaign" / "walk-toe-0"
+    folder.mkdir(parents=True)
+    (folder / "policy.onnx").write_bytes(b"x" * 1000)
+    (tmp_path / "campaign" / "walk-toe-1").mkdir()
+    code, out, _ = run(capsys, "campaign", "pack", "--from", str(tmp_path / "campaign"), "--to", str(tmp_path / "policies"))
+    assert code == 0
+    assert "1 of 2 trainings, 1 policies, 0.0 MB" in out
+    assert (tmp_path / "policies" / "walk-toe-0" / "policy.onnx").exists()
+    code, _, err = run(capsys, "campaign", "pack", "--from", str(tmp_path / "none"), "--to", str(tmp_path / "p"))
+    assert code == 2
+    assert "no such folder" in err

@@ -68,12 +68,17 @@ def beside(rows: Sequence[PaperRow], caption: str) -> list[Any]:
     cells: list[list[Any]] = []
     for row in rows:
         printed, change = row.printed, row.difference
+        words = {"toe": row.toe_verdict, "ablation": row.ablation_verdict, "Δ": row.change_verdict}
+        same = set(words.values())
         cells.append([
-            f"{printed.quantity} [{printed.unit}]" if printed.unit else printed.quantity, printed.toe, short(row.toe), verdict(row.toe_verdict),
-            printed.ablation, short(row.ablation), verdict(row.ablation_verdict), f"{100 * printed.change:+.1f} %",
-            percent(change.relative, change.relative_low, change.relative_high), verdict(row.change_verdict),
+            f"{printed.quantity} [{printed.unit}]" if printed.unit else printed.quantity,
+            printed.toe, Cell(short(row.toe), _MARK.get(row.toe_verdict, "note")),
+            printed.ablation, Cell(short(row.ablation), _MARK.get(row.ablation_verdict, "note")),
+            f"{100 * printed.change:+.1f} %",
+            Cell(percent(change.relative, change.relative_low, change.relative_high), _MARK.get(row.change_verdict, "note")),
+            same.pop() if len(same) == 1 else "; ".join(f"{side} {word}" for side, word in words.items()),
         ])  # fmt: skip
-    head = ["", "toe: paper", "ours", "verdict", "ablation: paper", "ours", "verdict", "Δ paper", "Δ ours", "verdict"]
+    head = ["", "toe: paper", "ours", "ablation: paper", "ours", "Δ paper", "Δ ours", "verdict"]
     one = rows[0]
     trials = [side.trials + side.missing for side in (one.toe, one.ablation)]
     made: list[Any] = [Table(head, cells, f"{caption}: {one.toe.seeds} and {one.ablation.seeds} seeds, {trials[0]} and {trials[1]} trials.")]
@@ -127,7 +132,7 @@ def interval(mean: float, low: float, high: float, unit: str) -> str:
     """Mean with its interval, where there is one."""
     if not math.isfinite(mean):
         return "–"
-    text = f"{mean:.4g} [{low:.4g}, {high:.4g}]" if math.isfinite(low) else f"{mean:.4g}"
+    text = f"{_digits(mean)} [{_digits(low)}, {_digits(high)}]" if math.isfinite(low) else _digits(mean)
     return f"{text} {unit}".rstrip()
 
 
@@ -141,3 +146,8 @@ def percent(mean: float, low: float, high: float) -> str:
 def verdict(text: str) -> Any:
     """A verdict as a marked cell."""
     return Cell(text, _MARK.get(text, "note")) if text else "–"
+
+
+def _digits(value: float) -> str:
+    """Three significant digits, all before the point."""
+    return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"

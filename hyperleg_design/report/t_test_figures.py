@@ -75,7 +75,8 @@ def t_test_figure(runs: Mapping[str, Sequence[Evaluation]], step: float) -> Figu
             _speed(below, evaluations, step, VARIANT_COLOUR.get(name, _GREY), name.replace("_", " "))
         below.set(xlabel="way of the pelvis [m]", ylabel="speed [m/s]")
         below.set_ylim(0, 1.18 * below.get_ylim()[1])  # room for the legend
-        below.legend(loc="upper right", ncols=len(runs))
+        if below.get_legend_handles_labels()[0]:
+            below.legend(loc="upper right", ncols=len(runs))
     return figure
 
 

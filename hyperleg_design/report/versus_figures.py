@@ -32,7 +32,7 @@ def change_figure(groups: Mapping[str, Sequence[PaperRow]]) -> Figure:
 
     with figure_style():
         height = 0.42 * max(len(rows) for rows in groups.values()) + 1.2
-        figure, panels = plt.subplots(1, len(groups), figsize=(6.0 * len(groups), height), squeeze=False, layout="constrained")
+        figure, panels = plt.subplots(1, len(groups), figsize=(max(9.0, 6.0 * len(groups)), height), squeeze=False, layout="constrained")
         for axes, (name, rows) in zip(panels[0], groups.items(), strict=True):
             for i, row in enumerate(rows):
                 found = row.difference

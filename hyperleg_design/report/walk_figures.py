@@ -61,10 +61,8 @@ def cycle_power_figure(walks: Mapping[str, Sequence[Evaluation]]) -> Figure:
                 _band(lower, values, colour, part)
         grid[0, 0].set_ylabel("mechanical power of joints [W]")
         grid[1, 0].set_ylabel("power of the leg [W]")
-        for axes in grid[:, -1]:
-            axes.legend(loc="upper right", fontsize=9)
-        for axes in grid[:, :1].flat:
-            if len(walks) > 1:
+        for axes in grid.flat:
+            if axes.get_legend_handles_labels()[0]:
                 axes.legend(loc="upper right", fontsize=9)
     return figure
 

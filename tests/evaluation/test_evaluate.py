@@ -69,6 +69,15 @@ def test_processes_change_nothing(make_onnx):
         assert np.array_equal(a.trials[0].motor_torque, b.trials[0].motor_torque)
 
 
+def test_each_policy_can_have_its_own_robot_and_keep_its_own_signals(make_onnx):
+    files = [make_onnx(f"q{k}.onnx") for k in range(2)]
+    heavy = {"pelvis.mass": 20.0}
+    own, changed = evaluate_many(files, SHORT, workers=1, kept=[0, 2], overrides=[{}, heavy])
+    assert (len(own.trials), len(changed.trials)) == (0, 2)
+    assert changed.trials[0].mass == pytest.approx(32.0 + 20.0 - 15.46, abs=1e-6)
+    assert not np.array_equal(own.values("distance"), changed.values("distance"))
+
+
 def test_a_broken_file_stops_before_any_work(make_onnx, write):
     seen = []
     with pytest.raises(InputError, match="no whole ONNX file"):
