@@ -1,4 +1,4 @@
-"""A check of logs as text for a terminal."""
+"""Checks of logs and measured gaps as text for a terminal."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.check import Check
+    from hyperleg_design.gap.measure import Gap
     from hyperleg_design.gap.sampling import Column
 
+FLOORS = {"reference": "reference logs", "repeats": "repeats of the same motion", "split": "the smooth part against the noisy part of the logs"}
+"""What a floor rests on."""
 MOST_PLACES = 4
 """Names listed before the rest is counted."""
 
@@ -59,3 +62,21 @@ def _signals(columns: Sequence[Column]) -> list[str]:
         ]
         lines.append(", ".join(part for part in parts if part))
     return lines
+
+
+def gap_text(gap: Gap, most: int = 12) -> str:
+    """Where the gap lies: each signal's places, largest excess first, and the regimes in which the largest stands out."""
+    lines = [f"floor from {FLOORS[gap.floor_from]}"]
+    lines += [f"note: {note}" for note in gap.notes]
+    for signal in dict.fromkeys(row.signal for row in gap.rows):
+        rows = sorted(gap.select(signal), key=lambda row: -row.excess)
+        lines += ["", f"{signal} [{rows[0].unit}]", f"  {'place':<24} {'gap':>10} {'floor':>10} {'excess':>10} {'share':>7}"]
+        lines += [f"  {row.location:<24} {row.gap:>10.4g} {row.floor:>10.4g} {row.excess:>10.4g} {100 * row.share:>6.0f}%" for row in rows[:most]]
+        if len(rows) > most:
+            lines.append(f"  and {len(rows) - most} more")
+        worst = rows[0]
+        regimes = sorted((r for r in gap.select(signal, location=worst.location, regime="") if r.regime != "all"), key=lambda r: -r.share)
+        if worst.excess > 0 and regimes:
+            told = ", ".join(f"{r.regime} {100 * r.share:.0f} %" for r in regimes[:4])
+            lines.append(f"  {worst.location} mostly in: {told}")
+    return "\n".join(lines)
