@@ -4,10 +4,11 @@ Each foot is judged by its whole force F, world frame, and by its pads:
 
     sliding, |v_t| > SLIDING   tangential force -mu F_z v_t / |v_t|
     sticking                   any tangential force within the cone mu F_z: the logged one, cut to the cone
-    pressing                   F_z = sum over the pads below the floor of k d + c d', d the depth
+    pressing                   F_z = sum over the pads below the floor of k(d) d + c(d) d', d the depth
 
-v_t is the velocity of the foot's loaded point. k and c are MuJoCo's of the foot's shapes under its own inertia at rest (their
-`solref`, `solimp` and the body's inverse weight); the floor lies where the nominal ground bears the logged mean force, since no
+v_t is the velocity of the foot's loaded point. k and c are MuJoCo's of the foot's shapes: with i(d) the impedance of `solimp` and
+R = (1 - i) / i times the body's inverse weight, F = (k' d + b' d') / R, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of `solref`
+(T, r), or the two given as they are where negative. The floor lies where the nominal ground bears the logged mean force, since no
 log knows a floor to a tenth of a millimetre. A base whose height nobody measured leaves the vertical rows unknown, one whose
 velocity nobody measured knows no sliding. MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no
 log tells a foot's acceleration so well. So vertical rows tell a ground in landings; while standing they are mostly error.
@@ -37,6 +38,37 @@ LOADED = 10 * TOUCHING_FORCE
 
 
 @dataclass(frozen=True, eq=False)
+class Law:
+    """How the model's ground bears p pads."""
+
+    spring: np.ndarray
+    """k' [1/s^2], `(p,)`."""
+    damper: np.ndarray
+    """b' [1/s], `(p,)`."""
+    weight: np.ndarray
+    """Inverse of the inertia that a pad stands for [1/kg], `(p,)`."""
+    impedance: np.ndarray
+    """MuJoCo's `solimp`: least, most, width, middle, power, `(p, 5)`."""
+
+    def force(self, depth: np.ndarray, sink: np.ndarray, spring: float = 1.0, damper: float = 1.0) -> np.ndarray:
+        """Vertical force on all pads together `(t,)` [N]; pads push and never pull.
+
+        Args:
+            depth: under the floor `(t, p)` [m].
+            sink: its rate `(t, p)` [m/s].
+            spring: scale of k'.
+            damper: scale of b'.
+        """
+        least, most, width, middle, power = self.impedance.T
+        x = np.clip(np.nan_to_num(depth) / width, 0.0, 1.0)
+        rising = x**power / middle ** (power - 1)
+        falling = 1 - (1 - x) ** power / (1 - middle) ** (power - 1)
+        impedance = least + (most - least) * np.where(x < middle, rising, falling)
+        push = (spring * self.spring * depth + damper * self.damper * sink) * impedance / ((1 - impedance) * self.weight)
+        return np.asarray(np.where(depth > 0, np.maximum(push, 0.0), 0.0 * depth).sum(-1))
+
+
+@dataclass(frozen=True, eq=False)
 class Footing:
     """One foot on its ground in a log of t ticks."""
 
@@ -50,32 +82,30 @@ class Footing:
     """Rate at which they go down `(t, p)` [m/s]."""
     friction: float
     """mu, nominal."""
-    stiffness: np.ndarray
-    """k, nominal, of each pad `(p,)` [N/m]."""
-    damping: np.ndarray
-    """c, nominal, of each pad `(p,)` [Ns/m]."""
+    law: Law
+    """Of its pads."""
     judged: np.ndarray
     """Ticks by whose mean force the floor is found `(t,)`."""
 
-    def pressing(self, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    def pressing(self, spring: float, damper: float) -> np.ndarray:
         """Vertical force of a ground at this motion `(t,)` [N], its floor where it bears the mean of the logged forces.
 
         Args:
-            stiffness: of each pad `(p,)` [N/m].
-            damping: of each pad `(p,)` [Ns/m].
+            spring: scale of k.
+            damper: scale of c.
         """
         if not self.judged.any():
             return np.full(len(self.force), np.nan)
         mean, height, sink = float(self.force[self.judged, 2].mean()), self.height[self.judged], self.sink[self.judged]
-        low, high = float(height.min()), float(height.max() + mean / stiffness.min())
+        low, high = float(height.min()), float(height.max()) + 0.1
         for _ in range(50):
             # bisection, as a higher floor bears more
             middle = (low + high) / 2
-            if _pressing(middle - height, sink, stiffness, damping).mean() < mean:
+            if self.law.force(middle - height, sink, spring, damper).mean() < mean:
                 low = middle
             else:
                 high = middle
-        return _pressing((low + high) / 2 - self.height, self.sink, stiffness, damping)
+        return self.law.force((low + high) / 2 - self.height, self.sink, spring, damper)
 
     def ground(self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray) -> np.ndarray:
         """Force of a ground with scaled properties at this motion `(k, t, 3)` [N].
@@ -94,15 +124,9 @@ class Footing:
         along = self.slide / np.maximum(speed, 1e-9)[:, None]
         sliding = (speed > SLIDING)[:, None]
         tangential = np.where(sliding, -limit[..., None] * along, cut)
-        scales = zip(1 / compliance, damping / np.sqrt(compliance), strict=True)
-        pressing = np.stack([self.pressing(self.stiffness * k, self.damping * c) for k, c in scales])
+        pressing = np.stack([self.pressing(1 / c, d / np.sqrt(c)) for c, d in zip(compliance, damping, strict=True)])
         found = np.concatenate([tangential, pressing[..., None]], -1)
         return np.where((normal > LOADED)[None, :, None], found, np.where(normal[None, :, None] <= 0, self.force[None], np.nan))
-
-
-def _pressing(depth: np.ndarray, sink: np.ndarray, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
-    """Vertical force on all pads together `(t,)` [N]; pads push and never pull."""
-    return np.asarray(np.where(depth > 0, np.maximum(stiffness * depth + damping * sink, 0.0), 0.0 * depth).sum(-1))
 
 
 _FOOTINGS: WeakKeyDictionary[Signals, tuple[Footing, ...]] = WeakKeyDictionary()
@@ -140,10 +164,9 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
         weight = _loads(signals, own, lowest)
         slide = np.einsum("tp,tpi->ti", weight, velocity[:, own, :2])
         height, sink = points[:, own, 2], -velocity[:, own, 2]
-        constants = [nominal_ground(subject, subject.tree.links[subject.pads[p].link]) for p in own]
-        friction, stiffness, damping = constants[0][0], np.array([c[1] for c in constants]), np.array([c[2] for c in constants])
+        friction, law = nominal_ground(subject, tuple(subject.tree.links[subject.pads[p].link] for p in own))
         loaded = np.isfinite(force[:, 2]) & (np.nan_to_num(force[:, 2]) > LOADED) & np.isfinite(height).all(1) & signals.valid
-        found.append(Footing(force, slide, height, sink, friction, stiffness, damping, loaded))
+        found.append(Footing(force, slide, height, sink, friction, law, loaded))
     return tuple(found)
 
 
@@ -191,21 +214,22 @@ def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndar
     return friction, solref, int(max(model.geom_condim[geom], model.geom_condim[other]))
 
 
-def nominal_ground(subject: Subject, link: str) -> tuple[float, float, float]:
-    """Friction coefficient [-], stiffness [N/m] and damping [Ns/m] of the model's ground under one pad of a link at rest.
-
-    MuJoCo holds a pad at depth d with force (k' d + b' d') / R, R = (1 - i) / i times the body's inverse weight, i the impedance
-    at no depth, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of `solref` (T, r), or the two given as they are where negative.
-    """
+def nominal_ground(subject: Subject, links: tuple[str, ...]) -> tuple[float, Law]:
+    """Friction coefficient of the model's ground under the first, and how it bears one pad of each of these links."""
     model = subject.model
-    geom = foot_geoms(model, (link,))[0]
-    friction, solref, _ = pair_settings(model, geom)
-    impedance = model.geom_solimp[geom]
-    least, most = float(np.clip(impedance[0], 1e-4, 0.9999)), float(np.clip(impedance[1], 1e-4, 0.9999))
-    weight = float(model.body_invweight0[model.geom_bodyid[geom], 0])
-    regularisation = (1 - least) / least * max(weight, 1e-9)
-    if solref[0] > 0:
-        spring, damper = 1 / (most * solref[0] * solref[1]) ** 2, 2 / (most * solref[0])
-    else:
-        spring, damper = -solref[0] / most**2, -solref[1] / most
-    return float(friction[0]), float(spring / regularisation), float(damper / regularisation)
+    rows: list[tuple[float, float, float, np.ndarray]] = []
+    coefficient = 0.0
+    for link in links:
+        geom = foot_geoms(model, (link,))[0]
+        friction, solref, _ = pair_settings(model, geom)
+        coefficient = coefficient or float(friction[0])
+        impedance = model.geom_solimp[geom].copy()
+        impedance[:2] = np.clip(impedance[:2], 1e-4, 0.9999)
+        impedance[2] = max(impedance[2], 1e-9)
+        most, weight = impedance[1], max(float(model.body_invweight0[model.geom_bodyid[geom], 0]), 1e-9)
+        if solref[0] > 0:
+            rows.append((1 / (most * solref[0] * solref[1]) ** 2, 2 / (most * solref[0]), weight, impedance))
+        else:
+            rows.append((-solref[0] / most**2, -solref[1] / most, weight, impedance))
+    spring, damper, weights, impedances = (np.array(values) for values in zip(*rows, strict=True))
+    return coefficient, Law(spring, damper, weights, impedances)

@@ -47,14 +47,12 @@ LATERAL = (1.0, 0.2)
 """Hip and ankle roll, mirrored from side to side, over sideways place and speed of the base [rad/m, rad s/m]."""
 COLD, HOT = 25.0, 90.0
 """Made-up temperature of the motors: it rises evenly [degC]."""
-FULL, EMPTY, SAG = 1.0, 0.85, 0.05
-"""Made-up voltage over the nominal one: it falls evenly, and by `SAG` more at the largest motor power."""
+FULL, EMPTY = 1.0, 0.8
+"""Made-up voltage of the battery over the nominal one: it falls evenly."""
 NOMINAL_VOLTAGE = 24.0
 """Made-up, where the model knows none [V]."""
 NOTHING = 1e-9
 """Trace that counts as none [Nm, N]."""
-SIZE = 2.0
-"""Shown magnitude over the usual one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +87,6 @@ class Shown:
     before: np.ndarray
     after: np.ndarray
     """Position that the simulation reaches without and with the effect, as the sensor tells `(t,)` [rad]."""
-    notes: tuple[str, ...] = ()
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -117,7 +114,7 @@ def show(identifier: str, robot: str | None = None, *, location: str | None = No
         identifier: of the effect.
         robot: a design, MJCF or URDF; by default one joint on a servo, or the biped for effects that need the ground.
         location: where it sits; the first place that it can by default.
-        settings: `PARAMETER=VALUE` each; twice the usual magnitude by default.
+        settings: `PARAMETER=VALUE` each; the usual magnitude by default.
 
     Raises:
         InputError: no such effect, place or parameter, or a robot on which it cannot sit.
@@ -140,11 +137,24 @@ def show(identifier: str, robot: str | None = None, *, location: str | None = No
     signals = condition(_told(one, log, values), subject)
     balance, row, unit, trace, residual = _largest(one.trace(signals, location, values[None]), signals)
     return Shown(
-        effect=one, robot=subject.name, location=location, values=values, time=signals.time, balance=balance, row=row, unit=unit, trace=trace, residual=residual,
-        joint=subject.joints[joint], position=signals.position[:, joint], velocity=signals.velocity[:, joint],
-        torque=(signals.believed @ subject.joint_from_motor.T)[:, joint], target=target[:, joint], before=before[:, joint],
+        effect=one,
+        robot=subject.name,
+        location=location,
+        values=values,
+        time=signals.time,
+        balance=balance,
+        row=row,
+        unit=unit,
+        trace=trace,
+        residual=residual,
+        joint=subject.joints[joint],
+        position=signals.position[:, joint],
+        velocity=signals.velocity[:, joint],
+        torque=(signals.believed @ subject.joint_from_motor.T)[:, joint],
+        target=target[:, joint],
+        before=before[:, joint],
         after=after[:, joint],
-    )  # fmt: skip
+    )
 
 
 def _subject(robot: str | None, standing: bool) -> Subject:
@@ -159,7 +169,7 @@ def _subject(robot: str | None, standing: bool) -> Subject:
 
 
 def _values(one: Effect, location: str, subject: Subject, settings: Sequence[str]) -> np.ndarray:
-    values = one.example(location, subject, SIZE)
+    values = one.example(location, subject)
     known = {p.name: i for i, p in enumerate(one.parameters)}
     for setting in settings:
         name, sign, text = setting.partition("=")
@@ -227,9 +237,11 @@ def _simulated(subject: Subject, target: np.ndarray, time: np.ndarray, alteratio
     if pose is not None:
         pose[0, 2] += _lift(plant.model, subject, target[0])
     plant.start(target[:1], np.zeros((1, len(subject.joints))), pose, np.zeros((1, 6)) if subject.floating else None)
-    data = mujoco.MjData(plant.model)
+    model = plant.batch.get_model(0)
+    data = mujoco.MjData(model)
+    warmth, battery = _conditions(subject, time)
     ticks, target = len(time), np.array(target)
-    rows: dict[str, list[np.ndarray]] = {k: [] for k in ("position", "velocity", "torque", "speed", "pose", "base_velocity", "force")}
+    rows: dict[str, list[np.ndarray]] = {k: [] for k in ("position", "velocity", "torque", "pose", "base_velocity", "force")}
     for tick in range(ticks):
         position, velocity = plant.measured()
         rows["position"].append(position[0].copy())
@@ -237,13 +249,12 @@ def _simulated(subject: Subject, target: np.ndarray, time: np.ndarray, alteratio
         rows["pose"].append(plant.qpos[0, :7].copy())
         rows["base_velocity"].append(plant.qvel[0, :6].copy())
         if subject.floating:
-            rows["force"].append(_foot_forces(plant, data, subject))
+            rows["force"].append(_pad_forces(plant, model, data, subject))
             target[tick] += _balance(subject, plant.qpos[0, :7], plant.qvel[0, :6])
         for substep in range(SUBSTEPS):
-            driven = plant.step("target", target[tick : tick + 1], None, None)
+            driven = plant.step("target", target[tick : tick + 1], warmth[tick : tick + 1], battery[tick : tick + 1])
             if substep == 0:
                 rows["torque"].append(driven.believed[0].copy())
-                rows["speed"].append(driven.motor_velocity[0].copy())
     found = {name: np.array(values) for name, values in rows.items() if values}
     return found["position"], _log(subject, target, time, found)
 
@@ -279,24 +290,26 @@ def _lift(model: Any, subject: Subject, position: np.ndarray) -> float:
     return -float((points @ rotation.reshape(3, 3).T)[:, 2].min() + model.qpos0[2])
 
 
-def _foot_forces(plant: Plant, data: Any, subject: Subject) -> np.ndarray:
-    """Forces of the floor on each foot, world frame `(3 f,)` [N]."""
+def _pad_forces(plant: Plant, model: Any, data: Any, subject: Subject) -> np.ndarray:
+    """Forces of the floor on each pad, world frame `(3 P,)` [N]; a contact counts for the nearest pad of its link."""
     import mujoco
 
-    from hyperleg_design.gap.ground import foot_bodies, foot_geoms
-
-    model = plant.model
+    plant.batch.get_model(0, model)  # with the friction that a step writes into it
     plant.batch.get_data(0, data)
     mujoco.mj_forward(model, data)
-    total = np.zeros((len(subject.feet), 3))
+    total = np.zeros((len(subject.pads), 3))
     wrench = np.zeros(6)
-    owner = {g: foot for foot in range(len(subject.feet)) for g in foot_geoms(model, foot_bodies(subject, foot))}
+    bodies = np.array([model.body(subject.tree.links[p.link]).id for p in subject.pads])
+    places = np.array([p.position for p in subject.pads])
+    points = data.xpos[bodies] + np.einsum("pij,pj->pi", data.xmat[bodies].reshape(-1, 3, 3), places)
     for index in range(data.ncon):
         contact = data.contact[index]
         for geom, sign in ((int(contact.geom1), -1.0), (int(contact.geom2), 1.0)):
-            if geom in owner:
+            own = np.flatnonzero(bodies == model.geom_bodyid[geom])
+            if len(own):
                 mujoco.mj_contactForce(model, data, index, wrench)
-                total[owner[geom]] += sign * (contact.frame.reshape(3, 3).T @ wrench[:3])
+                nearest = own[np.argmin(np.linalg.norm(points[own] - contact.pos, axis=1))]
+                total[nearest] += sign * (contact.frame.reshape(3, 3).T @ wrench[:3])
     return total.ravel()
 
 
@@ -305,13 +318,10 @@ def _log(subject: Subject, target: np.ndarray, time: np.ndarray, found: dict[str
     for place, joint in enumerate(subject.joints):
         columns[f"position/{joint}"], columns[f"velocity/{joint}"] = found["position"][:, place], found["velocity"][:, place]
         columns[f"position_target/{joint}"] = target[:, place]
-    power = np.abs(found["torque"] * found["speed"]).sum(1)
-    progress = time / time[-1]
+    warmth, columns["battery_voltage"] = _conditions(subject, time)
     for place, motor in enumerate(subject.motors):
         columns[f"motor_torque/{motor}"] = found["torque"][:, place]
-        columns[f"motor_temperature/{motor}"] = COLD + (HOT - COLD) * progress
-    nominal = _voltage(subject)
-    columns["battery_voltage"] = nominal * (FULL + (EMPTY - FULL) * progress - SAG * power / max(float(power.max()), 1e-9))
+        columns[f"motor_temperature/{motor}"] = warmth[:, place]
     if subject.floating:
         columns |= _base_columns(subject, time, found)
     gains = {j: (float(k), float(d)) for j, (k, d) in zip(subject.joints, subject.gains, strict=True) if np.isfinite(k + d)}
@@ -319,11 +329,13 @@ def _log(subject: Subject, target: np.ndarray, time: np.ndarray, found: dict[str
     return Log("standard motion", time, columns, metadata)
 
 
-def _voltage(subject: Subject) -> float:
+def _conditions(subject: Subject, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Made-up temperature of the motors `(t, m)` [degC] and voltage of the battery `(t,)` [V]."""
     from hyperleg_design.gap.machine import machine_of
 
-    found = machine_of(subject).voltage
-    return found if np.isfinite(found) else NOMINAL_VOLTAGE
+    nominal, progress = machine_of(subject).voltage, time / time[-1]
+    warmth = np.tile((COLD + (HOT - COLD) * progress)[:, None], (1, len(subject.motors)))
+    return warmth, (nominal if np.isfinite(nominal) else NOMINAL_VOLTAGE) * (FULL + (EMPTY - FULL) * progress)
 
 
 def _base_columns(subject: Subject, time: np.ndarray, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -342,8 +354,8 @@ def _base_columns(subject: Subject, time: np.ndarray, found: dict[str, np.ndarra
         "accelerometer": (np.einsum("tij,ti->tj", into, acceleration), "xyz"),
     }
     columns = {f"{kind}/{axis}": values[:, i] for kind, (values, axes) in named.items() for i, axis in enumerate(axes)}
-    for index, foot in enumerate(subject.feet):
-        columns |= {f"contact_force/{foot}_{axis}": found["force"][:, 3 * index + i] for i, axis in enumerate("xyz")}
+    for index, pad in enumerate(subject.pads):
+        columns |= {f"contact_force/{pad.name}_{axis}": found["force"][:, 3 * index + i] for i, axis in enumerate("xyz")}
     return columns
 
 

@@ -38,8 +38,8 @@ class GroundFriction(Effect):
         return ground_trace(signals, location, scale, np.ones_like(scale), np.ones_like(scale))
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """Slippery, because a ground that holds better than needed does nothing."""
-        return np.maximum(self.nulls - size * self.usual(location, subject), self.parameters[0].low)
+        """Slippery, twice the usual difference, because a ground that holds better than needed does nothing."""
+        return np.maximum(self.nulls - 2 * size * self.usual(location, subject), self.parameters[0].low)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
