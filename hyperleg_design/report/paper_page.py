@@ -19,7 +19,7 @@ from hyperleg_design.writing import check_output_folder, output_folder, write_js
 
 TABLES, RESULTS = "tables.json", "evaluation"
 """Rows beside the paper, and the trials' tables, beside the page."""
-NO_POLICY = "No trained policy is shipped with this version, so walks and T-tests are not shown; `hyperleg campaign run` trains them."
+NO_POLICY = "No trained policy is shipped with this version, so walks and T-tests are not shown; hyperleg campaign run trains them."
 LEAD = (
     "Walking and the T-test with and without the active toe: trained policies, evaluated without assist, beside the paper's Tables III "
     "and IV and Figures 4 to 7. Every number carries what it rests on; where that does not suffice, the page says so."

@@ -21,7 +21,7 @@ def experiment(context: Context) -> Made:
     if not found.policies:
         return Made(Section(TITLE, [NO_POLICY]))
     content: list[Any] = [
-        "Trained policies in simulation, with cooperative actuation, motor envelopes and friction, deterministic and without assist; `hyperleg paper` makes the same on a page of its own."
+        "Trained policies in simulation, with cooperative actuation, motor envelopes and friction, deterministic and without assist; hyperleg paper makes the same on a page of its own."
     ]
     for part in policy_parts(found, context.folder, "policy_"):
         content += [Heading(part.title), *part.content]

@@ -47,7 +47,18 @@ def _what(found: Evaluated) -> Part:
                 seeds, policies = found.seeds(group, design), part["policy"].nunique()
                 fell = int(part["fell"].sum())
                 share = f"{100 * falls.mean:.1f} % [{100 * falls.low:.1f}, {100 * falls.high:.1f}]"
-                rows.append([group, design, ", ".join(map(str, seeds)), policies, len(part), Cell(fell, "bad" if fell else "good"), share, Cell(ends, "good" if arrived == len(part) else "note")])
+                rows.append(
+                    [
+                        group,
+                        design,
+                        ", ".join(map(str, seeds)),
+                        policies,
+                        len(part),
+                        Cell(fell, "bad" if fell else "good"),
+                        share,
+                        Cell(ends, "good" if arrived == len(part) else "note"),
+                    ]
+                )
     protocols = {e.protocol.name: e.protocol for e in found.evaluations}
     text = "; ".join(f"{name}: {int(p.trials)} trials, starting states from seed {int(p.seed)}" for name, p in protocols.items())
     content: list[Any] = [
@@ -57,7 +68,9 @@ def _what(found: Evaluated) -> Part:
         Table(["group", "design", "seeds", "policies", "trials", "falls", "share of falls", "how trials ended"], rows),
     ]
     content.append(
-        f"Of the campaign's trainings {len(found.missing)} are not there: {_missing(found)}." if found.missing else "All trainings of the campaign are there."
+        f"Of the campaign's trainings {len(found.missing)} are not there: {_missing(found)}."
+        if found.missing
+        else "All trainings of the campaign are there."
     )
     content.append(_deviations(found))
     return Part("What was evaluated", content)
@@ -105,13 +118,14 @@ def _table_four(found: Evaluated, draw: Drawer) -> Part:
                 lambda p, runs=runs, step=step: save(t_test_figure(runs, step), p),  # type: ignore[misc]
             )
         )
-        content.append(
-            [
-                draw(f"{group}_{d}", f"A T-test, {d.replace('_', ' ')}; longer runs faster than true.", lambda p, t=t, one=runs[d][0]: motion.render_gif(motion.t_test_motion(t, one.protocol), p), ".gif", wide=False)  # type: ignore[misc]
-                for d in runs
-                if (t := found.shown(group, d)) is not None
-            ]
-        )
+        jobs: list[Any] = []
+        for d, some in runs.items():
+            if (t := found.shown(group, d)) is not None:
+                caption = f"A T-test, {d.replace('_', ' ')}; longer runs faster than true."
+                jobs.append(
+                    (f"{group}_{d}", caption, lambda p, t=t, one=some[0]: motion.render_gif(motion.t_test_motion(t, one.protocol), p), ".gif", False)
+                )
+        content.append(draw.together(jobs))
         if set(VARIANTS) <= set(runs):
             content.append(differences(found, group, T_TEST))
     return Part("Table IV: the T-test, beside the paper", content)
@@ -126,9 +140,21 @@ def _motors(found: Evaluated, draw: Drawer) -> Part:
                 toe = trials["toe"]
                 legs = toe.layout.leg_joints
                 torque, speed = (values.reshape(-1, legs)[::4] for values in (toe.driven_joint_torque, toe.joint_velocity))
-                content.append(draw("fig_4", "Fig. 4: the ankle's motors and joints in their envelopes during a T-test, active toe.", lambda p, d=toe.design, t=torque, v=speed: save(torque_speed_figure(d, t, v), p)))  # type: ignore[misc]
+                content.append(
+                    draw(
+                        "fig_4",
+                        "Fig. 4: the ankle's motors and joints in their envelopes during a T-test, active toe.",
+                        lambda p, d=toe.design, t=torque, v=speed: save(torque_speed_figure(d, t, v), p),
+                    )
+                )  # type: ignore[misc]
             if trials:
-                content.append(draw(f"points_{group}", f"Operating points of every motor in {word}, both legs.", lambda p, t=trials: save(operating_points_figure(t), p)))  # type: ignore[misc]
+                content.append(
+                    draw(
+                        f"points_{group}",
+                        f"Operating points of every motor in {word}, both legs.",
+                        lambda p, t=trials: save(operating_points_figure(t), p),
+                    )
+                )  # type: ignore[misc]
     return Part("Motors in their envelopes", content)
 
 

@@ -41,21 +41,18 @@ def walks(found: Evaluated, draw: Drawer) -> Part:
     for group in groups[:1]:
         trials = {d: t for d in found.designs(group) if (t := found.shown(group, d)) is not None}
         pair = {d: (t, found.of(group, d)[0].protocol.events) for d, t in trials.items() if d in VARIANTS or d == next(iter(trials))}
+        jobs: list[Any] = []
         if pair:
             named = {name.replace("_", " "): value for name, value in pair.items()}
-            content.append(
-                draw(
-                    f"gait_{group}",
-                    "Fig. 5: one gait cycle at 1.33 m/s from the right side, touchdown to touchdown of the right foot; arrows: the floor's force, in proportion.",
-                    lambda p, named=named: picture.render(motion.strip_scene(named), p),  # type: ignore[misc]
-                )
-            )
-        animated = [
-            draw(f"{group}_{d}", f"A walk, {d.replace('_', ' ')}, at true speed.", lambda p, t=t: motion.render_gif(motion.walk_motion(t), p), ".gif", wide=False)  # type: ignore[misc]
-            for d, t in trials.items()
-            if d in VARIANTS
-        ]
-        content.append(animated)
+            caption = "Fig. 5: one gait cycle at 1.33 m/s from the right side, touchdown to touchdown of the right foot; arrows: the floor's force, in proportion."
+            jobs.append((f"gait_{group}", caption, lambda p, named=named: picture.render(motion.strip_scene(named), p), ".png", True))
+        for d, t in trials.items():
+            if d in VARIANTS:
+                caption = f"A walk, {d.replace('_', ' ')}, at true speed."
+                jobs.append((f"{group}_{d}", caption, lambda p, t=t: motion.render_gif(motion.walk_motion(t), p), ".gif", False))
+        pictures = draw.together(jobs)
+        wide = int(bool(pair))
+        content += [*pictures[:wide], pictures[wide:]]
     content += [
         "Whether these are walks that a person would believe; means over all walks of all trainings, red where the demand is not met.",
         Table(["demand", "range", *(f"{group}: {design}" for group, design in columns)], rows),
@@ -98,15 +95,33 @@ def confound(found: Evaluated, draw: Drawer) -> Part:
             shares[name.replace("_", " ")] = found_shares = attribution.attribute(groups)
             for share in found_shares:
                 change = share.change
-                rows.append([name.replace("_", " "), share.cause, interval(change.mean, change.low, change.high, measure_of(name).unit), percent(change.relative, change.relative_low, change.relative_high), verdict(change.verdict)])
-        ladder.append(Table(["measure", "what is taken away", "change", "relative", "verdict"], rows, f"Group {group}: {' → '.join(d for d in attribution.LADDER if d in found.designs(group))}."))
+                rows.append(
+                    [
+                        name.replace("_", " "),
+                        share.cause,
+                        interval(change.mean, change.low, change.high, measure_of(name).unit),
+                        percent(change.relative, change.relative_low, change.relative_high),
+                        verdict(change.verdict),
+                    ]
+                )
+        ladder.append(
+            Table(
+                ["measure", "what is taken away", "change", "relative", "verdict"],
+                rows,
+                f"Group {group}: {' → '.join(d for d in attribution.LADDER if d in found.designs(group))}.",
+            )
+        )
         figures[group] = shares
         absent = [d for d in attribution.LADDER if d not in found.designs(group)]
         if absent:
             ladder.append(f"Steps that need {', '.join(absent)} cannot be told in the group {group}: no such training is there.")
     for group, shares in figures.items():
         ladder.append(
-            draw(f"confound_{group}", f"What each step takes away adds to the measures, group {group}.", lambda p, s=shares: save(attribution_figure(s), p))  # type: ignore[misc]
+            draw(
+                f"confound_{group}",
+                f"What each step takes away adds to the measures, group {group}.",
+                lambda p, s=shares: save(attribution_figure(s), p),
+            )  # type: ignore[misc]
         )
     if not figures:
         ladder.append("Cannot be told yet: no group has two of the ablations.")
@@ -150,13 +165,30 @@ def impacts(found: Evaluated, draw: Drawer) -> Part:
             cells.append(f"{interval(one.mean, one.low if one.speaks_of_seeds else math.nan, one.high, '')}{f', {fell} fell' if fell else ''}")
         pair = [[e.values("grf_peak_body_weights") for e in walks[c]] for walks in found.band.values()]
         told = statistics.difference(*pair, resamples=1000).verdict if len(pair) == 2 else ""
-        rows.append([f"{1e3 * c:.3g} ms{' (all else here)' if math.isclose(c, own) else ''}", pad.stiffness / 1e3, pad.damping(mass), pad.modulus / 1e6, *cells, verdict(told)])
+        rows.append(
+            [
+                f"{1e3 * c:.3g} ms{' (all else here)' if math.isclose(c, own) else ''}",
+                pad.stiffness / 1e3,
+                pad.damping(mass),
+                pad.modulus / 1e6,
+                *cells,
+                verdict(told),
+            ]
+        )
     first = pads[constants[0]]
     content: list[Any] = [
         f"Much of an impact is the stiffness of the sole. The stated pad: {1e3 * first.thickness:.0f} mm of a soft sole on {1e4 * first.area:.1f} cm² under each heel; behind it stands an effective mass of {mass:.2f} kg "
         "at touchdown (median over the steps of one walk, rotors included), which turns the contact's time constant into stiffness and damping. All time constants on this page but in this table are the design's; "
         "the softest and the stiffest differ sixteenfold, and steps of 5 ms allow none stiffer. Solid rubber, at 1 to 10 MPa, would be stiffer than any of them, so printed newtons are not to be expected; designs are compared at equal settings.",
-        Table(["time constant", "stiffness [kN/m]", "damping [Ns/m]", "modulus [MPa]", *(d.replace("_", " ") for d in found.band), "difference"], rows, "Peak of the filtered vertical force within 50 ms of touchdown, in body weights. The policies were trained at the design's contact only."),
-        draw("impact_band", "Impact over the stiffness of the pad under a heel.", lambda p: save(impact_band_figure(found.band, {c: pads[c].stiffness for c in constants}), p)),
+        Table(
+            ["time constant", "stiffness [kN/m]", "damping [Ns/m]", "modulus [MPa]", *(d.replace("_", " ") for d in found.band), "difference"],
+            rows,
+            "Peak of the filtered vertical force within 50 ms of touchdown, in body weights. The policies were trained at the design's contact only.",
+        ),
+        draw(
+            "impact_band",
+            "Impact over the stiffness of the pad under a heel.",
+            lambda p: save(impact_band_figure(found.band, {c: pads[c].stiffness for c in constants}), p),
+        ),
     ]
     return Part("Impacts over the stiffness of the sole", content)
