@@ -92,6 +92,9 @@ def plan_cases(count: int, seed: int, *, plants: Sequence[str] = tuple(PLANTS), 
         effects = tuple(source.take({"null": 0, "compound": 2}.get(kind, 1)))
         if plant != "walking" and robot == "servo" and any(e in ONE_JOINT_CANNOT for e in effects):
             robot = "arm"
+        if plant != "walking" and "voltage_sag" in effects:
+            robot = "servo"
+            effects = tuple("payload" if e in ONE_JOINT_CANNOT else e for e in effects)
         low, high = MULTIPLES if kind == "single" else (2.0, MULTIPLES[1])
         plans.append(Plan(
             index=index, kind=kind, plant=plant, robot=robot, effects=effects,

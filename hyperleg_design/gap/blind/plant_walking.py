@@ -139,7 +139,11 @@ class Stand:
     rock: float
     """Of the centre of mass, forwards [m]."""
     frequency: np.ndarray
-    """Of the four `(4,)` [Hz]."""
+    """Of the five, spread and toes last `(5,)` [Hz]."""
+    spread: float = 0.0
+    """Of the hips' roll, legs apart: what the ground's friction holds [rad]."""
+    turn: float = 0.0
+    """Of the hips' yaw, toes apart: as the spread [rad]."""
     knee: float = 0.75
     """Middle of the knees [rad]."""
     lean: float = 0.05
@@ -164,18 +168,10 @@ class Stand:
         ankle = hip - knee - self.lean + ANKLE_STRATEGY[0] * (ahead - AHEAD - self.rock * wave[3]) + ANKLE_STRATEGY[1] * speed
         sway = self.sway * wave[1]
         legs = []
-        for side in sides:
-            legs.append(
-                [
-                    side[0] * self.twist * wave[2],
-                    side[1] * sway,
-                    -hip + self.lean,
-                    knee,
-                    ankle,
-                    -side[2] * (sway - 0.5 * roll - 0.04 * roll_rate),
-                    0.0,
-                ]
-            )
+        for side, out in zip(sides, (1.0, -1.0), strict=True):
+            yaw, apart = self.twist * wave[2] + self.turn * out * wave[4], self.spread * out * wave[4]
+            level = -side[2] * (sway - 0.5 * roll - 0.04 * roll_rate)
+            legs.append([side[0] * yaw, side[1] * (sway + apart), -hip + self.lean, knee, ankle, level, 0.0])
         return np.concatenate(legs)
 
 
@@ -226,7 +222,7 @@ def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: 
     columns = np.arange(m)
     smooth = -np.expm1(-2 * np.pi * p.velocity_bandwidth * control)
     pad_of = {g: i for i, g in enumerate(pads)}
-    target = first
+    previous = fresh_target = first
     ankles = [model.body(f"{side}_foot").id for side in ("left", "right")]
     kept = {k: np.zeros((count, w)) for k, w in (
         ("encoder", n), ("speed", n), ("motor_velocity", m), ("command", m), ("drive_torque", m), ("temperature", m), ("base", 10), ("gyro", 3),
@@ -242,9 +238,13 @@ def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: 
         if within == 0:
             ahead = data.subtree_com[root, 0] - 0.5 * (data.xpos[ankles[0], 0] + data.xpos[ankles[1], 0])
             mujoco.mj_subtreeVel(model, data)
-            target = stand.targets(row / rate, ahead, data.subtree_linvel[root, 0], _roll(data.qpos[3:7]), data.qvel[3], sides)
+            previous, fresh_target = fresh_target, stand.targets(
+                row / rate, ahead, data.subtree_linvel[root, 0], _roll(data.qpos[3:7]), data.qvel[3], sides
+            )  # fmt: skip
             if tick >= 0:
-                targets[row] = target
+                targets[row] = previous
+        # The drives run from one target to the next, which smooths the steps between the host's ticks.
+        target = previous + (fresh_target - previous) * (within / hold)
         encoder = data.qpos[7:] + p.offset + p.drift * max(tick * control, 0.0)
         encoder = np.round(encoder / p.resolution) * p.resolution
         speed = speed + smooth * (data.qvel[6:] - speed)

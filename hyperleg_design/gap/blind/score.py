@@ -171,10 +171,12 @@ def compared(
         _share("right location, where the effect is right", [v.located() for v in found], 0.95),
         _share("... of all single causes at >= 2 x floor", [v.located() for v in sizable], None),
         _share("false alarm when nothing is wrong", [v.alarm for v in null], 0.05, most=True),
-        _share("unknown on effects outside the catalogue", [v.verdict == "unknown" for v in outside], 0.80),
+        _share("unknown on effects outside the catalogue, at >= 2 x floor", [v.verdict == "unknown" for v in outside if v.multiple >= SIZABLE], 0.80),
+        _share("... of any size", [v.verdict == "unknown" for v in outside], None),
         _share("confident wrong cause on effects outside the catalogue", [v.verdict == "explained" for v in outside], None, most=True),
-        _share("both found when two act", [v.all_found() for v in both], 0.70),
-        _share("... at least one", [v.any_found() for v in both], None),
+        _share("both found when two act, each at >= 2 x floor", [v.all_found() for v in both if v.least >= SIZABLE], 0.70),
+        _share("... at least one of them", [v.any_found() for v in both if v.least >= SIZABLE], None),
+        _share("... both, of any size", [v.all_found() for v in both], None),
         _calibration(views),
         _coverage(found),
         _median("excess gap closed on held-out logs, named single cause, median", [v.closed for v in sizable if v.first()], 0.80),
@@ -209,6 +211,11 @@ class _View:
     @property
     def multiple(self) -> float:
         return float(self.wrongs[0]["multiple"])
+
+    @property
+    def least(self) -> float:
+        """Of the multiples of several effects."""
+        return min(float(w["multiple"]) for w in self.wrongs)
 
     @property
     def alarm(self) -> bool:

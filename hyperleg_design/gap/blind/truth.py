@@ -93,7 +93,10 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None, *
         case "link_com":
             return {axis: wrong.size * wrong.shape[axis] for axis in "xyz"}
         case "cogging":
-            return {"order": wrong.shape["order"]}
+            # The catalogue counts torque against the motor, cosine and sine of the angle.
+            size = -float(wrong.size * robot.peak_torque[motor])
+            phase = wrong.shape["phase"]
+            return {"cosine": float(size * np.sin(phase)), "sine": float(size * np.cos(phase)), "order": wrong.shape["order"]}
         case "joint_spring":
-            return {"stiffness": torque}
+            return {"stiffness": torque, "preload": -torque * wrong.shape["rest"]}
     return {}

@@ -38,7 +38,7 @@ ESTIMATE = (4e-4, 3e-4, 4e-3)
 INERTIAL = (2e-3, 0.04)
 """Noise of gyro [rad/s] and accelerometer [m/s^2]."""
 GROUND_SIZES = {
-    "imu_bias": Size("of 1 rad/s (gyro) or 10 m/s^2 (accelerometer)", 0.003, 0.12), "ground_friction": Size("1 - true friction / nominal", 0.5, 0.93),
+    "imu_bias": Size("of 1 rad/s (gyro) or 10 m/s^2 (accelerometer)", 0.003, 0.12), "ground_friction": Size("1 - true friction / nominal", 0.5, 0.9),
     "ground_compliance": Size("nominal stiffness over true", 3.0, 60.0),
 }  # fmt: skip
 """As `wrong.SIZES`, of the effects that only a robot on its feet shows."""
@@ -193,8 +193,8 @@ def drawn_stand(rng: np.random.Generator) -> Stand:
     """A motion on both feet."""
     return Stand(
         squat=rng.uniform(0.18, 0.3), sway=rng.uniform(0.03, 0.06), twist=rng.uniform(0.03, 0.06), rock=rng.uniform(0.005, 0.012),
-        frequency=np.array([rng.uniform(0.35, 0.7), rng.uniform(0.3, 0.5), rng.uniform(0.4, 0.8), rng.uniform(0.3, 0.6)]), knee=rng.uniform(0.65,
-        0.85),
+        frequency=rng.uniform([0.35, 0.3, 0.4, 0.3, 0.25], [0.7, 0.5, 0.8, 0.6, 0.5]), knee=rng.uniform(0.65, 0.85), spread=rng.uniform(0.10, 0.22),
+        turn=rng.uniform(0.08, 0.18),
     )  # fmt: skip
 
 
