@@ -35,8 +35,11 @@ def test_one_fall_in_two_is_not(planned_trial, design):
 
 
 def test_sliding_feet_and_a_wrong_speed_are_not(planned_trial, design):
-    found = findings([dataclasses.replace(planned_trial, pad_slip=10 * planned_trial.pad_slip)], design, WalkProtocol(speed=1.5))
-    assert not found["slip_per_step"].met
+    faster = planned_trial.base_position * [1.1, 1.0, 1.0]  # the same steps, so the feet are dragged along
+    found = findings([dataclasses.replace(planned_trial, base_position=faster)], design)
+    stance = 0.1 * 1.33 * 0.62  # of a stride of one second
+    assert 0.4 * stance < found["foot_drift"].found < stance
+    assert not found["foot_drift"].met
     assert not found["steady_speed"].met
 
 
