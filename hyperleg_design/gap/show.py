@@ -241,6 +241,7 @@ def _simulated(subject: Subject, target: np.ndarray, time: np.ndarray, alteratio
     data = mujoco.MjData(model)
     warmth, battery = _conditions(subject, time)
     ticks, target = len(time), np.array(target)
+    onward = np.diff(target, axis=0, append=target[-1:])
     rows: dict[str, list[np.ndarray]] = {k: [] for k in ("position", "velocity", "torque", "pose", "base_velocity", "force")}
     for tick in range(ticks):
         position, velocity = plant.measured()
@@ -252,8 +253,13 @@ def _simulated(subject: Subject, target: np.ndarray, time: np.ndarray, alteratio
             rows["force"].append(_pad_forces(plant, model, data, subject))
             target[tick] += _balance(subject, plant.qpos[0, :7], plant.qvel[0, :6])
         for substep in range(SUBSTEPS):
-            driven = plant.step("target", target[tick : tick + 1], warmth[tick : tick + 1], battery[tick : tick + 1])
+            # setpoints go on evenly between ticks: held ones would leave a trace of their own
+            now = target[tick : tick + 1] + substep / SUBSTEPS * onward[tick]
+            driven = plant.step("target", now, warmth[tick : tick + 1], battery[tick : tick + 1])
             if substep == 0:
+                # MuJoCo's velocity belongs half a step before its position
+                rows["velocity"][-1] = (rows["velocity"][-1] + plant.measured()[1][0]) / 2
+                rows["base_velocity"][-1] = (rows["base_velocity"][-1] + plant.qvel[0, :6]) / 2
                 rows["torque"].append(driven.believed[0].copy())
     found = {name: np.array(values) for name, values in rows.items() if values}
     return found["position"], _log(subject, target, time, found)
@@ -343,7 +349,6 @@ def _base_columns(subject: Subject, time: np.ndarray, found: dict[str, np.ndarra
 
     pose, moving = found["pose"], found["base_velocity"]
     rotation = quaternion_rotation(pose[:, 3:7])
-    # MuJoCo's velocity belongs half a simulation step before its position: too little to matter here
     acceleration = np.gradient(moving[:, :3], time, axis=0) - subject.gravity
     into = np.einsum("tij,jk->tik", rotation, subject.imu_rotation)
     named = {

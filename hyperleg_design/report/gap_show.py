@@ -74,10 +74,10 @@ def show_figure(shown: Shown, path: str | Path) -> Path:
     import matplotlib.pyplot as plt
 
     with figure_style():
-        figure = plt.figure(figsize=(11, 9.2))
+        figure = plt.figure(figsize=(11, 9.6))
         grid = figure.add_gridspec(3, 3, height_ratios=[1.1, 1.0, 1.1], hspace=0.42, wspace=0.3)
-        figure.suptitle(f"{shown.effect.identifier}: {shown.effect.summary}", fontsize=13, x=0.06, ha="left", y=0.965)
-        figure.text(0.06, 0.928, _caption(shown), fontsize=9.5, color="#374151")
+        figure.suptitle(f"{shown.effect.identifier}: {shown.effect.summary}", fontsize=13, x=0.08, ha="left", y=0.985)
+        figure.text(0.08, 0.955, _caption(shown), fontsize=9.5, color="#374151", va="top")
         _draw_time(figure.add_subplot(grid[0, :]), shown)
         others = (("velocity", shown.velocity, "rad/s"), ("position", shown.position, "rad"), ("torque", shown.torque, "Nm"))
         first = None
@@ -99,7 +99,7 @@ def show_figure(shown: Shown, path: str | Path) -> Path:
 
 def _caption(shown: Shown) -> str:
     values = ", ".join(f"{p.name} {v:.4g} {p.unit}".rstrip() for p, v in zip(shown.effect.parameters, shown.values, strict=True))
-    return "\n".join(textwrap.wrap(f"at {shown.location} of {shown.robot}, {values}", 150))
+    return "\n".join(textwrap.wrap(f"at {shown.location} of {shown.robot}, {values}", 125))
 
 
 def _draw_time(axes: Any, shown: Shown) -> None:
@@ -115,7 +115,7 @@ def _draw_time(axes: Any, shown: Shown) -> None:
     low = min(0.0, float(np.nanmin(shown.trace, initial=0.0)), float(np.nanpercentile(shown.residual, 0.3)))
     high = max(0.0, float(np.nanmax(shown.trace, initial=0.0)), float(np.nanpercentile(shown.residual, 99.7)))
     room = 0.08 * max(high - low, 1e-3 * size, 1e-12)
-    axes.set_ylim(low - room, high + 2.5 * room)
+    axes.set_ylim(low - room, high + 4.0 * room)
     axes.set_ylabel(f"{shown.row} [{shown.unit}]")
     axes.set_title(PLACES[shown.balance], loc="left")
     axes.legend(loc="upper right", ncols=2, fontsize=9)
