@@ -9,7 +9,7 @@ import numpy as np
 from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.placing import driven_motors
-from hyperleg_design.simulation.two_mass import Belt
+from hyperleg_design.simulation.two_mass import STIFFEST, Belt
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -40,12 +40,14 @@ class Backlash(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         angle, side = np.atleast_2d(np.asarray(values, float)).T
-        none = np.zeros_like(angle)
-        return belt.trace(signals, motor, belt.stretch(signals, motor, none, angle * _ratio(signals.subject, motor), none), side)
+        return belt.trace(signals, motor, belt.slack(signals, motor, angle * _ratio(signals.subject, motor), side), side)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
-        return Belt(location, play=np.asarray(values, float)[..., 0] * _ratio(subject, subject.motors.index(location)))
+        """See `Effect.alteration`; its ends are as hard as simulations resolve, and damped to bounce as in the trace."""
+        motor = subject.motors.index(location)
+        bounce = np.log(belt.RESTITUTION)
+        damping = 2 * abs(bounce) / np.hypot(np.pi, bounce) * belt.rotor(subject, motor) * 2 * np.pi * STIFFEST
+        return Belt(location, play=np.asarray(values, float)[..., 0] * _ratio(subject, motor), damping=float(damping))
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """A small and a large angle, with encoders on either side."""

@@ -1,12 +1,16 @@
-"""What belts that stretch or have play leave in a log: motor and joint as two masses, the joint's motion known.
+"""What belts that stretch or have play leave in a log: motor and joint as two masses, the motion of one of them known.
 
-What the joints need through a motor's belt is u = [M^-1 (needed torque less the rotors')]; the belt is then stretched by
-
-    s = u compliance, filtered by the belt's damping, + play / 2 in the direction of u,
-
-and the rotor turns by M^T q + s. Where positions are the joints' own (`side` 0) the rotor's inertia takes J s'' beyond a rigid
+The rotor turns by M^T q + s. Where positions are the joints' own (`side` 0) the rotor's inertia J takes J s'' beyond a rigid
 belt's torque. Where they are those of the rotors, taken for the joints' (`side` 1), the joints stand s / M behind, and need
-another torque for that. Between, encoders on both sides are mixed. Stretch is limited to the band that a log resolves.
+another torque for that. Between, encoders on both sides are mixed.
+
+A belt that gives is stretched by what the joints need through it, u = [M^-1 (needed torque less the rotors')]: s = compliance u,
+filtered by the belt's damping. In a dead zone of width w nothing is transmitted, and s moves by itself,
+
+    side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque
+    side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need
+
+until it meets +-w/2, where it bounces a little (`RESTITUTION`) and stays while pushed. Both are limited to the band that a log resolves.
 """
 
 from __future__ import annotations
@@ -18,7 +22,7 @@ import numpy as np
 
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.conditioning import applied
-from hyperleg_design.gap.effects.placing import at_motor
+from hyperleg_design.gap.effects.placing import at_motor, joint_inertia
 from hyperleg_design.gap.effects.series import band_limited, first_derivative, lagged, second_derivative
 from hyperleg_design.simulation.two_mass import LIGHTEST
 
@@ -28,8 +32,8 @@ if TYPE_CHECKING:
 
 BAND = 0.2
 """Of the transmitted torque that stretches a belt, over the log's rate: 40 Hz at 200 Hz."""
-SOFT = 0.05
-"""Torque over its own root mean square within which a belt with play changes sides."""
+RESTITUTION = 0.3
+"""Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords under load hardly bounce."""
 
 _LOADS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 
@@ -50,23 +54,54 @@ def load(signals: Signals, motor: int) -> np.ndarray:
     return kept[motor]
 
 
-def stretch(signals: Signals, motor: int, compliance: np.ndarray, play: np.ndarray, damping_ratio: np.ndarray) -> np.ndarray:
-    """How far a rotor turns beyond its joints, on its side of M `(k, t)` [rad].
+def stretch(signals: Signals, motor: int, compliance: np.ndarray, damping_ratio: np.ndarray) -> np.ndarray:
+    """How far a rotor turns beyond its joints under load, on its side of M `(k, t)` [rad].
 
     Args:
         signals: a conditioned log.
         motor: place of the motor.
         compliance: `(k,)` [rad/Nm].
-        play: whole width `(k,)` [rad].
         damping_ratio: of the rotor on its belt `(k,)`.
     """
-    torque = load(signals, motor)
     late = 2 * damping_ratio * np.sqrt(rotor(signals.subject, motor) * compliance)
-    found = compliance[:, None] * lagged(torque, late, signals.step)
-    if play.any():
-        size = SOFT * np.sqrt(np.nanmean(torque**2)) + 1e-12
-        found = found + play[:, None] / 2 * np.tanh(torque / size)
-    return found
+    return np.asarray(compliance[:, None] * lagged(load(signals, motor), late, signals.step))
+
+
+def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray) -> np.ndarray:
+    """Where a rotor is in its dead zone, from -play / 2 to play / 2, on its side of M `(k, t)` [rad].
+
+    Args:
+        signals: a conditioned log.
+        motor: place of the motor.
+        play: whole width `(k,)` [rad].
+        side: on which the positions were logged `(k,)`.
+    """
+    push = np.where(side[:, None] < 0.5, _rotor_alone(signals, motor), _joint_alone(signals, motor))
+    step, half = signals.step, play / 2
+    kick = np.ascontiguousarray(np.nan_to_num(push).T) * step
+    out = np.empty_like(kick)
+    place, speed = half * np.sign(kick[0]), np.zeros_like(half)
+    for tick, change in enumerate(kick):
+        speed += change
+        place += step * speed
+        speed *= np.where(np.abs(place) < half, 1.0, -RESTITUTION * (place * speed > 0))
+        np.minimum(place, half, out=place)
+        np.maximum(place, -half, out=place)
+        out[tick] = place
+    return out.T
+
+
+def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:
+    """Acceleration of a free rotor against its joints `(t,)` [rad/s^2]."""
+    inertia = rotor(signals.subject, motor)
+    torque = band_limited(signals.believed[:, motor], signals.step, BAND / signals.step)
+    return np.asarray(torque / inertia - signals.acceleration @ signals.subject.joint_from_motor[:, motor])
+
+
+def _joint_alone(signals: Signals, motor: int) -> np.ndarray:
+    """Acceleration of a rotor against its free joints `(t,)` [rad/s^2]."""
+    share = signals.subject.motor_from_joint[motor]
+    return load(signals, motor) / float(share**2 @ joint_inertia(signals.subject))
 
 
 def trace(signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray) -> dict[str, np.ndarray]:

@@ -4,16 +4,17 @@ Near rest the sign of a velocity is noise, and friction at rest is whatever bala
 of sliding is taken from the position: it turns over while the joint moves `2 z`, as bristles bend (Prandtl's stop operator,
 the elastic-plastic limit of the Dahl and LuGre models),
 
-    s_i = clip(s_(i-1) + (q_i - q_(i-1)) / z, -1, 1),
+    s_i = clip(s_(i-1) + (q_i - q_(i-1)) / z, -1, 1),    way = clip(2 s, -1, 1),
 
-and a joint that comes to rest keeps it. That is right on ramps slower than the noise of the velocity, and in holds that a damped
-controller creeps into; where a joint sticks while its controller pulls it the other way, `resting` says so.
+where twice s, as noise alone never lets it stay at its ends. A joint that comes to rest keeps it: right on ramps slower than
+the noise of the velocity, and in holds that a damped controller creeps into; where a joint sticks while its controller pulls
+it the other way, nothing in a log tells the friction, and `resting` says so.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -23,9 +24,9 @@ from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resist
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
 
-PRESLIDING = 5e-4
-"""z: half the way over which friction turns over [rad]; assumed, of the order of 1 mrad as bristles of small gears."""
-NOISES = 5.0
+PRESLIDING = 3e-4
+"""z: half the way over which friction turns over [rad]; assumed: bristles of gears bend by 0.1-1 mrad before they slide."""
+NOISES = 8.0
 """Least z over the noise of the smoothed position."""
 WIDTH = 0.01
 """Velocity at which friction in a simulation has three quarters of its size [rad/s]; a sign, softened below what logs resolve."""
@@ -50,6 +51,7 @@ def sliding(signals: Signals) -> np.ndarray:
             np.add(out[tick - 1], step, out=state)
             np.minimum(state, 1.0, out=state)
             np.maximum(state, -1.0, out=state)
+        np.clip(2 * out, -1.0, 1.0, out=out)
         out.setflags(write=False)
         _SLIDING[signals] = out
     return _SLIDING[signals]
@@ -83,24 +85,38 @@ class JointFriction(Alteration):
     breakaway: Any = 0.0
     speed: Any = 1.0
     share: Any = 0.0
-    """Of the torque that the motors give at the joint; `()` or `(n,)` each [Nm, Nms/rad, Nm, rad/s, -]."""
+    """Of the torque that the motors give at the joint, less what turns their rotors; `()` or `(n,)` each [Nm, Nms/rad, Nm, rad/s, -]."""
     width: float = WIDTH
     """[rad/s]"""
 
 
 class _Friction(Live):
+    kept: ClassVar[tuple[str, ...]] = ("before", "begun")
+
     alteration: JointFriction
 
     def prepare(self) -> None:
-        self.place = self.machine.joint(self.alteration.joint)
+        machine = self.machine
+        self.place = machine.joint(self.alteration.joint)
+        matrix, inertia = np.asarray(machine.joint_from_motor), np.asarray(machine.rigid_inertia)
+        self.armature = np.einsum("...k,...k,...lk->...l", matrix[..., self.place, :], inertia, matrix)
+        self.before, self.begun = np.zeros((self.count, len(machine.joints))), np.zeros(self.count)
 
     def joint_damping(self, tick: Tick) -> np.ndarray:
         one, velocity = self.alteration, tick.velocity[:, self.place]
-        assert tick.joint_torque is not None
-        size = one.coulomb + one.breakaway * np.exp(-((velocity / one.speed) ** 2)) + one.share * np.abs(tick.joint_torque[:, self.place])
+        size = one.coulomb + one.breakaway * np.exp(-((velocity / one.speed) ** 2))
+        if np.any(one.share):
+            size = size + one.share * np.abs(self._transmitted(tick))
         out = np.zeros_like(tick.velocity)
         out[:, self.place] = resistance(size, velocity, one.width) + one.viscous
         return out
+
+    def _transmitted(self, tick: Tick) -> np.ndarray:
+        """Torque that reaches the joint `(n,)` [Nm]: less what turned the rotors in the step before."""
+        assert tick.joint_torque is not None
+        acceleration = (tick.velocity - self.before) / self.step * self.begun[:, None]
+        self.before[:], self.begun[:] = tick.velocity, 1.0
+        return np.asarray(tick.joint_torque[:, self.place] - (self.armature * acceleration).sum(-1))
 
 
 JointFriction.live = _Friction

@@ -108,7 +108,7 @@ def limited(signals: Signals, motor: int, torque: np.ndarray, *, peak: float | n
     droop = stall / free * motor_velocity(signals, motor) if line else np.zeros(1)
     available = stall * np.maximum(voltage, 0.0)
     largest = max(float(np.nanmax(torque, initial=0.0)), -float(np.nanmin(torque, initial=0.0)))
-    if largest <= min(float(np.nanmin(peak)), float(np.nanmin(available)) - float(np.abs(droop).max())):
+    if largest <= min(float(np.nanmin(peak, initial=np.inf)), float(np.nanmin(available, initial=np.inf)) - float(np.abs(droop).max())):
         return torque
     torque = np.clip(torque, -peak, peak)
     if not line:

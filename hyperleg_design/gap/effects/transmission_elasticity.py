@@ -47,7 +47,7 @@ class TransmissionElasticity(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         compliance, damping_ratio, side = np.atleast_2d(np.asarray(values, float)).T
-        return belt.trace(signals, motor, belt.stretch(signals, motor, compliance, np.zeros_like(compliance), damping_ratio), side)
+        return belt.trace(signals, motor, belt.stretch(signals, motor, compliance, damping_ratio), side)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""

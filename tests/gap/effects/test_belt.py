@@ -1,0 +1,33 @@
+import numpy as np
+from pendulum import ROTOR, Wrong
+
+from hyperleg_design.gap.effects import belt
+
+
+def test_load_is_the_torque_of_the_link_alone(pendulum):
+    signals = pendulum(Wrong())
+    needed = signals.rigid[:, 0] - ROTOR * signals.acceleration[:, 0]
+    away = slice(100, -100)
+    assert np.abs(belt.load(signals, 0) - needed)[away].max() < 0.02 * np.abs(needed).max()
+
+
+def test_stretch_is_compliance_times_load_and_play_is_bounded(pendulum):
+    signals = pendulum(Wrong())
+    compliance = np.array([0.0, 0.01, 0.02])
+    found = belt.stretch(signals, 0, compliance, np.zeros(3))
+    np.testing.assert_allclose(found, compliance[:, None] * belt.load(signals, 0))
+    slack = belt.slack(signals, 0, np.array([0.0, 0.02]), np.zeros(2))
+    assert np.abs(slack[0]).max() == 0
+    assert np.abs(slack[1]).max() == 0.01
+    assert np.mean(np.abs(slack[1]) > 0.0099) > 0.5
+
+
+def test_side_one_is_another_posture(pendulum):
+    signals = pendulum(Wrong())
+    moved = np.full((1, len(signals.time)), 0.02)
+    found = belt.trace(signals, 0, moved, np.ones(1))["motion"][0, :, 0]
+    from pendulum import LENGTH, MASS
+
+    expected = MASS * 9.81 * LENGTH * (np.sin(signals.position[:, 0] - 0.02) - np.sin(signals.position[:, 0]))
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+    assert np.abs(belt.trace(signals, 0, moved, np.zeros(1))["motion"]).max() < 1e-9

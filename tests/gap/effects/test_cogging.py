@@ -1,0 +1,28 @@
+import numpy as np
+from pendulum import Wrong, misfit
+
+from hyperleg_design.gap.effects import effect
+
+COGGING = effect("cogging")
+
+
+def test_trace_is_what_a_cogging_motor_leaves(pendulum):
+    signals = pendulum(Wrong(cosine=0.3, sine=0.2, order=7))
+    assert misfit(signals, COGGING.trace(signals, "swing", np.array([[0.3, 0.2, 7.0]]))) < 0.02
+
+
+def test_starts_find_the_order_and_the_amplitudes(pendulum):
+    signals = pendulum(Wrong(cosine=0.3, sine=0.2, order=13))
+    np.testing.assert_allclose(COGGING.starts(signals, "swing")[0], [0.3, 0.2, 13.0], atol=0.05)
+
+
+def test_simulation_with_it_leaves_its_trace(simulated):
+    signals = simulated("cogging", [0.3, 0.2, 7.0])
+    assert misfit(signals, COGGING.trace(signals, "swing", np.array([[0.3, 0.2, 7.0]]))) < 0.02
+
+
+def test_a_coupled_motor_turns_with_both_joints(leg):
+    signals = leg(duration=1.5)
+    column = signals.subject.joint_from_motor[:, 1]
+    wave = 0.1 * np.sin(3 * (signals.position @ column))
+    np.testing.assert_allclose(COGGING.trace(signals, "m_back", np.array([[0.0, 0.1, 3.0]]))["motion"][0], wave[:, None] * column, atol=1e-12)

@@ -1,0 +1,44 @@
+import numpy as np
+from pendulum import Wrong, misfit
+
+from hyperleg_design.gap.effects import effect
+
+DELAY = effect("command_delay")
+
+
+def test_trace_is_what_late_commands_leave(pendulum):
+    for sees, balance in ((("motor_torque",), "drive"), ((), "motion")):
+        signals = pendulum(Wrong(delay=0.012), sees=sees)
+        trace = DELAY.trace(signals, "robot", np.array([[0.012]]))
+        assert set(trace) == {balance}
+        assert misfit(signals, trace, balance) < 0.02
+
+
+def test_simulation_with_it_leaves_its_trace(simulated):
+    signals, plain = simulated("command_delay", [0.012]), simulated("command_delay", None)
+    # a simulation of steps of 1 ms is itself half a step late
+    signals.residual["drive"][:] -= np.mean(plain.residual["drive"])
+    assert misfit(signals, DELAY.trace(signals, "robot", np.array([[0.012]])), "drive") < 0.2
+
+
+def test_delays_between_simulation_steps_are_interpolated():
+    from types import SimpleNamespace
+
+    from hyperleg_design.gap.effects.command_delay import LateCommand
+
+    machine = SimpleNamespace(motor=lambda name: 0)
+    late = LateCommand(("a",), np.array([0.0, 0.0025, 0.001]))
+    live = late.live(late, machine, 3, 0.001)
+    given = np.array([live.command(np.full((3, 1), float(step)), None)[:, 0] for step in range(10)])
+    np.testing.assert_allclose(given[5:], np.arange(5, 10)[:, None] - np.array([0.0, 2.5, 1.0]))
+    live.reset(np.arange(3), None, None)
+    np.testing.assert_array_equal(live.command(np.full((3, 1), 7.0), None), 7.0)
+
+
+def test_each_motor_of_several_can_be_late_alone(leg):
+    signals = leg(duration=1.5)
+    assert DELAY.locations(signals.subject) == ("robot", "m_front", "m_back")
+    value = np.array([[0.01]])
+    alone = [DELAY.trace(signals, name, value)["drive"] for name in ("m_front", "m_back")]
+    np.testing.assert_allclose(DELAY.trace(signals, "robot", value)["drive"], sum(alone))
+    assert np.all(alone[0][..., 1] == 0)

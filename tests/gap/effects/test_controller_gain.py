@@ -1,0 +1,26 @@
+import numpy as np
+from pendulum import Wrong, misfit
+
+from hyperleg_design.gap.effects import effect
+
+GAIN = effect("controller_gain")
+
+
+def test_trace_is_what_other_gains_leave(pendulum):
+    for sees, balance in ((("motor_torque",), "drive"), ((), "motion")):
+        signals = pendulum(Wrong(stiffness_scale=0.8, damping_scale=1.3), sees=sees)
+        trace = GAIN.trace(signals, "swing", np.array([[0.8, 1.3]]))
+        assert set(trace) == {balance}
+        assert misfit(signals, trace, balance) < 0.01
+
+
+def test_simulation_with_it_leaves_its_trace(simulated):
+    signals = simulated("controller_gain", [0.8, 1.2])
+    assert misfit(signals, GAIN.trace(signals, "swing", np.array([[0.8, 1.2]])), "drive") < 0.03
+
+
+def test_joints_without_gains_cannot_have_it():
+    from hyperleg_design.gap.subject import load_subject
+
+    subject = load_subject("hyperleg")
+    assert GAIN.locations(subject) == subject.joints

@@ -1,0 +1,34 @@
+import numpy as np
+from pendulum import Wrong, misfit
+
+from hyperleg_design.gap.effects import effect
+
+SATURATION = effect("torque_saturation")
+
+
+def test_trace_is_what_a_limited_drive_leaves_where_torque_was_measured_and_where_not(pendulum):
+    for sees, balance in ((("motor_torque",), "drive"), ((), "motion")):
+        signals = pendulum(Wrong(limit=1.0), sees=sees)
+        trace = SATURATION.trace(signals, "swing", np.array([[1.0]]))
+        assert set(trace) == {balance}
+        assert misfit(signals, trace, balance) < 0.01
+
+
+def test_simulation_with_it_leaves_its_trace(simulated):
+    signals = simulated("torque_saturation", [1.0])
+    assert misfit(signals, SATURATION.trace(signals, "swing", np.array([[1.0]])), "drive") < 0.02
+
+
+def test_starts_bind_ever_more_often(pendulum):
+    signals = pendulum(Wrong())
+    starts = SATURATION.starts(signals, "swing")[:, 0]
+    bound = [np.mean(np.abs(signals.command[:, 0]) > limit) for limit in starts]
+    assert np.all(np.diff(starts) < 0)
+    assert np.all(np.diff(bound) > 0)
+
+
+def test_without_commands_there_is_no_trace(pendulum):
+    import dataclasses
+
+    signals = dataclasses.replace(pendulum(Wrong()), command=None)
+    assert SATURATION.trace(signals, "swing", np.array([[1.0]])) == {}
