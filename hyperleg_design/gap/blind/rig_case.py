@@ -160,13 +160,13 @@ def _sized(rig: _Rig, effect: str, wanted: float, rng: np.random.Generator, take
 
 
 def size_at(sizes: np.ndarray, ratios: np.ndarray, wanted: float, smallest: float) -> tuple[float, float]:
-    """Size at which an effect shows `wanted` times over the floor, and how far it comes.
+    """Size at which an effect shows `wanted` times over the floor, and how far it comes; never below the smallest that was tried.
 
     Args:
         sizes: tried, rising.
         ratios: multiples they gave; infinite where the rig went wild.
         wanted: multiple.
-        smallest: size from which effects that are factors start.
+        smallest: what is taken where even the first size goes wild.
     """
     tame = np.isfinite(ratios)
     last = int(np.argmin(tame)) if not tame.all() else len(ratios)
@@ -178,9 +178,7 @@ def size_at(sizes: np.ndarray, ratios: np.ndarray, wanted: float, smallest: floa
         return float(sizes[-1]), float(ratios[-1])
     k = int(above[0])
     if k == 0:
-        # Below what was tried effects are about linear in their size; factors, in their distance from one.
-        base = 1.0 if smallest > 1.0 else 0.0
-        return float(base + (sizes[0] - base) * wanted / ratios[0]), wanted
+        return float(sizes[0]), float(ratios[0])  # anything smaller drowns in what is off anyway
     share = np.log(wanted / ratios[k - 1]) / np.log(ratios[k] / ratios[k - 1])
     return float(sizes[k - 1] * (sizes[k] / sizes[k - 1]) ** share), wanted
 

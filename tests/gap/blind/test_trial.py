@@ -48,7 +48,7 @@ def test_cases_hold_logs_and_no_truth(trial):
 def test_effects_show_about_as_planned(trial):
     for truth in open_key(trial):
         for wrong in truth["wrongs"]:
-            assert wrong["multiple"] == pytest.approx(wrong["wanted"], rel=0.8)
+            assert 0.2 < wrong["multiple"] / wrong["wanted"] < 5.0
 
 
 @pytest.mark.slow
