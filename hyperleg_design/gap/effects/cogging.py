@@ -36,7 +36,7 @@ class Cogging(Effect):
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("cosine", "Nm", 0.0, -20.0, 20.0, 0.1, "a few per cent of the rated torque of BLDC motors (assumed; MuJoCo's dcmotor `cogging`)"),
         Parameter("sine", "Nm", 0.0, -20.0, 20.0, 0.1, "as the cosine"),
-        Parameter("order", "1/turn", 6.0, 0.5, 200.0, 4.0, "least common multiple of slots and poles, or its fractions", shape=True),
+        Parameter("order", "1/turn", 6.0, 0.5, 200.0, 10.0, "least common multiple of slots and poles, or its fractions", shape=True),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -66,6 +66,17 @@ class Cogging(Effect):
         most = min(found[1, 0], motor_strength(subject, subject.motors.index(location)))
         found[0, :2], found[1, :2] = -most, most
         return found
+
+    def steps(self, location: str, subject: Subject) -> np.ndarray:
+        """Those of the order turn the phase little over a radian of the joint."""
+        found = super().steps(location, subject)
+        found[2] = min(found[2], 0.05 / float(np.abs(subject.joint_from_motor[:, subject.motors.index(location)]).max()))
+        return found
+
+    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+        """Amplitude, and the angle at which it resists most."""
+        cosine, sine, order = values
+        return {"amplitude": (float(np.hypot(cosine, sine)), "Nm"), "phase": (float(np.arctan2(sine, cosine) / order), "rad")}
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The orders that by themselves explain most of the residual of this log, with their amplitudes."""

@@ -128,6 +128,14 @@ class Effect(ABC):
         tried = np.clip(self.nulls + np.array([[1.0], [-1.0]]) * np.where(sized, usual, 0.0), low, high)
         return np.asarray(tried[np.any(tried != self.nulls, 1)])
 
+    def steps(self, location: str, subject: Subject) -> np.ndarray:
+        """Steps of finite differences, small enough for the trace to be about straight over them `(parameters,)`."""
+        return 0.1 * self.usual(location, subject)
+
+    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+        """What people would rather read: quantities that follow from values `(parameters,)`, each with its unit."""
+        return {}
+
     @property
     def nulls(self) -> np.ndarray:
         """Values at which it is absent, `(parameters,)`."""

@@ -60,6 +60,12 @@ class JointSpring(Effect):
         found = super().bounds(location, subject)
         return np.array([np.maximum(found[0], [-subject.spring[joint], -strength]), np.minimum(found[1], [20 * strength, strength])])
 
+    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+        """Angle at which it rests."""
+        stiffness, preload = values
+        default = float(subject.default[subject.joints.index(location)])
+        return {"rest": (default - float(preload) / float(stiffness), "rad")} if stiffness else {}
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """A spring, and a bare preload either way."""
         usual = self.usual(location, signals.subject)

@@ -109,7 +109,7 @@ def limited(signals: Signals, motor: int, torque: np.ndarray, *, peak: float | n
     available = stall * np.maximum(voltage, 0.0)
     largest = max(float(np.nanmax(torque, initial=0.0)), -float(np.nanmin(torque, initial=0.0)))
     if largest <= min(float(np.nanmin(peak, initial=np.inf)), float(np.nanmin(available, initial=np.inf)) - float(np.abs(droop).max())):
-        return torque
+        return np.broadcast_to(torque, np.broadcast_shapes(np.shape(torque), np.shape(peak), np.shape(voltage)))
     torque = np.clip(torque, -peak, peak)
     if not line:
         return torque

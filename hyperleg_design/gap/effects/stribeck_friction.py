@@ -60,6 +60,10 @@ class StribeckFriction(Effect):
         found[1, 0] = min(found[1, 0], joint_strength(subject)[subject.joints.index(location)])
         return found
 
+    def steps(self, location: str, subject: Subject) -> np.ndarray:
+        """Small against the least Stribeck speed."""
+        return np.array([0.1 * self.usual(location, subject)[0], 0.1 * self.parameters[1].low])
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The usual excess at several Stribeck speeds."""
         usual = self.usual(location, signals.subject)[0]

@@ -16,13 +16,11 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
 
-NEVER = 1000.0
-"""Limit that stands for none [Nm]: no motor on its own side of the transmission reaches it."""
 _QUANTILES = (0.97, 0.9, 0.8, 0.6)
 
 
 class TorqueSaturation(Effect):
-    """A drive stops at a torque below the limit of the model.
+    """A drive stops at a torque below the limit of the model: at 1 / inverse_limit, so that 0 is no limit.
 
     Trace, by the rule of `placing`: the command within the lower limit minus the command within the nominal ones. A log without
     commands cannot show it.
@@ -32,7 +30,7 @@ class TorqueSaturation(Effect):
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a drive limits its torque (or current) to less than the model's limit"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("limit", "Nm", NEVER, 1e-3, NEVER, 0.4 * NEVER, "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor"),
+        Parameter("inverse_limit", "1/Nm", 0.0, 0.0, 1e3, 0.1, "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor"),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -45,21 +43,20 @@ class TorqueSaturation(Effect):
         if not is_commanded(signals, motor):
             return {}
         asked = commanded(signals, motor)
-        limit = np.atleast_2d(np.asarray(values, float))[:, :1]
-        change = np.where(limit < NEVER, limited(signals, motor, asked, peak=limit) - limited(signals, motor, asked), 0.0 * asked)
-        return before_measurement(signals, {motor: change})
+        limit = _limit(np.atleast_2d(np.asarray(values, float))[:, :1])
+        return before_measurement(signals, {motor: limited(signals, motor, asked, peak=limit) - limited(signals, motor, asked)})
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
-        return LowerLimit(location, np.asarray(values, float)[..., 0])
+        return LowerLimit(location, _limit(np.asarray(values, float)[..., 0]))
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """From no limit to 60 % of the torque that the motor is made for."""
-        return np.array([NEVER - 0.6 * motor_strength(subject, subject.motors.index(location))])
+        """A limit of 60 % of the torque that the motor is made for."""
+        return np.array([1 / (0.6 * motor_strength(subject, subject.motors.index(location)))])
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
         """A limit that slow motion reaches, the lower the larger."""
-        return np.array([0.1 * motor_strength(subject, subject.motors.index(location)) / max(size, 0.1)])
+        return np.array([size / (0.1 * motor_strength(subject, subject.motors.index(location)))])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Torques that the command of this log exceeds ever more often."""
@@ -67,7 +64,17 @@ class TorqueSaturation(Effect):
         if not is_commanded(signals, motor):
             return super().starts(signals, location)
         asked = np.abs(limited(signals, motor, commanded(signals, motor)))
-        return np.clip(np.nanquantile(asked, _QUANTILES), self.parameters[0].low, NEVER)[:, None]
+        return np.asarray(np.minimum(1 / np.maximum(np.nanquantile(asked, _QUANTILES), 1e-9), self.parameters[0].high)[:, None])
+
+    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+        """The limit."""
+        return {"limit": (float(_limit(values[0])), "Nm")}
+
+
+def _limit(inverse: np.ndarray) -> np.ndarray:
+    """Limit [Nm], infinite where there is none."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(1 / np.maximum(inverse, 0.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +95,7 @@ class _Lower(Live):
     def limits(self, limits: Limits, tick: Tick) -> Limits:
         peak = np.array(np.broadcast_to(limits.peak_torque, (self.count, len(self.machine.motors))), float)
         limit = np.asarray(self.alteration.limit, float)
-        peak[:, self.place] = np.where(limit < NEVER, np.minimum(peak[:, self.place], limit), peak[:, self.place])
+        peak[:, self.place] = np.minimum(peak[:, self.place], limit)
         return dataclasses.replace(limits, peak_torque=peak)
 
 

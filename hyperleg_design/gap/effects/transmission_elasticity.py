@@ -74,6 +74,12 @@ class TransmissionElasticity(Effect):
         stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
         return np.array([[c, DAMPING_RATIO, side] for side in (0.0, 1.0) for c in stiff])
 
+    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+        """Stiffness on the motor's side, and the frequency of the rotor on its belt."""
+        stiffness = 1 / values[0] if values[0] > 0 else np.inf
+        inertia = belt.rotor(subject, subject.motors.index(location))
+        return {"stiffness": (float(stiffness), "Nm/rad"), "resonance": (float(np.sqrt(stiffness / inertia) / (2 * np.pi)), "Hz")}
+
     def _compliance(self, frequency: float, location: str, subject: Subject) -> float:
         inertia = belt.rotor(subject, subject.motors.index(location))
         return float(1 / (inertia * (2 * np.pi * frequency) ** 2))

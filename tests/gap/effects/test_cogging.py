@@ -26,3 +26,11 @@ def test_a_coupled_motor_turns_with_both_joints(leg):
     column = signals.subject.joint_from_motor[:, 1]
     wave = 0.1 * np.sin(3 * (signals.position @ column))
     np.testing.assert_allclose(COGGING.trace(signals, "m_back", np.array([[0.0, 0.1, 3.0]]))["motion"][0], wave[:, None] * column, atol=1e-12)
+
+
+def test_people_read_amplitude_and_phase(pendulum):
+    subject = pendulum(Wrong()).subject
+    found = COGGING.derived("swing", np.array([0.3, 0.4, 2.0]), subject)
+    assert found["amplitude"] == (0.5, "Nm")
+    peak = found["phase"][0]
+    assert np.isclose(0.3 * np.cos(2 * peak) + 0.4 * np.sin(2 * peak), 0.5)

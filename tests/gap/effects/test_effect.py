@@ -97,6 +97,8 @@ def test_usual_and_starts_lie_inside_the_bounds(name, signals):
         low, high = one.bounds(location, signals.subject)
         assert np.all(one.usual(location, signals.subject) > 0)
         assert np.all((low >= [p.low for p in one.parameters]) & (high <= [p.high for p in one.parameters]))
+        steps = one.steps(location, signals.subject)
+        assert np.all((steps > 0) & (steps <= one.usual(location, signals.subject)))
         starts = one.starts(signals, location)
         assert starts.ndim == 2
         assert len(starts) >= 1

@@ -27,3 +27,12 @@ def test_preload_is_the_torque_at_the_posture_of_rest():
     found = SPRING.trace(signals, "left_knee", np.array([[20.0, 1.5]]))["motion"][0]
     assert np.all(found[:, knee] == 1.5)
     assert np.all(np.delete(found, knee, 1) == 0)
+
+
+def test_people_read_the_angle_of_rest(pendulum):
+    subject = pendulum(Wrong()).subject
+    rest = SPRING.derived("swing", np.array([2.0, 0.5]), subject)["rest"][0]
+    signals = pendulum(Wrong())
+    where = signals.position[:, 0]
+    trace = SPRING.trace(signals, "swing", np.array([[2.0, 0.5]]))["motion"][0, :, 0]
+    np.testing.assert_allclose(trace, 2.0 * (where - rest))

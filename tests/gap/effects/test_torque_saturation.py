@@ -21,10 +21,16 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 
 def test_starts_bind_ever_more_often(pendulum):
     signals = pendulum(Wrong())
-    starts = SATURATION.starts(signals, "swing")[:, 0]
+    starts = 1 / SATURATION.starts(signals, "swing")[:, 0]
     bound = [np.mean(np.abs(signals.command[:, 0]) > limit) for limit in starts]
     assert np.all(np.diff(starts) < 0)
     assert np.all(np.diff(bound) > 0)
+
+
+def test_people_read_the_limit(pendulum):
+    subject = pendulum(Wrong()).subject
+    assert SATURATION.derived("swing", np.array([0.5]), subject) == {"limit": (2.0, "Nm")}
+    assert SATURATION.derived("swing", SATURATION.nulls, subject) == {"limit": (np.inf, "Nm")}
 
 
 def test_without_commands_there_is_no_trace(pendulum):

@@ -32,3 +32,11 @@ def test_usual_compliance_rings_at_the_usual_frequency(pendulum):
     subject = pendulum(Wrong()).subject
     usual = ELASTICITY.usual("swing", subject)[0]
     assert abs(1 / (2 * np.pi * np.sqrt(usual * subject.rotor_inertia[0])) / RESONANCE - 1) < 1e-9
+
+
+def test_people_read_stiffness_and_resonance(pendulum):
+    subject = pendulum(Wrong()).subject
+    usual = ELASTICITY.usual("swing", subject)
+    found = ELASTICITY.derived("swing", usual, subject)
+    assert np.isclose(found["stiffness"][0] * usual[0], 1)
+    assert np.isclose(found["resonance"][0], 12.0)
