@@ -68,10 +68,10 @@ class _Rotor(Live):
         fastest = (2 * np.pi * STIFFEST) ** 2
         self.loose = (compliance > 0) | (self.play > 0)
         given = compliance > 0
-        # A rotor too light for its belt is taken heavier, play without compliance gets the stiffest belt that is resolved.
-        stiffness = np.where(given, 1 / np.where(given, compliance, 1.0), 0.0)
-        self.inertia = np.maximum(np.where(inertia > 0, inertia, LIGHTEST), stiffness / fastest)
-        self.stiffness = np.where(given, stiffness, self.inertia * fastest)
+        # Stiffer belts than can be resolved, and play without compliance, get the stiffest that is.
+        self.inertia = np.where(inertia > 0, inertia, LIGHTEST)
+        stiffest = self.inertia * fastest
+        self.stiffness = np.where(given, np.minimum(1 / np.where(given, compliance, 1.0), stiffest), stiffest)
         standard = 2 * DAMPING_RATIO * np.sqrt(self.stiffness * self.inertia)
         self.damping = standard if belt.damping is None else full(belt.damping)
         rate = float(np.sqrt(self.stiffness / self.inertia)[self.loose].max(initial=1.0))
@@ -114,7 +114,7 @@ class _Rotor(Live):
         for number in range(self.inner):
             angle += step / 2 * speed
             stretch = angle - (way + (number + 0.5) * step * velocity)
-            taut = np.where(np.abs(stretch) > half, 1.0, 0.0)
+            taut = np.where(np.abs(stretch) >= half, 1.0, 0.0)
             pull = self.stiffness * (stretch - np.clip(stretch, -half, half))
             damping = taut * self.damping
             # damping at the mean of the old and the new speed, drag at the new one
