@@ -14,6 +14,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import contact, rigid
 from hyperleg_design.gap.base_motion import base_motion
+from hyperleg_design.gap.control import control_residual
 from hyperleg_design.gap.ground import balance as ground_balance
 from hyperleg_design.gap.signals import BaseMotion, Signals
 from hyperleg_design.gap.smoothing import smooth
@@ -64,7 +65,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     if subject.floating:
         base, derived = base_motion(log, subject, ticks)
         notes += derived
-    command, target = _command(log, subject, ticks, motion)
+    command, target, control, others = _command(log, subject, ticks, motion)
     measured = _measured(log, subject, ticks)
     limited = None if command is None else limited_torque(subject, command, motion.first)
     believed, more = _believed(log, subject, measured, limited)
@@ -84,6 +85,10 @@ def condition(log: Log, subject: Subject) -> Signals:
     residual["motion"] = np.where(unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed)
     if measured is not None and limited is not None:
         residual["drive"] = measured - limited
+    if control is not None:
+        residual["control"] = control
+    if others:
+        notes.append(f"motors whose logged commands are not those of a controller with stiffness and damping: {', '.join(others)}")
     valid = _valid(log, ticks, position[:, ~lacking], _edge(motion, lacking))
     signals = Signals(
         log=log, subject=subject, step=step, time=ticks, position=motion.value, velocity=motion.first, acceleration=motion.second, base=base,
@@ -162,24 +167,32 @@ def resampled_or_none(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -
     return resampled(time, values, ticks) if np.isfinite(values).any() else None
 
 
-def _command(log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Motor torque that the controller asks for, and position targets."""
+def _command(
+    log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth
+) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
+    """Motor torque that the controller asks for, position targets, the balance of the control, and motors that it cannot speak of."""
     raw_target = log.stack("position_target", subject.joints)
     logged = of_motors(log, "motor_torque_command", subject)
     command = resampled(log.time, logged, ticks)
     target = resampled_or_none(log.time, raw_target, ticks)
+    control: np.ndarray | None = None
+    others: tuple[str, ...] = ()
     if target is not None:
         speed = log.stack("velocity", subject.joints)
         derived = np.stack([np.interp(log.time, ticks, v) for v in motion.first.T], -1)
         speed = np.where(np.isfinite(speed), speed, derived)
         stiffness, damping = subject.gains.T
-        asked = stiffness * (raw_target - log.stack("position", subject.joints)) - damping * speed
-        asked[:, subject.passive] = 0.0
+        spring, damper = stiffness * (raw_target - log.stack("position", subject.joints)), -damping * speed
+        spring[:, subject.passive] = damper[:, subject.passive] = 0.0
+        asked = spring + damper
+        if np.isfinite(logged).any():
+            residual, others = control_residual(subject, logged, spring, damper)
+            control = resampled_or_none(log.time, residual, ticks)
         torque = resampled(log.time, applied(subject.motor_from_joint, asked), ticks)
         command = np.where(np.isfinite(command), command, torque)
     if subject.one_to_one and subject.passive.any():
         command[:, subject.passive] = 0.0
-    return (command if np.isfinite(command[:, _driven(subject)]).any() else None), target
+    return (command if np.isfinite(command[:, _driven(subject)]).any() else None), target, control, others
 
 
 def _driven(subject: Subject) -> np.ndarray:

@@ -34,6 +34,7 @@ WINDOW = 0.25
 TORQUE_SIGNALS = {
     "motion": ("torque", "joint", "Nm"),
     "drive": ("drive", "motor", "Nm"),
+    "control": ("control", "motor", "Nm"),
     "base": ("base", "robot", "N, Nm"),
     "ground": ("ground", "foot", "N"),
 }
@@ -45,7 +46,7 @@ class Row:
     """One line of the table."""
 
     signal: str
-    """`torque`, `drive`, `base`, `ground`, `position` or `velocity`."""
+    """`torque`, `drive`, `control`, `base`, `ground`, `position` or `velocity`."""
     unit: str
     kind: str
     """`joint`, `motor`, `foot` or `robot`."""
@@ -149,6 +150,9 @@ def _sheets(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, st
         elif balance == "drive":
             assert signals.measured is not None
             made.append(_motor_sheet(signals, signal, unit, residual, signals.measured))
+        elif balance == "control":
+            assert signals.command is not None
+            made.append(_motor_sheet(signals, signal, unit, residual, signals.command))
         else:
             names: tuple[str, ...] = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
             if balance == "ground":

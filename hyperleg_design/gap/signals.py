@@ -38,6 +38,8 @@ class Signals:
         motion: believed joint torque minus the torque that the logged motion needs `(t, n)` [Nm];
         drive: measured motor torque minus the torque that the controller asks for, within nominal limits `(t, m)` [Nm], where
             both are known;
+        control: logged command of the motors minus the one that the declared gains make of the logged targets and state `(t, m)`
+            [Nm], where both are known and the controller is of that form;
         base: of a floating base whose contact forces are logged, the six rows of the base `(t, 6)` [N, Nm];
         ground: logged contact force minus the nominal ground's at the logged motion `(t, 3 f)` [N].
     """

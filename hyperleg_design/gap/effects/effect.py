@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 """Where an effect can sit."""
-BALANCES = ("motion", "drive", "base", "ground")
+BALANCES = ("motion", "drive", "control", "base", "ground")
 """Rows that a trace can fill; `gap/signals.py` says what each compares."""
 
 Change = Mapping[tuple[str, str], Mapping[str, float]]

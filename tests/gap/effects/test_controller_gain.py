@@ -19,6 +19,14 @@ def test_simulation_with_it_leaves_its_trace(simulated):
     assert misfit(signals, GAIN.trace(signals, "swing", np.array([[0.8, 1.2]])), "drive") < 0.03
 
 
+def test_of_logged_commands_it_shows_in_the_control(pendulum):
+    signals = pendulum(Wrong(stiffness_scale=0.8, damping_scale=1.3), sees=("motor_torque", "motor_torque_command"))
+    trace = GAIN.trace(signals, "swing", np.array([[0.8, 1.3]]))
+    assert set(trace) == {"control"}
+    assert misfit(signals, trace, "control") < 0.01
+    assert np.nanmax(np.abs(signals.residual["drive"])) < 1e-9
+
+
 def test_joints_without_gains_cannot_have_it():
     from hyperleg_design.gap.subject import load_subject
 
