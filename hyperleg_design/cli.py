@@ -13,7 +13,7 @@ from typing import Annotated, Any
 
 import tyro
 
-from hyperleg_design import __version__, resources
+from hyperleg_design import __version__, cli_gap, resources
 from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.robot.design import Design, load_design
 
@@ -531,6 +531,7 @@ GAP_VERBS: dict[str, Any] = {
     "effects": GapEffects,
     "show": GapShow,
     "apply": GapApply,
+    **cli_gap.VERBS,
 }
 
 

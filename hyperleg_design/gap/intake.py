@@ -40,6 +40,20 @@ def take_in(robot: str, sources: Sequence[str | os.PathLike[str]], references: S
     Raises:
         InputError: no log to test, a log that cannot be opened or is not fit, a robot that does not go with the logs.
     """
+    tests, healthy = open_logs(sources, references)
+    subject = load_subject(robot or None, [*tests, *healthy])
+    checks = [_checked(log, subject) for log in (*tests, *healthy)]
+    return Intake(
+        subject, tuple(condition(log, subject) for log in tests), tuple(condition(log, subject) for log in healthy), tuple(checks)
+    )  # fmt: skip
+
+
+def open_logs(sources: Sequence[str | os.PathLike[str]], references: Sequence[str | os.PathLike[str]] = ()) -> tuple[list[Log], list[Log]]:
+    """Logs to be tested, and those of the healthy robot: named so, or by their own metadata.
+
+    Raises:
+        InputError: no log to test, or one that cannot be opened.
+    """
     if not sources:
         raise InputError("gap", "logs", None, "expects files or folders of logs")
     opened = [(log, log.metadata.role == REFERENCE) for source in sources for log in open_log(source)]
@@ -48,11 +62,7 @@ def take_in(robot: str, sources: Sequence[str | os.PathLike[str]], references: S
     healthy = [log for log, reference in opened if reference]
     if not tests:
         raise InputError("gap", "logs", len(healthy), "are all references: name at least one log to be diagnosed")
-    subject = load_subject(robot or None, [*tests, *healthy])
-    checks = [_checked(log, subject) for log in (*tests, *healthy)]
-    return Intake(
-        subject, tuple(condition(log, subject) for log in tests), tuple(condition(log, subject) for log in healthy), tuple(checks)
-    )  # fmt: skip
+    return tests, healthy
 
 
 def _checked(log: Log, subject: Subject) -> Check:

@@ -10,7 +10,7 @@ the residual's own level above `BAND`, taken as white, of positions and velociti
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
@@ -84,6 +84,11 @@ class Gap:
         """Columns by name, excess included."""
         names = [f.name for f in fields(Row)]
         return {**{n: [getattr(r, n) for r in self.rows] for n in names}, "excess": [r.excess for r in self.rows]}
+
+    def mapping(self) -> dict[str, object]:
+        """As JSON takes it; what is unknown is null."""
+        rows = [{k: None if isinstance(v, float) and not np.isfinite(v) else v for k, v in asdict(r).items()} for r in self.rows]
+        return {"floor_from": self.floor_from, "notes": list(self.notes), "rows": rows}
 
     def select(self, signal: str = "", kind: str = "", location: str = "", regime: str = "all") -> tuple[Row, ...]:
         """Rows of some signal, kind, place and regime; an empty text stands for any."""

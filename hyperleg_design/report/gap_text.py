@@ -1,9 +1,9 @@
-"""Checks of logs and measured gaps as text for a terminal."""
+"""Checks of logs, measured gaps and diagnoses as text for a terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.check import Check
@@ -79,4 +79,26 @@ def gap_text(gap: Gap, most: int = 12) -> str:
         if worst.excess > 0 and regimes:
             told = ", ".join(f"{r.regime} {100 * r.share:.0f} %" for r in regimes[:4])
             lines.append(f"  {worst.location} mostly in: {told}")
+    return "\n".join(lines)
+
+
+def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
+    """Verdict, gap, causes, rivals and what to do next."""
+    gap = diagnosis["gap"]
+    lines = [f"verdict: {diagnosis['verdict']}", f"gap {gap['before']:.4g} {gap['unit']} before, floor {gap['floor']:.4g}"]
+    if diagnosis["causes"]:
+        low, high = (100 * float(v) for v in gap["closed_interval"])
+        lines[1] += f", {gap['after']:.4g} after: {100 * gap['closed']:.0f} % of the excess closed on held-out data ({low:.0f} .. {high:.0f})"
+    for title, rows in (("cause", diagnosis["causes"]), ("rival", diagnosis["rivals"][:4])):
+        for row in rows:
+            told = ", ".join(
+                f"{n} {p['value']:.4g} {p['unit']} ({p['low']:.4g} .. {p['high']:.4g})".replace("  ", " ") for n, p in row["parameters"].items()
+            )
+            lines.append(f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}, closes {100 * row['closed']:.0f} %; {told}")
+    places = [f"{w['location']} {100 * w['share']:.0f} %" for w in diagnosis["where"] if w["regime"] == "all"][:5]
+    if places:
+        lines.append(f"  where: {', '.join(places)}")
+    if diagnosis["separating_experiment"]:
+        told = "; ".join(f"{key.replace('_', ' ')}: {value}" for key, value in diagnosis["separating_experiment"].items())
+        lines.append(f"  to tell them apart: {told}")
     return "\n".join(lines)
