@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 
+LARGEST_LOSS = 0.95
+"""Share of a link's own mass that may be missing at most."""
+
+
 class InertialEffect(Effect):
     """Adds inertial parameters to a link, by its own name or that of the joint that carries it.
 
@@ -96,6 +100,12 @@ class AddedInertia(Alteration):
         mujoco.mju_mat2Quat(quaternion, vectors.ravel())
         model.body_mass[index], model.body_ipos[index], model.body_inertia[index], model.body_iquat[index] = mass, com, values, quaternion
         model.body_simple[index] = 0
+
+
+def least_mass(subject: Subject, link: str) -> float:
+    """Lowest that a link's mass may be changed by [kg]: what is left must be something."""
+    tree = subject.tree
+    return -LARGEST_LOSS * float(tree.link_inertial[tree.link(link), 0])
 
 
 def carried_mass(subject: Subject, link: str) -> float:

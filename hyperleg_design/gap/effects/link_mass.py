@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Parameter
-from hyperleg_design.gap.effects.inertial import InertialEffect
+from hyperleg_design.gap.effects.inertial import InertialEffect, least_mass
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
@@ -38,3 +38,9 @@ class LinkMass(InertialEffect):
         """A share of the link's own mass."""
         tree = subject.tree
         return np.array([max(SHARE * tree.link_inertial[tree.link(location), 0], 1e-3)])
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """Some of the link is left."""
+        found = super().bounds(location, subject)
+        found[0, 0] = max(found[0, 0], least_mass(subject, location))
+        return found

@@ -6,12 +6,16 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Parameter
-from hyperleg_design.gap.effects.inertial import InertialEffect, carried_mass
+from hyperleg_design.gap.effects.inertial import InertialEffect, carried_mass, least_mass
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
 
+RIDGE = 1e-3
+"""Damping of the linear fit that finds a start, over the regressor's own size."""
 SHARE = 0.2
 """Usual payload over the mass that moves with the link (assumed: tools and batteries; a UR10e carries 2.8 kg on 33 kg of arm)."""
 
@@ -19,7 +23,8 @@ SHARE = 0.2
 class Payload(InertialEffect):
     """A point mass fixed to a link, over what the model or the log's metadata already put there.
 
-    The log's arm feels it by its mass and by its first moment mass times com, so com means nothing where mass is 0.
+    A motion feels its mass and its first moment, mass times com, so com means nothing where mass is 0; one joint alone cannot
+    tell the two apart.
     """
 
     identifier: ClassVar[str] = "payload"
@@ -50,3 +55,25 @@ class Payload(InertialEffect):
         if own[0] > 0:
             found[1:] = np.clip(1.5 * own[1:4] / own[0], -1.0, 1.0)
         return found
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """Some of the link is left."""
+        found = super().bounds(location, subject)
+        found[0, 0] = max(found[0, 0], least_mass(subject, location))
+        return found
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """The mass and first moment that a linear fit to the log finds, and the usual mass where `example` has it."""
+        low, high = self.bounds(location, signals.subject)
+        shown = self.example(location, signals.subject)
+        tried = [shown, shown * np.array([-1.0, 1.0, 1.0, 1.0])]
+        residual = signals.residual["motion"]
+        known = np.isfinite(residual) & signals.valid[:, None]
+        columns, values = rigid.link_regressor(signals, location)[..., :4][known], residual[known]
+        square = columns.T @ columns
+        if len(values) and square[0, 0] > 0:
+            fitted = np.linalg.solve(square + RIDGE * np.trace(square) / 4 * np.eye(4), columns.T @ values)
+            if abs(fitted[0]) > 1e-3 * shown[0]:
+                tried.insert(0, np.array([fitted[0], *(fitted[1:] / fitted[0])]))
+        found = np.clip(tried, low, high)
+        return np.asarray(found[found[:, 0] != 0])

@@ -121,3 +121,21 @@ def test_a_link_moved_keeps_its_mass_and_shape(arm):
     assert changed.body_mass[body] == pytest.approx(model.body_mass[body])
     np.testing.assert_allclose(changed.body_ipos[body] - model.body_ipos[body], [0.01, 0.0, -0.02], atol=1e-12)
     np.testing.assert_allclose(np.sort(changed.body_inertia[body]), np.sort(model.body_inertia[body]), rtol=1e-9)
+
+
+def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):
+    import dataclasses
+
+    values = np.array([2.0, 0.05, -0.02, 0.15])
+    one = effect("payload")
+    residual = {**arm.residual, "motion": arm.residual["motion"] + one.trace(arm, "wrist_1_link", values[None])["motion"][0]}
+    loaded = dataclasses.replace(arm, residual=residual)
+    start = one.starts(loaded, "wrist_1_link")[0]
+    assert start[0] == pytest.approx(2.0, rel=0.15)
+    np.testing.assert_allclose(start[1:], values[1:], atol=0.05)
+
+
+def test_bounds_leave_something_of_a_link(arm):
+    assert effect("link_mass").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.95 * 2.3)
+    assert effect("payload").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.95 * 2.3)
+    assert effect("payload").bounds("flange", arm.subject)[0, 0] == 0.0
