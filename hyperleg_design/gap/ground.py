@@ -6,12 +6,13 @@ Each foot is judged by its whole force F, world frame, and by its pads:
     sticking                   any tangential force within the cone mu F_z: the logged one, cut to the cone
     pressing                   F_z = sum over the pads below the floor of k(d) d + c(d) d', d the depth
 
-v_t is the velocity of the foot's loaded point. k and c are MuJoCo's of the foot's shapes: with i(d) the impedance of `solimp` and
-R = (1 - i) / i times the body's inverse weight, F = (k' d + b' d') / R, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of `solref`
-(T, r), or the two given as they are where negative. The floor lies where the nominal ground bears the logged mean force, since no
-log knows a floor to a tenth of a millimetre. A base whose height nobody measured leaves the vertical rows unknown, one whose
-velocity nobody measured knows no sliding. MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no
-log tells a foot's acceleration so well. So vertical rows tell a ground in landings; while standing they are mostly error.
+v_t is the velocity of the foot's loaded point. k and c are MuJoCo's of the foot's shapes: with i(d) the impedance of
+`solimp` and R = (1 - i) / i times the body's inverse weight, F = (i k' d + b' d') / R, k' = 1 / (i_max T r)^2 and b' = 2 /
+(i_max T) of `solref` (T, r), or the two given as they are where negative; a pyramid of friction makes it 2 / (mu^2 (1 +
+mu^2)) as stiff. The floor lies where the nominal ground bears the logged mean force, since no log knows a floor to a tenth
+of a millimetre. A base whose height nobody measured leaves the vertical rows unknown, one whose velocity nobody measured
+knows no sliding. MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no log tells a
+foot's acceleration so well. So vertical rows tell a ground in landings; while standing they are mostly error.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ class Law:
         rising = x**power / middle ** (power - 1)
         falling = 1 - (1 - x) ** power / (1 - middle) ** (power - 1)
         impedance = least + (most - least) * np.where(x < middle, rising, falling)
-        push = (spring * self.spring * depth + damper * self.damper * sink) * impedance / ((1 - impedance) * self.weight)
+        push = (spring * self.spring * impedance * depth + damper * self.damper * sink) * impedance / ((1 - impedance) * self.weight)
         return np.asarray(np.where(depth > 0, np.maximum(push, 0.0), 0.0 * depth).sum(-1))
 
 
@@ -216,17 +217,21 @@ def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndar
 
 def nominal_ground(subject: Subject, links: tuple[str, ...]) -> tuple[float, Law]:
     """Friction coefficient of the model's ground under the first, and how it bears one pad of each of these links."""
+    import mujoco
+
     model = subject.model
     rows: list[tuple[float, float, float, np.ndarray]] = []
     coefficient = 0.0
     for link in links:
         geom = foot_geoms(model, (link,))[0]
-        friction, solref, _ = pair_settings(model, geom)
+        friction, solref, dimensions = pair_settings(model, geom)
         coefficient = coefficient or float(friction[0])
         impedance = model.geom_solimp[geom].copy()
         impedance[:2] = np.clip(impedance[:2], 1e-4, 0.9999)
         impedance[2] = max(impedance[2], 1e-9)
         most, weight = impedance[1], max(float(model.body_invweight0[model.geom_bodyid[geom], 0]), 1e-9)
+        if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and dimensions > 1:
+            weight *= float(friction[0]) ** 2 * (1 + float(friction[0]) ** 2) / (2 * model.opt.impratio)
         if solref[0] > 0:
             rows.append((1 / (most * solref[0] * solref[1]) ** 2, 2 / (most * solref[0]), weight, impedance))
         else:
