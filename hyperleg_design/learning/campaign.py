@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -15,7 +16,8 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning import launch
 from hyperleg_design.learning.preset import load_preset
-from hyperleg_design.learning.status import CHECKPOINT, POLICY, read_status
+from hyperleg_design.learning.resolved import preset_mapping, task_mapping
+from hyperleg_design.learning.status import CHECKPOINT, POLICY, RUN, read_status
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.parameters import Rule, checked, unknown
@@ -24,7 +26,11 @@ from hyperleg_design.writing import MARKER, check_output_folder, write_text
 
 LOG = "training.log"
 """What a training's process printed, in its folder."""
-STATES = ("done", "running", "stopped", "missing")
+STATES = ("done", "shipped", "running", "stopped", "missing")
+FINISHED = ("done", "shipped")
+"""States in which nothing is left to train; a shipped policy stands in `sim/policies/` with the training's name."""
+POLICIES = "policies"
+"""Folder of the shipped policies in `sim/`."""
 POLL = 2.0
 """Seconds between looks at the processes."""
 
@@ -129,8 +135,8 @@ def status_table(statuses: list[RunStatus]) -> str:
         left = f"{found['left'] / 60:.0f} min" if found.get("left") else ""
         numbers = [_shown(found.get(key), width) for key, width in (("speed", 6), ("falls", 9), ("cost_of_transport", 5), ("assist", 6))]
         lines.append(f"{status.run.name:<34} {status.state:<8} {share:>12} {' '.join(numbers)} {left:>8}")
-    done = sum(s.state == "done" for s in statuses)
-    steps = sum(s.total if s.state == "done" else s.steps for s in statuses)
+    done = sum(s.state in FINISHED for s in statuses)
+    steps = sum(s.total if s.state in FINISHED else s.steps for s in statuses)
     total = sum(s.total for s in statuses)
     lines.append(f"{done} of {len(statuses)} done; {steps / 1e6:.1f} of {total / 1e6:.1f} M policy steps")
     return "\n".join(lines)
@@ -197,16 +203,41 @@ def run_campaign(
         show(status_table(statuses))
         for name in failed:
             show(f"{name} failed; see {folder / name / LOG}")
-    return all(status.state == "done" for status in statuses)
+    return all(status.state in FINISHED for status in statuses)
 
 
 def _start_file(run: Run, folder: Path) -> Path:
-    return folder / f"{run.start}-{run.design}-{run.seed}" / POLICY
+    """Policy that a training starts from: of the same campaign, else the shipped one."""
+    name = f"{run.start}-{run.design}-{run.seed}"
+    own = folder / name / POLICY
+    return own if own.exists() else shipped_folder() / name / POLICY
 
 
 def _can_start(run: Run, folder: Path) -> bool:
     """Whether the policy that it starts from, if any, is there."""
     return not run.start or _start_file(run, folder).exists()
+
+
+def shipped_folder() -> Path:
+    """Where finished trainings are shipped."""
+    return resources.content_folder("sim") / POLICIES
+
+
+def _is_shipped(run: Run) -> bool:
+    """Whether this very training is shipped: same task, design, seed and preset as they stand today."""
+    place = shipped_folder() / run.name
+    try:
+        found = json.loads((place / RUN).read_text())
+    except (OSError, ValueError):
+        return False
+    task, design = load_task(run.task), load_design(run.design)
+    today = {
+        "task": task_mapping(task),
+        "design": design.to_mapping(),
+        "seed": run.seed,
+        "preset": preset_mapping(load_preset(run.preset), task.name),
+    }
+    return (place / POLICY).exists() and all(found.get(key) == json.loads(json.dumps(value)) for key, value in today.items())
 
 
 def _stop(processes: list[subprocess.Popen[bytes]]) -> None:
@@ -222,6 +253,8 @@ def _status(run: Run, folder: Path) -> RunStatus:
     preset, task = load_preset(run.preset), load_task(run.task)
     total = float(preset.total_iterations(task.name) * preset.steps_per_iteration)
     found = read_status(folder)
+    if found is None and _is_shipped(run):
+        return RunStatus(run, "shipped", total, total)
     if found is None:
         return RunStatus(run, "stopped" if (folder / CHECKPOINT).exists() else "missing", 0.0, total)
     if found.get("done") and (folder / POLICY).exists():

@@ -18,6 +18,11 @@ from .conftest import tiny_mapping
 DATA = {"name": "mine", "preset": "laptop", "groups": [{"name": "walk", "task": "walk", "designs": ["toe", "toe_removed"], "seeds": 2}]}
 
 
+@pytest.fixture(autouse=True)
+def nothing_shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "shipped_folder", lambda: tmp_path / "policies")
+
+
 def test_the_shipped_campaign_holds_what_the_study_compares() -> None:
     runs = load_campaign().runs
     designs = ("toe", "toe_locked", "toe_removed_matched", "toe_removed")
@@ -118,3 +123,25 @@ def test_an_interrupt_stops_the_trainings(write, tmp_path: Path, monkeypatch: py
     monkeypatch.setattr(module.time, "sleep", lambda seconds: (_ for _ in ()).throw(KeyboardInterrupt))
     assert not run_campaign(load_campaign(write("c.yaml", yaml.safe_dump(DATA))), tmp_path / "out")
     assert [p.poll() for p in started] == [-signal.SIGTERM] * 2
+
+
+def test_a_shipped_policy_counts_as_long_as_nothing_it_rests_on_has_changed(tmp_path: Path, write) -> None:
+    from hyperleg_design.learning.preset import load_preset
+    from hyperleg_design.learning.resolved import preset_mapping, task_mapping
+    from hyperleg_design.robot.design import load_design
+    from hyperleg_design.simulation.tasks import load_task
+
+    campaign = load_campaign(write("mine.yaml", yaml.safe_dump(DATA)))
+    assert {s.state for s in campaign_status(campaign, tmp_path / "out")} == {"missing"}
+    place = tmp_path / "policies" / "walk-toe-1"
+    place.mkdir(parents=True)
+    (place / "policy.onnx").touch()
+    told = {"task": task_mapping(load_task("walk")), "design": load_design("toe").to_mapping(), "seed": 1}
+    told["preset"] = preset_mapping(load_preset("laptop"), "walk")
+    (place / "run.json").write_text(json.dumps(told))
+    states = {s.run.name: s.state for s in campaign_status(campaign, tmp_path / "out")}
+    assert states.pop("walk-toe-1") == "shipped"
+    assert set(states.values()) == {"missing"}
+    told["task"]["rewards"]["flight"]["weight"] = -1.0
+    (place / "run.json").write_text(json.dumps(told))
+    assert {s.state for s in campaign_status(campaign, tmp_path / "out")} == {"missing"}

@@ -142,3 +142,24 @@ def test_a_truncated_checkpoint_is_named_and_a_full_disk_costs_nothing(tiny: Pre
     (folder / CHECKPOINT).write_bytes(content)
     assert train("walk", "toe", 0, tiny, folder)
     assert json.loads((folder / RUN).read_text())["seed"] == 0
+
+
+def test_an_overlay_is_trained_with_written_down_and_compared(tiny: Preset, tmp_path: Path) -> None:
+    from hyperleg_design.simulation.two_mass import Belt
+
+    loose, overlay = (Belt("left_hip_pitch", compliance=5.0, play=0.5),), {"schema": 1, "effects": []}
+    assert train("walk", "toe", 7, tiny, tmp_path / "altered", alterations=loose, overlay=overlay, iterations=2) is False
+    assert not train("walk", "toe", 7, tiny, tmp_path / "plain", iterations=2)
+    altered, plain = networks(tmp_path / "altered"), networks(tmp_path / "plain")
+    assert any(not np.array_equal(altered[name], plain[name]) for name in plain)
+    assert json.loads((tmp_path / "altered" / RUN).read_text())["overlay"] == overlay
+    assert json.loads((tmp_path / "plain" / RUN).read_text())["overlay"] is None
+    with pytest.raises(InputError, match="overlay"):
+        train("walk", "toe", 7, tiny, tmp_path / "altered", iterations=1)
+    assert train("walk", "toe", 7, tiny, tmp_path / "altered", alterations=loose, overlay=overlay)
+    straight = tmp_path / "straight"
+    assert train("walk", "toe", 7, tiny, straight, alterations=loose, overlay=overlay)
+    for name, value in networks(straight).items():
+        np.testing.assert_array_equal(networks(tmp_path / "altered")[name], value, err_msg=name)
+    session = onnxruntime.InferenceSession((straight / POLICY).read_bytes(), providers=["CPUExecutionProvider"])
+    assert json.loads(session.get_modelmeta().custom_metadata_map["overlay"]) == overlay
