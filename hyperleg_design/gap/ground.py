@@ -12,7 +12,7 @@ v_t is the velocity of the foot's loaded point. k and c are MuJoCo's of the foot
 mu^2)) as stiff. The floor lies where the nominal ground bears the logged mean force, since no log knows a floor to a tenth
 of a millimetre. A base whose height nobody measured leaves the vertical rows unknown, one whose velocity nobody measured
 knows no sliding. MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no log tells a
-foot's acceleration so well. So vertical rows tell a ground in landings; while standing they are mostly error.
+foot's acceleration so well; vertical rows of a standing foot are a few per cent of its load off by it.
 """
 
 from __future__ import annotations

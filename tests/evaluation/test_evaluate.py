@@ -85,3 +85,18 @@ def test_a_broken_file_stops_before_any_work(make_onnx, write):
     assert seen == []
     with pytest.raises(InputError, match="workers"):
         evaluate_many([make_onnx()], SHORT, workers=0)
+
+
+def test_alterations_change_what_is_measured_and_none_changes_no_bit(make_onnx):
+    from hyperleg_design.simulation.two_mass import Belt
+
+    files = [make_onnx("a.onnx", bias=0.1), make_onnx("b.onnx", bias=0.2)]
+    brief = SHORT.changed(time_limit=1.0, trials=2)
+    plain = evaluate_many(files, brief, workers=1)
+    same = evaluate_many(files, brief, workers=1, alterations=lambda design: ())
+    loose = (Belt("left_hip_pitch", compliance=5.0, play=0.5),)
+    altered, beside = (evaluate_many(files, brief, workers=w, alterations=loose) for w in (1, 2))
+    for one, other in ((plain, same), (altered, beside)):
+        for a, b in zip(one, other, strict=True):
+            assert all(np.array_equal(x, y) for x, y in zip(a.paths, b.paths, strict=True))
+    assert not any(np.array_equal(a.paths[0], b.paths[0]) for a, b in zip(plain, altered, strict=True))
