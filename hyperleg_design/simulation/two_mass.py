@@ -39,6 +39,8 @@ class Belt(Alteration):
     """Whole width of the dead zone [rad], `()` or `(n,)`."""
     damping: Any = None
     """Of the belt while it is taut [Nms/rad], `()` or `(n,)`; by default that of `DAMPING_RATIO`."""
+    side: Any = 0.0
+    """Where the encoder that tells of the joints sits, `()` or `(n,)`: 0 at the joints, 1 at the rotor, which it takes for them."""
 
     def machine(self, machine: Machine) -> Machine:
         """With this rotor free where the belt is not rigid."""
@@ -52,7 +54,7 @@ class Belt(Alteration):
 
 
 class _Rotor(Live):
-    kept: ClassVar[tuple[str, ...]] = ("angle", "speed", "begun", "way", "torque", "drag")
+    kept: ClassVar[tuple[str, ...]] = ("angle", "speed", "begun", "way", "torque", "drag", "stretch", "rate")
 
     alteration: Belt
 
@@ -77,6 +79,8 @@ class _Rotor(Live):
         rate = float(np.sqrt(self.stiffness / self.inertia)[self.loose].max(initial=1.0))
         self.inner = max(4, int(np.ceil(self.step * rate / FINENESS)))
         self.angle, self.speed, self.begun, self.way, self.torque, self.drag = (np.zeros(self.count) for _ in range(6))
+        self.stretch, self.rate = np.zeros(self.count), np.zeros(self.count)
+        self.side = full(belt.side)
 
     def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
         for name in self.kept:
@@ -90,8 +94,17 @@ class _Rotor(Live):
         self.speed = np.where(old, speed, tick.motor_velocity[:, place])
         self.way, self.begun = way, np.ones(self.count)
         # of the rotor at the time of the joints' position
-        tick.motor_position[:, place] = np.where(self.loose, self.angle + self.step / 2 * self.speed, tick.motor_position[:, place])
-        tick.motor_velocity[:, place] = np.where(self.loose, self.speed, tick.motor_velocity[:, place])
+        self.stretch = np.where(self.loose, self.angle + self.step / 2 * self.speed - tick.motor_position[:, place], 0.0)
+        self.rate = np.where(self.loose, self.speed - tick.motor_velocity[:, place], 0.0)
+        tick.motor_position[:, place] += self.stretch
+        tick.motor_velocity[:, place] += self.rate
+
+    def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if self.side.any():
+            share = np.asarray(self.machine.motor_from_joint)[..., self.place, :]
+            position += (self.side * self.stretch)[:, None] * share
+            velocity += (self.side * self.rate)[:, None] * share
+        return position, velocity
 
     def transmitted(self, torque: np.ndarray, damping: np.ndarray | None, tick: Tick) -> tuple[np.ndarray, np.ndarray | None]:
         place = self.place
@@ -144,5 +157,6 @@ def joined(alterations: Sequence[Alteration]) -> list[Alteration]:
         assert isinstance(two, Belt)
         dampings = [np.asarray(b.damping, float) for b in (one, two) if b.damping is not None]
         damping = None if not dampings else dampings[0] if len(dampings) == 1 else dampings[0] * dampings[1] / (dampings[0] + dampings[1])
-        found[twin] = Belt(one.motor, np.asarray(one.compliance) + two.compliance, np.asarray(one.play) + two.play, damping)
+        side = np.maximum(one.side, two.side)
+        found[twin] = Belt(one.motor, np.asarray(one.compliance) + two.compliance, np.asarray(one.play) + two.play, damping, side)
     return found

@@ -47,7 +47,8 @@ class Backlash(Effect):
         motor = subject.motors.index(location)
         bounce = np.log(belt.RESTITUTION)
         damping = 2 * abs(bounce) / np.hypot(np.pi, bounce) * belt.rotor(subject, motor) * 2 * np.pi * STIFFEST
-        return Belt(location, play=np.asarray(values, float)[..., 0] * _ratio(subject, motor), damping=float(damping))
+        values = np.asarray(values, float)
+        return Belt(location, play=values[..., 0] * _ratio(subject, motor), damping=float(damping), side=values[..., 1])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """A small and a large angle, with encoders on either side."""

@@ -55,7 +55,7 @@ class TransmissionElasticity(Effect):
         compliance, ratio = values[..., 0], values[..., 1]
         inertia = belt.rotor(subject, subject.motors.index(location))
         damping = 2 * ratio * np.sqrt(inertia / np.where(compliance > 0, compliance, np.inf))
-        return Belt(location, compliance=compliance, damping=damping)
+        return Belt(location, compliance=compliance, damping=damping, side=values[..., 2])
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """Compliance at which the rotor rings at the usual frequency."""

@@ -18,6 +18,7 @@ from hyperleg_design.gap.effects.placing import (
     joint_strength,
     limited,
     machine,
+    motor_strength,
     motor_velocity,
 )
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Machine, Tick
@@ -38,17 +39,22 @@ _FULL = 95.0
 class VoltageSag(Effect):
     """Torque falls with the battery's voltage: its limits, and of drives without current control the torque itself.
 
-    What is missing of the voltage, 1 - V / V_nominal, is logged; else 20 % of it at the reference power, half of that at rest.
-    `limits` scales how much of it the DC-motor line loses (torque limit, where no line is known), `torque` how much of it any
-    torque loses. A nominal voltage that nobody gives is the largest that the log shows. Trace, by the rule of `placing`.
+    What is missing of the voltage, 1 - V / V_nominal, is logged; else 20 % of it at the reference power, half of that at rest. A
+    nominal voltage that nobody gives is the largest that the log shows. `limits` scales how much of it a motor's DC-motor line
+    loses. Of motors whose line nobody knows, it says how near that line is: stall torque at the nominal voltage is the torque
+    that the motor is made for over `limits`, no-load speed is `speed` at the joint that it moves most, and both fall with the
+    voltage. `torque` is how much of what is missing any torque loses. Trace, by the rule of `placing`.
     """
 
     identifier: ClassVar[str] = "voltage_sag"
     kind: ClassVar[str] = "robot"
     summary: ClassVar[str] = "the battery's voltage drops, and with it torque limits or torques"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("limits", "", 0.0, 0.0, 4.0, 1.0, "1: as a DC motor's; 5.8-9.2 V at 7.4 V nominal (XL330 log)"),
+        Parameter("limits", "", 0.0, 0.0, 20.0, 1.0, "1: as a DC motor's; 5.8-9.2 V at 7.4 V nominal (XL330 log)"),
         Parameter("torque", "", 0.0, -0.5, 4.0, 1.0, "1: as of servos driven by duty cycle, without current control"),
+        Parameter(
+            "speed", "rad/s", 10.0, 0.5, 60.0, 5.0, "no-load speeds of servos 6-10 rad/s, of legs' joints 10-25 rad/s (data sheets)", shape=True
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -62,27 +68,36 @@ class VoltageSag(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
         subject = signals.subject
-        limits, torque = np.atleast_2d(np.asarray(values, float)).T[..., None]
+        limits, torque, speed = np.atleast_2d(np.asarray(values, float)).T[..., None]
         lost = missing(signals)
         changes = {}
         for motor in range(len(subject.motors)):
             if not is_commanded(signals, motor):
                 continue
-            asked, voltage = commanded(signals, motor), np.maximum(1 - limits * lost, 0.0)
-            line = np.isfinite(subject.stall_torque[motor]) and np.isfinite(subject.no_load_speed[motor])
-            peak = np.inf if line or not np.isfinite(subject.torque_limit[motor]) else voltage * subject.torque_limit[motor]
-            given = limited(signals, motor, asked * (1 - torque * lost), peak=peak, voltage=voltage if line else 1.0)
+            asked, wanted = commanded(signals, motor), commanded(signals, motor) * (1 - torque * lost)
+            if np.isfinite(subject.stall_torque[motor]) and np.isfinite(subject.no_load_speed[motor]):
+                given = limited(signals, motor, wanted, voltage=np.maximum(1 - limits * lost, 0.0))
+            else:
+                given = limited(signals, motor, wanted)
+                near = np.maximum(limits, 1e-12) / motor_strength(subject, motor)
+                drop = motor_velocity(signals, motor) / (speed * ratio(subject, motor))
+                full = 1 - lost
+                given = np.maximum(np.minimum(given, (full - drop) / near), -(full + drop) / near)
             changes[motor] = given - limited(signals, motor, asked)
         return before_measurement(signals, changes)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
         values = np.asarray(values, float)
-        return WeakBattery(values[..., 0], values[..., 1], reference_power(subject))
+        strength = np.array([motor_strength(subject, motor) for motor in range(len(subject.motors))])
+        ratios = np.array([ratio(subject, motor) for motor in range(len(subject.motors))])
+        return WeakBattery(values[..., 0], values[..., 1], values[..., 2], strength, ratios, reference_power(subject))
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Limits alone, torques alone."""
-        return np.array([[1.0, 0.0], [3.0, 0.0], [0.0, 1.0]])
+        if np.isfinite(signals.subject.stall_torque).all():
+            return np.array([[1.0, 0.0, 10.0], [3.0, 0.0, 10.0], [0.0, 1.0, 10.0]])
+        return np.array([[1.0, 0.0, 5.0], [2.0, 0.0, 10.0], [4.0, 0.0, 20.0], [0.0, 1.0, 10.0]])
 
 
 def missing(signals: Signals) -> np.ndarray:
@@ -101,6 +116,11 @@ def modelled(torque: np.ndarray, speed: np.ndarray, drives: Machine, reference: 
     return np.asarray(SAG * (AT_REST + (1 - AT_REST) * np.minimum(power / reference, 1.0)))
 
 
+def ratio(subject: Subject, motor: int) -> float:
+    """Speed of a motor over that of the joint that it moves most [-]."""
+    return float(np.abs(subject.joint_from_motor[:, motor]).max())
+
+
 def reference_power(subject: Subject) -> float:
     """Power at which `SAG` is missing [W]."""
     return float(REFERENCE_SPEED * joint_strength(subject).sum())
@@ -112,7 +132,11 @@ class WeakBattery(Alteration):
 
     limits: Any
     torque: Any
-    """`()` or `(n,)` each [-]."""
+    speed: Any
+    """`()` or `(n,)` each [-, -, rad/s]."""
+    strength: np.ndarray
+    ratio: np.ndarray
+    """Of each motor: torque that it is made for [Nm], and speed over that of the joint that it moves most `(m,)`."""
     reference_power: float
     """[W]"""
 
@@ -139,10 +163,16 @@ class _Weak(Live):
         return np.asarray(command * (1 - self.alteration.torque * self.lost)[:, None])
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:
-        voltage = np.maximum(1 - self.alteration.limits * self.lost, 1e-6)[:, None]
-        of_line, of_rest = np.where(self.line, voltage, 1.0), np.where(self.line, 1.0, voltage)
+        one = self.alteration
+        share, speed = (np.broadcast_to(np.asarray(x, float), (self.count,))[:, None] for x in (one.limits, one.speed))
+        lost = self.lost[:, None]
+        voltage = np.maximum(1 - share * lost, 1e-6)
+        left = np.maximum(1 - lost, 1e-6)
+        stall = one.strength / np.maximum(share, 1e-12) * left
         return dataclasses.replace(
-            limits, stall_torque=limits.stall_torque * of_line, no_load_speed=limits.no_load_speed * of_line, peak_torque=limits.peak_torque * of_rest
+            limits,
+            stall_torque=np.where(self.line, limits.stall_torque * voltage, np.where(share > 0, stall, limits.stall_torque)),
+            no_load_speed=np.where(self.line, limits.no_load_speed * voltage, np.where(share > 0, speed * one.ratio * left, limits.no_load_speed)),
         )
 
 

@@ -40,3 +40,10 @@ def test_people_read_stiffness_and_resonance(pendulum):
     found = ELASTICITY.derived("swing", usual, subject)
     assert np.isclose(found["stiffness"][0] * usual[0], 1)
     assert np.isclose(found["resonance"][0], 12.0)
+
+
+def test_simulation_with_encoders_at_the_rotor_leaves_the_trace_of_these(simulated):
+    signals = simulated("transmission_elasticity", [0.01, 0.05, 1.0])
+    right, wrong = (ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, side]])) for side in (1.0, 0.0))
+    assert misfit(signals, right) < 0.2
+    assert misfit(signals, wrong) > 1

@@ -9,15 +9,15 @@ SAG = effect("voltage_sag")
 def test_trace_is_what_a_falling_voltage_leaves(pendulum):
     for sees, balance in ((("motor_torque", "voltage"), "drive"), (("voltage",), "motion")):
         signals = pendulum(Wrong(follow=1.0), sees=sees)
-        trace = SAG.trace(signals, "battery", np.array([[0.0, 1.0]]))
+        trace = SAG.trace(signals, "battery", np.array([[0.0, 1.0, 10.0]]))
         assert set(trace) == {balance}
         # what the battery lost before the recording nobody can tell
         assert misfit(signals, trace, balance) < 0.1
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):
-    signals = simulated("voltage_sag", [0.0, 1.0], battery=voltage)
-    assert misfit(signals, SAG.trace(signals, "battery", np.array([[0.0, 1.0]])), "drive") < 0.25
+    signals = simulated("voltage_sag", [0.0, 1.0, 10.0], battery=voltage)
+    assert misfit(signals, SAG.trace(signals, "battery", np.array([[0.0, 1.0, 10.0]])), "drive") < 0.25
 
 
 def test_limits_follow_the_voltage_of_a_design_whose_line_is_known():
@@ -36,7 +36,7 @@ def test_limits_follow_the_voltage_of_a_design_whose_line_is_known():
     signals = SimpleNamespace(
         subject=subject, velocity=velocity, command=asked, measured=None, believed=asked, voltage=volts, residual={"motion": velocity}
     )
-    found = SAG.trace(signals, "battery", np.array([[1.0, 0.0]]))["motion"][0]
+    found = SAG.trace(signals, "battery", np.array([[1.0, 0.0, 10.0]]))["motion"][0]
     stall = subject.stall_torque[0]
     before, after = 5.0, stall * 0.05
     assert subject.torque_limit[0] > before > after
@@ -44,6 +44,14 @@ def test_limits_follow_the_voltage_of_a_design_whose_line_is_known():
     np.testing.assert_allclose(found[40:, 0], 25 * (before - after), rtol=1e-6)
     assert np.all(found[:40] == 0)
     assert np.all(found[:, 1:] == 0)
+
+
+def test_an_unknown_line_falls_with_voltage_and_speed(pendulum, simulated):
+    signals = simulated("voltage_sag", [4.0, 0.0, 4.0], battery=voltage)
+    found = SAG.trace(signals, "battery", np.array([[4.0, 0.0, 4.0]]))
+    assert misfit(signals, found, "drive") < 0.1
+    still = SAG.trace(signals, "battery", np.array([[4.0, 0.0, 60.0]]))
+    assert misfit(signals, still, "drive") > 2 * misfit(signals, found, "drive")
 
 
 def test_the_battery_is_also_the_robot(pendulum):
