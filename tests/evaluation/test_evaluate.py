@@ -91,7 +91,7 @@ def test_alterations_change_what_is_measured_and_none_changes_no_bit(make_onnx):
     from hyperleg_design.simulation.two_mass import Belt
 
     files = [make_onnx("a.onnx", bias=0.1), make_onnx("b.onnx", bias=0.2)]
-    brief = SHORT.changed(time_limit=1.0, trials=2)
+    brief = SHORT.changed(trials=2)
     plain = evaluate_many(files, brief, workers=1)
     same = evaluate_many(files, brief, workers=1, alterations=lambda design: ())
     loose = (Belt("left_hip_pitch", compliance=5.0, play=0.5),)
