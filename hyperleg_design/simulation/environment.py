@@ -10,6 +10,7 @@ Python, for its actuators, rewards and observations, others are in MuJoCo. The s
 
 from __future__ import annotations
 
+import dataclasses
 import os
 import threading
 from collections.abc import Iterable
@@ -24,7 +25,7 @@ from hyperleg_design.simulation.alteration import Alterations, made
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.chunk import Chunk, Divergence, Step
 from hyperleg_design.simulation.commands import WaypointCommands
-from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.layout import GRAVITY, layout_of
 from hyperleg_design.simulation.model import simulation_model
 from hyperleg_design.simulation.settings import Limits
 from hyperleg_design.simulation.tasks import Reward, Task, check_reward
@@ -82,6 +83,8 @@ class Environment:
         each = [simulation_model(design.take(i), task.physics, self.alterations) for i in range(simulations)] if batched else None
         self.model: mujoco.MjModel = each[0] if each else simulation_model(design, task.physics, self.alterations)
         """MuJoCo model that is simulated; the first one's of a batch of designs."""
+        if any(alteration.edits for alteration in self.alterations):
+            self.layout = dataclasses.replace(self.layout, weight=float(self.model.body_mass.sum()) * GRAVITY)
         for model in each or [self.model]:
             check_standing(model, self.layout, task.limits, design.name)
         # A trajectory depends on the chunks through their random streams, so they follow from the number of simulations alone.
@@ -175,8 +178,6 @@ class Environment:
         Raises:
             InputError: no such setting, or a value that makes no sense.
         """
-        import dataclasses
-
         current = self.chunks[0].commander.settings
         known = [f.name for f in dataclasses.fields(current)]
         for name, value in values.items():

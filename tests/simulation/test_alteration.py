@@ -11,6 +11,7 @@ import pytest
 
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, damps_motors, edited, made, overrides, resistance
 from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.machine import machine_of
 from hyperleg_design.simulation.model import simulation_model
 from hyperleg_design.simulation.settings import Physics
@@ -114,6 +115,7 @@ def test_alterations_may_depend_on_the_design(design):
     environment = Environment(design, load_task("walk"), simulations=2, threads=1, alterations=of)
     assert seen == [design]
     assert environment.model.body_mass.sum() == pytest.approx(simulation_model(design).body_mass.sum() + 1.0)
+    assert environment.layout.weight == pytest.approx(layout_of(design).weight + 9.81)
     assert made(None, design) == ()
 
 
