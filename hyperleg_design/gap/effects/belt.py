@@ -76,19 +76,36 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray) -> n
         play: whole width `(k,)` [rad].
         side: on which the positions were logged `(k,)`.
     """
-    push = np.where(side[:, None] < 0.5, _rotor_alone(signals, motor), _joint_alone(signals, motor))
-    step, half = signals.step, play / 2
-    kick = np.ascontiguousarray(np.nan_to_num(push).T) * step
-    out = np.empty_like(kick)
-    place, speed = half * np.sign(kick[0]), np.zeros_like(half)
-    for tick, change in enumerate(kick):
+    found = np.zeros((len(play), len(signals.time)))
+    kicks: dict[bool, list[float]] = {}
+    for row, width in enumerate(play):
+        if width <= 0:
+            continue
+        at_rotor = bool(side[row] >= 0.5)
+        if at_rotor not in kicks:
+            push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
+            kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
+        found[row] = _bounced(kicks[at_rotor], signals.step, float(width) / 2)
+    return found
+
+
+def _bounced(kicks: list[float], step: float, half: float) -> list[float]:
+    """Places of a body between two walls, from its changes of speed; plain numbers, as arrays of a few are slower."""
+    place, speed = half if kicks[0] > 0 else -half, 0.0
+    found = []
+    for change in kicks:
         speed += change
         place += step * speed
-        speed *= np.where(np.abs(place) < half, 1.0, -RESTITUTION * (place * speed > 0))
-        np.minimum(place, half, out=place)
-        np.maximum(place, -half, out=place)
-        out[tick] = place
-    return out.T
+        if place > half:
+            place = half
+            if speed > 0:
+                speed *= -RESTITUTION
+        elif place < -half:
+            place = -half
+            if speed < 0:
+                speed *= -RESTITUTION
+        found.append(place)
+    return found
 
 
 def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import at_motor, driven_motors, motor_position, motor_strength
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
@@ -79,7 +80,7 @@ class Cogging(Effect):
         return {"amplitude": (float(np.hypot(cosine, sine)), "Nm"), "phase": (float(np.arctan2(sine, cosine) / order), "rad")}
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The orders that by themselves explain most of the residual of this log, with their amplitudes."""
+        """The orders that explain most of the residual of this log, each more than its neighbours, with their amplitudes."""
         subject = signals.subject
         motor = subject.motors.index(location)
         main = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
@@ -88,20 +89,29 @@ class Cogging(Effect):
         known = np.isfinite(residual) & signals.valid
         if known.sum() < 16:
             return super().starts(signals, location)
-        angle, wanted = motor_position(signals, motor)[known], residual[known]
-        wanted = wanted - wanted.mean()
-        found = []
-        for order in ORDERS:
-            waves = np.stack([np.cos(order * angle), np.sin(order * angle)], -1)
-            waves -= waves.mean(0)
+        angle = motor_position(signals, motor)
+        # what gravity, friction and inertia that are off would leave is taken out of residual and waves alike
+        turned, speed = signals.position[:, main], signals.velocity[:, main]
+        other = [np.ones_like(turned), turned, np.cos(turned), np.sin(turned), speed, sliding(signals)[:, main], signals.acceleration[:, main]]
+        basis = np.linalg.qr(np.stack(other, -1)[known])[0]
+
+        def alone(rows: np.ndarray) -> np.ndarray:
+            return np.asarray(rows - basis @ (basis.T @ rows))
+
+        wanted = alone(residual[known])
+        found = np.empty((len(ORDERS), 3))
+        for row, order in enumerate(ORDERS):
+            waves = alone(np.stack([np.cos(order * angle[known]), np.sin(order * angle[known])], -1))
             gram = waves.T @ waves
-            gram[np.diag_indices(2)] += 1e-9 * max(float(np.trace(gram)), 1e-12)
+            gram[np.diag_indices(2)] += 1e-4 * known.sum()
             right = waves.T @ wanted
-            fitted = np.linalg.solve(gram, right)
-            found.append((float(right @ fitted), *fitted.tolist(), float(order)))
-        found.sort(reverse=True)
+            found[row, 1:] = np.linalg.solve(gram, right)
+            found[row, 0] = right @ found[row, 1:]
+        gain = np.concatenate([[-np.inf], found[:, 0], [-np.inf]])
+        peaks = np.flatnonzero((gain[1:-1] >= gain[:-2]) & (gain[1:-1] >= gain[2:]))
+        best = peaks[np.argsort(-found[peaks, 0], kind="stable")[:TRIED]]
         low, high = self.bounds(location, subject)
-        return np.clip(np.array([row[1:] for row in found[:TRIED]]), low, high)
+        return np.clip(np.column_stack([found[best, 1:], ORDERS[best]]), low, high)
 
 
 @dataclass(frozen=True, eq=False)
