@@ -16,7 +16,7 @@ from hyperleg_design.report.envelope_figures import torque_speed_figure
 from hyperleg_design.report.evaluated import T_TEST, WALK, Evaluated
 from hyperleg_design.report.learning_figures import learning_figure
 from hyperleg_design.report.page import Cell, Details, Table
-from hyperleg_design.report.style import save
+from hyperleg_design.report.style import later, save
 from hyperleg_design.report.t_test_figures import t_test_figure
 from hyperleg_design.report.versus_figures import change_figure
 from hyperleg_design.report.walk_figures import operating_points_figure
@@ -144,17 +144,17 @@ def _motors(found: Evaluated, draw: Drawer) -> Part:
                     draw(
                         "fig_4",
                         "Fig. 4: the ankle's motors and joints in their envelopes during a T-test, active toe.",
-                        lambda p, d=toe.design, t=torque, v=speed: save(torque_speed_figure(d, t, v), p),
+                        later(torque_speed_figure, toe.design, torque, speed),
                     )
-                )  # type: ignore[misc]
+                )
             if trials:
                 content.append(
                     draw(
                         f"points_{group}",
                         f"Operating points of every motor in {word}, both legs.",
-                        lambda p, t=trials: save(operating_points_figure(t), p),
+                        later(operating_points_figure, trials),
                     )
-                )  # type: ignore[misc]
+                )
     return Part("Motors in their envelopes", content)
 
 

@@ -19,7 +19,7 @@ from hyperleg_design.report.beside_paper import beside, differences, interval, p
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.evaluated import WALK, Evaluated
 from hyperleg_design.report.page import Cell, Table
-from hyperleg_design.report.style import save
+from hyperleg_design.report.style import later, save
 from hyperleg_design.report.versus_figures import attribution_figure, change_figure
 from hyperleg_design.report.walk_figures import cycle_power_figure, impact_band_figure
 
@@ -120,8 +120,8 @@ def confound(found: Evaluated, draw: Drawer) -> Part:
             draw(
                 f"confound_{group}",
                 f"What each step takes away adds to the measures, group {group}.",
-                lambda p, s=shares: save(attribution_figure(s), p),
-            )  # type: ignore[misc]
+                later(attribution_figure, shares),
+            )
         )
     if not figures:
         ladder.append("Cannot be told yet: no group has two of the ablations.")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -53,3 +53,12 @@ def save(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
     figure.savefig(stream, format=kind, dpi=dpi, metadata=metadata)
     plt.close(figure)
     return write_bytes(path, stream.getvalue())
+
+
+def later(figure: Callable[..., Figure], *arguments: Any) -> Callable[[Path], Path]:
+    """Draws and saves a figure when it is given a path."""
+
+    def write(path: Path) -> Path:
+        return save(figure(*arguments), path)
+
+    return write

@@ -1,24 +1,128 @@
-"""Verbs of `hyperleg gap` that measure, diagnose, plan and try; no logic of their own."""
+"""Verbs of `hyperleg gap`: where hardware and simulation differ, and why; no logic of their own."""
 
 from __future__ import annotations
 
-import json as json_module
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import tyro
 
+from hyperleg_design.cli.output import emit
 from hyperleg_design.errors import InputError
 
 
-def emit(content: object) -> None:
-    """Print as JSON."""
-    print(json_module.dumps(content, indent=2, allow_nan=False))
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """Say what logs can and cannot show: rates, jitter, dropouts, units, excitation of each effect. Exit code 2 on errors."""
+
+    logs: Annotated[tuple[str, ...], tyro.conf.Positional]
+    """Files or folders: Parquet, CSV, PACE .pt, BAM JSON, SAGE folder, LeRobot dataset, MCAP or ROS 2 bag."""
+    robot: str = ""
+    """Shipped design, YAML, MJCF or URDF; compares names and ranges of joints."""
+    map: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """THEIRS=OURS, a CSV file's column and ours, such as q1=position/knee."""
+    out: Path | None = None
+    """Folder to write check.json and the logs as Parquet to."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Check them."""
+        from hyperleg_design.gap.checking import check_sources
+        from hyperleg_design.report.gap_text import checks_text
+
+        checks = check_sources(self.logs, robot=self.robot, mapping=self.map, out=self.out)
+        if self.json:
+            emit([check.mapping() for check in checks])
+        else:
+            print(checks_text(checks))
+        if not all(check.usable for check in checks):
+            raise SystemExit(2)
 
 
 @dataclass(frozen=True, kw_only=True)
-class GapMeasure:
+class Effects:
+    """The catalogue of effects: where each can sit, its parameters, usual magnitudes and their source."""
+
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Print it."""
+        from hyperleg_design.gap.show import effects_table
+        from hyperleg_design.report.gap_show import effects_text
+
+        found = effects_table()
+        if self.json:
+            emit(found)
+        else:
+            print(effects_text(found))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Show:
+    """One effect alone: the trace it leaves on a standard motion, and how a closed loop moves with and without it."""
+
+    effect: Annotated[str, tyro.conf.Positional]
+    """Identifier; `hyperleg gap effects` lists them."""
+    robot: str = ""
+    """Design, MJCF or URDF to show it on; by default what suits the effect: one joint on a servo, or the biped."""
+    location: str = ""
+    """Where it sits; the first place that it can by default."""
+    set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """PARAMETER=VALUE; a usual magnitude by default."""
+    out: Path = Path("results/gap_show")
+    """Folder of the figure."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Draw it."""
+        from hyperleg_design.gap.show import show
+        from hyperleg_design.report.gap_show import show_figure, show_summary, show_text
+
+        shown = show(self.effect, self.robot or None, location=self.location or None, settings=self.set)
+        path = show_figure(shown, self.out / f"{self.effect}.png")
+        summary = {**show_summary(shown), "figure": str(path)}
+        if self.json:
+            emit(summary)
+        else:
+            print(show_text(summary))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Apply:
+    """Write the causes of a diagnosis as an overlay that simulator, training and evaluation accept."""
+
+    diagnosis: Annotated[Path, tyro.conf.Positional]
+    """`diagnosis.json`."""
+    out: Path = Path("overlay.yaml")
+    """File to write."""
+    robot: str = ""
+    """Design, MJCF or URDF on which to check the places; unchecked by default."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Write it."""
+        from hyperleg_design.gap.overlay import overlay_of_diagnosis, write_overlay
+
+        overlay = overlay_of_diagnosis(self.diagnosis, self.robot)
+        if self.robot:
+            from hyperleg_design.gap.subject import load_subject
+
+            overlay.alterations(load_subject(self.robot))
+        path = write_overlay(self.out, overlay)
+        if self.json:
+            emit({"file": str(path), **overlay.mapping()})
+        else:
+            effects = ", ".join(f"{effect} at {location}" for effect, location in overlay.change)
+            print(f"{effects} -> {path}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measure:
     """Measure the gap by signal, joint, motor and regime against the repeatability floor."""
 
     robot: str = ""
@@ -51,7 +155,7 @@ class GapMeasure:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GapDiagnose:
+class Diagnose:
     """Say where hardware and simulation differ, which effect is the cause, and how far the gap shrinks once it is added."""
 
     robot: str = ""
@@ -88,7 +192,7 @@ class GapDiagnose:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GapExcite:
+class Excite:
     """Design the experiments for a rig: targets inside all limits, and which effects each can tell apart."""
 
     design: str = ""
@@ -125,7 +229,7 @@ class GapExcite:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GapBlind:
+class Blind:
     """Make a trial with sealed truth in a process of its own, and diagnose its cases; goes on where it was stopped."""
 
     cases: int = 240
@@ -153,7 +257,7 @@ class GapBlind:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GapScore:
+class Score:
     """Open a trial's key, once, and compare its diagnoses with the truth; or score the real logs with withheld truth."""
 
     folder: Annotated[str, tyro.conf.Positional] = ""
@@ -173,5 +277,15 @@ class GapScore:
         print(score_real(self.real, progress=True).markdown() if self.real else score(self.folder, reread=self.reread).markdown())
 
 
-VERBS = {"measure": GapMeasure, "diagnose": GapDiagnose, "excite": GapExcite, "blind": GapBlind, "score": GapScore}
-"""By name; `cli` adds its own."""
+VERBS = {
+    "check": Check,
+    "effects": Effects,
+    "show": Show,
+    "apply": Apply,
+    "measure": Measure,
+    "diagnose": Diagnose,
+    "excite": Excite,
+    "blind": Blind,
+    "score": Score,
+}
+"""By name."""

@@ -1,0 +1,210 @@
+"""Verbs on designs: list, build, check, analyze, compare, sweep, study; no logic of their own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from hyperleg_design import __version__, resources
+from hyperleg_design.cli.output import emit
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.design import Design, load_design
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chosen:
+    """A design, and what to change of it."""
+
+    design: str = "hyperleg"
+    """Shipped name or YAML file; `hyperleg list` shows what is shipped."""
+    variant: str = ""
+    """Ablation to make of it: toe, toe_locked, toe_removed_matched or toe_removed."""
+    set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """PATH=VALUE, such as toe.mass=0.3."""
+    overlay: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """YAML file with leaves that differ, applied before --set."""
+
+    def load(self) -> Design:
+        """The design asked for."""
+        return load_design(self.design, overrides=self.set, overlays=self.overlay, variant=self.variant or None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class List:
+    """What is shipped: designs, motors, sweeps."""
+
+    kind: Annotated[str, tyro.conf.Positional] = "all"
+    """designs, variants, motors, sweeps, parameters, or all."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Print it."""
+        from hyperleg_design.report import listing
+
+        found = listing.listing(self.kind)
+        if self.json:
+            emit(found)
+        else:
+            print(listing.listing_text(found))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Build(Chosen):
+    """Write URDF, MJCF, the resolved design and the mass table."""
+
+    out: Path
+    """Folder to write; replaced if hyperleg made it."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Build it."""
+        from hyperleg_design.robot.build import build
+
+        design = self.load()
+        folder = build(design, self.out)
+        files = sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file() and not p.name.startswith("."))
+        if self.json:
+            emit({"design": design.name, "folder": str(folder), "files": files})
+        else:
+            print(f"{design.name} -> {folder}: {', '.join(files)}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """Check files: designs, motors, sweeps, URDF, MJCF. Exit code 2 if any is wrong."""
+
+    paths: Annotated[tuple[str, ...], tyro.conf.Positional]
+    """Files, or names of shipped designs."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Check them."""
+        from hyperleg_design.report import checking
+
+        findings = checking.check_paths(self.paths)
+        if self.json:
+            emit(findings)
+        else:
+            print(checking.checks_text(findings))
+        if any(f["errors"] for f in findings):
+            raise SystemExit(2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Analyze(Chosen):
+    """Masses, reductions, torques, speeds, reflected inertia, envelope and confound of one design."""
+
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Analyse it."""
+        from hyperleg_design.report.text import analysis_text
+        from hyperleg_design.sizing.analysis import analyze
+
+        found = analyze(self.load())
+        if self.json:
+            emit(found)
+        else:
+            print(analysis_text(found))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compare:
+    """Several designs beside each other."""
+
+    designs: Annotated[tuple[str, ...], tyro.conf.Positional] = ("toe", "toe_locked", "toe_removed_matched", "toe_removed")
+    """Shipped names or YAML files."""
+    set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """PATH=VALUE, applied to all."""
+    demand: bool = False
+    """Add what a planned walk at 1.33 m/s asks of each (seconds a design)."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Compare them."""
+        from hyperleg_design.report import comparison
+
+        found = comparison.compare([load_design(name, overrides=self.set) for name in self.designs], demand=self.demand)
+        if self.json:
+            emit(found)
+        else:
+            print(comparison.compare_text(found))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweep:
+    """Evaluate a sweep of designs; killed, it goes on where it stopped."""
+
+    action: Annotated[str, tyro.conf.Positional]
+    """run"""
+    file: Annotated[str, tyro.conf.Positional]
+    """Shipped name or YAML file."""
+    out: Path
+    """Folder to write."""
+    restart: bool = False
+    """Throw away what an earlier run left there."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Run it."""
+        from hyperleg_design.report.sweep_page import sweep_report
+        from hyperleg_design.sweep.run import run_sweep
+
+        if self.action != "run":
+            raise InputError("sweep", "", self.action, "expects: hyperleg sweep run FILE --out DIR")
+        result = run_sweep(self.file, self.out, resume=not self.restart, progress=not self.json)
+        summary = sweep_report(result)
+        if self.json:
+            emit(summary)
+        else:
+            print(f"{summary['designs']} designs ({summary['rejected']} rejected) -> {', '.join(summary['files'])}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """The whole study: analyse the paper's biped and its ablations, sweep, and write a page."""
+
+    out: Path = Path("results/study")
+    """Folder to write; its index.html is the page."""
+    policies: Path | None = None
+    """Folder of trainings to evaluate, such as results/campaign; the shipped policies by default."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Run it."""
+        from hyperleg_design.report.study import run_study
+
+        page = run_study(self.out, policies=self.policies, progress=not self.json)
+        if self.json:
+            emit({"page": str(page)})
+        else:
+            print(f"open {page}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Version:
+    """Versions of this package and of what it builds on."""
+
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Print them."""
+        from importlib.metadata import version
+
+        found = {"hyperleg-design": __version__, "content": str(resources.home())}
+        found |= {name: version(name) for name in ("mujoco", "pin", "cvxpy", "numpy", "pyvista")}
+        if self.json:
+            emit(found)
+        else:
+            print("\n".join(f"{k} {v}" for k, v in found.items()))

@@ -1,0 +1,204 @@
+"""Verbs on policies: train, campaign, evaluate, paper, replay; no logic of their own."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from hyperleg_design.cli.output import emit, require
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.design import load_design
+
+
+@dataclass(frozen=True, kw_only=True)
+class Train:
+    """Train a policy, or go on with a training that was stopped; needs the learning extra."""
+
+    task: str = "walk"
+    """walk, walk_paper, goal, goal_paper, or a YAML file."""
+    design: str = "toe"
+    """Shipped name or YAML file."""
+    seed: int = 0
+    """Of everything random."""
+    preset: str = "laptop"
+    """laptop, paper, or a YAML file."""
+    start: str = ""
+    """ONNX policy of another task to start from; from scratch by default."""
+    out: Path
+    """Folder of the training."""
+    threads: int = 1
+    """Of this process; two trainings of one thread each are the best use of two cores."""
+    overlay: str = ""
+    """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
+
+    def run(self) -> None:
+        """Become the training's process."""
+        from hyperleg_design.learning import launch
+
+        require("torch", "rsl_rl")
+        given = {"task": self.task, "design": self.design, "seed": self.seed, "preset": self.preset, "out": self.out, "threads": self.threads}
+        given |= {"start": self.start} if self.start else {}
+        arguments = [f"--{key}={value}" for key, value in given.items()]
+        if not self.overlay:
+            launch.run_here(arguments, self.threads)
+        from hyperleg_design.gap.overlay import read_overlay
+
+        overlay = read_overlay(self.overlay)
+        overlay.alterations(load_design(self.design))  # a wrong place is told before the process is replaced
+        if not launch.surrounded():
+            launch.run_here(["train", *arguments, f"--overlay={self.overlay}"], self.threads, "hyperleg_design.cli")
+        from hyperleg_design.learning.__main__ import main as train_here
+
+        raise SystemExit(train_here(arguments, overlay.alterations, overlay.mapping()))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Campaign:
+    """Train whatever a campaign still lacks, side by side, show where it stands, or pack its policies for shipping."""
+
+    action: Annotated[str, tyro.conf.Positional]
+    """run, status or pack"""
+    file: Annotated[str, tyro.conf.Positional] = "campaign"
+    """Shipped name or YAML file."""
+    out: Path = Path("results/campaign")
+    """Folder of the trainings."""
+    source: Annotated[Path, tyro.conf.arg(name="from")] = Path("results/campaign")
+    """Folder of the trainings to pack."""
+    target: Annotated[Path, tyro.conf.arg(name="to")] = Path("sim/policies")
+    """Folder to pack into: policies, learning curves and what was trained."""
+
+    def run(self) -> None:
+        """Run it, print its state, or pack it."""
+        from hyperleg_design.evaluation.shipped import pack, pack_text
+        from hyperleg_design.learning.campaign import campaign_status, load_campaign, run_campaign, status_table
+
+        if self.action not in ("run", "status", "pack"):
+            raise InputError("campaign", "", self.action, "expects run, status or pack")
+        if self.action == "pack":
+            print(pack_text(pack(self.source, self.target)))
+            return
+        campaign = load_campaign(self.file)
+        if self.action == "status":
+            print(status_table(campaign_status(campaign, self.out)))
+            return
+        require("torch", "rsl_rl")
+        if not run_campaign(campaign, self.out, show=print):
+            raise SystemExit(3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evaluate:
+    """Evaluate policies (ONNX): 20 m walks or Robot T-tests, falls counted, numbers with intervals."""
+
+    policies: Annotated[tuple[str, ...], tyro.conf.Positional]
+    """ONNX files."""
+    protocol: str = ""
+    """walk, t_test, or a YAML file; what suits the policy's task by default."""
+    out: Path
+    """Folder to write tables to."""
+    workers: int = 2
+    """Processes side by side."""
+    overlay: str = ""
+    """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
+    logs: Path | None = None
+    """Folder to write a log of every trial to, as `hyperleg gap` reads them; none by default."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Evaluate them."""
+        from hyperleg_design.evaluation.evaluate import evaluate_many
+        from hyperleg_design.evaluation.result import write_results
+        from hyperleg_design.report.evaluation_text import evaluation_rows, evaluation_text
+        from hyperleg_design.writing import check_output_folder
+
+        if not self.policies:
+            raise InputError("evaluate", "", None, "expects ONNX files")
+        for folder in (self.out, self.logs):
+            if folder is not None:
+                check_output_folder(folder)
+        overlay = None
+        if self.overlay:
+            from hyperleg_design.gap.overlay import read_overlay, write_overlay
+
+            overlay = read_overlay(self.overlay)
+        alterations = overlay.alterations if overlay else None
+        found = evaluate_many(
+            self.policies, self.protocol or None, workers=self.workers, kept=1 if self.logs is None else sys.maxsize, alterations=alterations
+        )
+        folder = write_results(self.out, found)
+        written = []
+        if self.logs is not None:
+            from hyperleg_design.gap.recording import write_logs
+
+            written = write_logs(self.logs, found)
+        if overlay:
+            write_overlay(folder / "overlay.yaml", overlay)
+        rows = evaluation_rows(found)
+        if self.json:
+            emit({"folder": str(folder), "results": rows, "logs": [str(path) for path in written]})
+        else:
+            print(evaluation_text(rows))
+            print(f"tables in {folder}" + (f"; {len(written)} logs in {self.logs}" if written else ""))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Paper:
+    """Evaluate the shipped policies, and put Tables III and IV and Figs. 4 to 7 beside the paper's on a page."""
+
+    policies: Path | None = None
+    """Folder of trainings, such as results/campaign; the shipped policies by default."""
+    out: Path = Path("results/paper")
+    """Folder to write; its index.html is the page."""
+    workers: int = 0
+    """Processes side by side; 0 for as many as the machine has processors."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Evaluate and write."""
+        from hyperleg_design.report.paper_page import read_tables, run_paper, tables_text
+
+        page = run_paper(self.policies, self.out, workers=self.workers or None, progress=not self.json)
+        tables = read_tables(self.out)
+        if self.json:
+            emit({"page": str(page), "tables": tables})
+        else:
+            print(tables_text(tables))
+            print(f"open {page}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Replay:
+    """Show one trial of a policy: as a GIF file, or in the browser."""
+
+    policy: Annotated[str, tyro.conf.Positional]
+    """ONNX file, or name of a shipped training such as walk-toe-0."""
+    protocol: str = ""
+    """walk, t_test, or a YAML file; what suits the policy's task by default."""
+    seed: int | None = None
+    """Of the starting state; the protocol's by default."""
+    gif: Path | None = None
+    """File to write."""
+    viser: bool = False
+    """Show it in the browser; needs viser."""
+
+    def run(self) -> None:
+        """Replay it."""
+        from hyperleg_design.report import replay
+
+        if (self.gif is None) == (not self.viser):
+            raise InputError("replay", "", None, "expects --gif FILE or --viser")
+        if self.viser:
+            replay.check_browser()
+        found = replay.replay(self.policy, self.protocol or None, seed=self.seed)
+        print(f"{found.policy}: {found.outcomes[0].replace('_', ' ')} after {found.end_times[0]:.2f} s")
+        if self.gif is not None:
+            print(f"written to {replay.replay_gif(found, self.gif)}")
+        else:
+            print("open http://localhost:8080; Ctrl-C to stop", flush=True)
+            replay.replay_in_browser(found)
