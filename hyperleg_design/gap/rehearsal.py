@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap import rigid
+from hyperleg_design.gap.conditioning import limited_torque
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.metadata import Metadata
-from hyperleg_design.gap.replay import LONGEST_STEP, Plant
+from hyperleg_design.gap.replay import LONGEST_STEP
+from hyperleg_design.gap.rig_spec import rig_spec
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
@@ -67,20 +69,38 @@ def swung(subject: Subject, start: np.ndarray, time: np.ndarray) -> np.ndarray:
 
 
 def closed_loop(subject: Subject, step: float, target: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Position, velocity `(t, n)` and motor torque `(t, m)` along targets; torque zero where there are none."""
+    """Position, velocity `(t, n)` and motor torque `(t, m)` along targets, by MuJoCo's own servos; no torque where targets are unknown.
+
+    Args:
+        subject: with its base fixed and all gains known.
+        step: between targets [s].
+        target: `(t, n)` [rad]; NaN while the drives are off, which is at the end.
+        start: posture at rest `(n,)` [rad].
+    """
+    import mujoco
+    from mujoco import rollout
+
     substeps = max(int(np.ceil(step / LONGEST_STEP - 1e-9)), 1)
-    plant = Plant(subject, (), 1, step / substeps, 1)
-    plant.start(start[None], np.zeros((1, len(start))), None, None)
-    rows, none = [], np.zeros((1, len(subject.motors)))
-    for row in target:
-        off = bool(np.isnan(row).all())
-        before = plant.measured()
-        torque, late = none, before
-        for sub in range(substeps):
-            driven = plant.step("torque", none, None, None) if off else plant.step("target", row[None], None, None)
-            if sub == 0:
-                torque, late = driven.believed.copy(), plant.measured()
-        # MuJoCo's velocity is that of half a step before its position.
-        rows.append((before[0][0].copy(), (before[1][0] + late[1][0]) / 2, torque[0]))
-    position, velocity, torque = (np.array(part) for part in zip(*rows, strict=True))
+    model = rig_spec(subject, step / substeps).compile()
+    driven = np.flatnonzero(~subject.passive)
+    off = np.isnan(target).all(1)
+    switch = int(np.argmax(off)) if off.any() else len(target)
+    data = mujoco.MjData(model)
+    data.qpos[:] = start
+    state = np.empty(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
+    mujoco.mj_getState(model, data, state, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    rows = [state[None, 1:]]
+    for part, on in ((slice(0, switch), True), (slice(switch, len(target)), False)):
+        control = np.repeat(np.nan_to_num(target[part][:, driven]), substeps, 0)
+        if not len(control):
+            continue
+        model.opt.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | (0 if on else int(mujoco.mjtDisableBit.mjDSBL_ACTUATION))
+        found, _ = rollout.rollout(model, data, state[None], control[None])
+        state = found[0, -1]
+        rows.append(found[0, substeps - 1 :: substeps, 1:])
+    states = np.concatenate(rows)[: len(target)]
+    position, velocity = states[:, : model.nq], states[:, model.nq : model.nq + model.nv]
+    stiffness, damping = np.nan_to_num(subject.gains).T
+    asked = np.where(off[:, None] | subject.passive, 0.0, stiffness * (np.nan_to_num(target) - position) - damping * velocity)
+    torque = limited_torque(subject, asked @ subject.motor_from_joint.T, velocity)
     return position, velocity, torque

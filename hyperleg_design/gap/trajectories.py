@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 GOLDEN = 0.6180339887498949
 """Fraction of a turn between the phases of neighbouring joints: no two of many come together."""
+SHARPNESS = 6.0
+"""Exponent of the smooth least of the limits of an amplitude."""
 FADE = 1.0
 """Time over which a motion swells and dies away [s]."""
 
@@ -33,7 +35,10 @@ def window(time: np.ndarray, fade: float = FADE) -> np.ndarray:
 def amplitude(frequency: np.ndarray, room: Room, size: float = 1.0) -> np.ndarray:
     """Amplitude of a sine that keeps within range, speed and acceleration `(..., n)` [rad], at `frequency` `(...)` [Hz]."""
     omega = 2 * np.pi * np.asarray(frequency)[..., None]
-    return np.minimum(np.minimum(size * room.reach, size * room.speed / omega), size * room.acceleration / omega**2)
+    limits = np.stack(np.broadcast_arrays(size * room.reach + 0 * omega, size * room.speed / omega, size * room.acceleration / omega**2))
+    least = limits.min(0)
+    # A smooth least: where one limit gives way to another, a chirp's velocity must not jump.
+    return np.asarray(least * ((least / limits) ** SHARPNESS).sum(0) ** (-1 / SHARPNESS))
 
 
 def chirp(time: np.ndarray, room: Room, slowest: float, fastest: float) -> np.ndarray:
@@ -105,22 +110,23 @@ def holds(rate: float, room: Room, count: int, move: float = 1.0, dwell: float =
 
 def reversals(rate: float, room: Room, postures: Sequence[np.ndarray], sizes: Sequence[float], strokes: int = 6, beat: float = 0.7) -> np.ndarray:
     """Quick small strokes to and fro about some postures, which gravity loads more or less `(t, n)` [rad]."""
-    stops, rests = [room.centre], [0.0]
+    parts, last = [], room.centre
     for posture in postures:
-        stops.append(posture)
-        rests.append(0.6)
+        parts.append(visited(rate, [last, posture], [0.0, 0.4], room, 1.0))
+        stops, rests = [posture], [0.0]
         for size in sizes:
             step = np.minimum(size, 0.4 * room.reach)
             for stroke in range(strokes):
-                # Joints turn round at different beats, so that each sees the others at rest as well.
+                # Neighbouring joints stroke against each other.
                 swing = np.where((np.arange(len(room.centre)) + stroke) % 2 == 0, 1.0, -1.0)
                 stops.append(posture + swing * step)
                 rests.append(0.5 * beat)
             stops.append(posture)
             rests.append(0.3)
-    stops.append(room.centre)
-    rests.append(0.3)
-    return visited(rate, stops, rests, room, 0.0)
+        parts.append(visited(rate, stops, rests, room, 0.0))
+        last = posture
+    parts.append(visited(rate, [last, room.centre], [0.0, 0.3], room, 1.0))
+    return np.concatenate(parts)
 
 
 def fourier(time: np.ndarray, room: Room, base: float, harmonics: int, phase: np.ndarray) -> np.ndarray:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 MOST_DRAWN = 7
 """Joints drawn of a robot with more: one leg's."""
+MOST_NAMED = 8
 
 
 def plan_text(experiment: Experiment) -> str:
@@ -56,14 +57,22 @@ def plan_text(experiment: Experiment) -> str:
     left = inseparable(experiment)
     if left:
         lines += ["", "Not told apart by all motions together, though each shows:"]
-        lines += [f"  {p.first[0]} at {p.first[1]} / {p.second[0]} at {p.second[1]}: needs {p.by}" for p in left]
+        for first, second, by in LOOK_ALIKE:
+            joints = [p.joint for p in left if (p.first[0], p.second[0]) == (first, second)]
+            if joints:
+                lines.append(f"  {first} / {second}, which {by} would separate: {_few(joints)}")
     unseen = hidden(experiment)
     if unseen:
         grouped: dict[str, list[str]] = {}
         for effect, location in unseen:
             grouped.setdefault(effect, []).append(location)
-        lines += ["", "Not shown at its usual size by any motion:", *(f"  {e}: {', '.join(where)}" for e, where in grouped.items())]
+        lines += ["", "Not shown at its usual size by any motion:", *(f"  {e}: {_few(where)}" for e, where in grouped.items())]
     return "\n".join([*lines, "", *experiment.notes]) + "\n"
+
+
+def _few(names: list[str]) -> str:
+    """Names, not too many of them."""
+    return ", ".join(names) if len(names) <= MOST_NAMED else f"{', '.join(names[:MOST_NAMED])} and {len(names) - MOST_NAMED} more"
 
 
 def _short(value: float) -> str:
@@ -142,13 +151,14 @@ def separation_figure(experiment: Experiment) -> Figure:
         clear = np.array([[np.median([info.strength(g, blocks, p) for p in blocks.places if p[0] == e]) for g in grams] for e in effects])
         pairs = _pair_rows(experiment, grams)
         figure, (left, right) = plt.subplots(1, 2, figsize=(13, 0.32 * max(len(effects), len(pairs)) + 1.8), layout="constrained")
+        title = "look-alikes, worst joint at which both show"
         image = _table(left, clear, effects, [*names, "set"], "effects of usual size, median place")
         _table(
             right,
             np.array([row[2] for row in pairs]),
             [f"{a}\nagainst {b}" for a, b, _ in pairs],
             [*names, "set"],
-            "look-alikes, worst joint at which both show",
+            title,
         )
         figure.colorbar(image, ax=(left, right), label=f"standard deviations; {CLEAR:g} are clear", shrink=0.7)
         return figure

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.baselines.drive_set import DriveSet
     from hyperleg_design.gap.signals import Signals
 
-ROUNDS = 3
+ROUNDS = 1
 """Of linearising without replays."""
 POSTURE_STEP = 0.02
 """Time between postures at which inertia and gravity's slope are taken [s]."""

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.baselines.population import held_targets
-from hyperleg_design.gap.baselines.rig_spec import rig_spec
 from hyperleg_design.gap.replay import whole_log
+from hyperleg_design.gap.rig_spec import rig_spec
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.baselines.drive_set import DriveSet

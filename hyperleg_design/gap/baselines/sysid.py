@@ -18,9 +18,9 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.baselines.drive_set import KINDS, Fitted, check_logs
 from hyperleg_design.gap.baselines.population import held_targets
-from hyperleg_design.gap.baselines.rig_spec import SENSOR, rig_spec
 from hyperleg_design.gap.baselines.rollout import STEP
 from hyperleg_design.gap.replay import whole_log
+from hyperleg_design.gap.rig_spec import SENSOR, rig_spec
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.baselines.drive_set import DriveSet

@@ -13,7 +13,7 @@ from hyperleg_design.gap.baselines.drive_set import drive_set
 from hyperleg_design.gap.baselines.own import closed_loop_of, fit_own
 from hyperleg_design.gap.baselines.pace import fit_pace
 from hyperleg_design.gap.baselines.population import position_gap, predicted, squared_error
-from hyperleg_design.gap.baselines.rig_spec import rig_spec
+from hyperleg_design.gap.rig_spec import rig_spec
 from hyperleg_design.gap.baselines.rollout import Rollout
 from hyperleg_design.gap.baselines.sysid import fit_sysid
 from hyperleg_design.gap.conditioning import condition
