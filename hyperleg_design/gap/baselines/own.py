@@ -35,6 +35,8 @@ ROUNDS = 1
 """Of linearising without replays."""
 POSTURE_STEP = 0.02
 """Time between postures at which inertia and gravity's slope are taken [s]."""
+BLOCK = 0.01
+"""Over which torques and errors are averaged [s]: position loops of robots are slower."""
 SLOPE = 1e-4
 """Of finite differences of gravity [rad]."""
 STEPS, ENOUGH = 6, 1e-3
@@ -46,18 +48,18 @@ CATALOGUE = {"damping": "viscous_friction", "friction": "coulomb_friction", "bia
 
 @dataclass(frozen=True, eq=False)
 class ClosedLoop:
-    """Response of a robot's closed loop along one log, stepped by the trapezoidal rule (Newmark, 1/4 and 1/2)."""
+    """Response of a robot's closed loop along one log in steps of a block, by the trapezoidal rule (Newmark, 1/4 and 1/2)."""
 
     step: float
     inverse: np.ndarray
-    """Of M + h/2 D + h^2/4 K at each tick `(t, n, n)`."""
+    """Of M + h/2 D + h^2/4 K in each block `(b, n, n)`."""
     damping: np.ndarray
-    """`(t, n)`"""
+    """`(b, n)`"""
     stiffness: np.ndarray
-    """`(t, n, n)`"""
+    """`(b, n, n)`"""
 
     def response(self, torque: np.ndarray) -> np.ndarray:
-        """Positions that torques `(t, n, k)` cause, from rest `(t, n, k)` [rad]."""
+        """Positions that torques `(b, n, k)` cause, from rest `(b, n, k)` [rad]."""
         h = self.step
         position = np.zeros(torque.shape[1:])
         velocity, acceleration = np.zeros_like(position), np.zeros_like(position)
@@ -74,7 +76,7 @@ class ClosedLoop:
 
 @dataclass(frozen=True, eq=False)
 class _Posture:
-    """Inertia and gravity's slope along one log `(t, n, n)` each."""
+    """Inertia and gravity's slope along one log, by block of ticks `(b, n, n)` each."""
 
     inertia: np.ndarray
     slope: np.ndarray
@@ -94,8 +96,20 @@ def _posture_of(signals: Signals) -> _Posture:
         unit[joint] = 1.0
         inertia[:, :, joint] = rigid.inverse_dynamics(subject, posture, still, still + unit) - gravity
         slope[:, :, joint] = (rigid.inverse_dynamics(subject, posture + SLOPE * unit, still, still) - gravity) / SLOPE
-    of_tick = np.arange(len(signals.time)) // every
-    return _Posture(inertia[of_tick], slope[of_tick])
+    of_block = (np.arange(len(signals.time) // _size(signals)) * _size(signals) + _size(signals) // 2) // every
+    return _Posture(inertia[of_block], slope[of_block])
+
+
+def _size(signals: Signals) -> int:
+    """Ticks of a block."""
+    return max(round(BLOCK / signals.step), 1)
+
+
+def _blocks(signals: Signals, values: np.ndarray) -> np.ndarray:
+    """Means over blocks of ticks `(t, ...)`, `(blocks, ...)`."""
+    size = _size(signals)
+    count = len(values) // size
+    return np.asarray(values[: count * size].reshape(count, size, *values.shape[1:]).mean(1))
 
 
 def closed_loop_of(signals: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture | None = None) -> ClosedLoop:
@@ -107,11 +121,11 @@ def closed_loop_of(signals: Signals, drives: DriveSet, values: np.ndarray, postu
         values: `(P,)`.
         posture: of an earlier call.
     """
-    subject, h = signals.subject, signals.step
+    subject, h = signals.subject, signals.step * _size(signals)
     posture = posture or _posture_of(signals)
     gains = np.nan_to_num(subject.gains) * ~subject.passive[:, None]
     coulomb = np.maximum(subject.coulomb + drives.part(values, "friction"), 0.0)
-    dry = coulomb / subject.friction_speed / np.cosh(np.clip(signals.velocity / subject.friction_speed, -30, 30)) ** 2
+    dry = coulomb / subject.friction_speed / np.cosh(np.clip(_blocks(signals, signals.velocity) / subject.friction_speed, -30, 30)) ** 2
     damping = gains[:, 1] + np.maximum(subject.viscous + drives.part(values, "damping"), 0.0) + dry
     stiffness = posture.slope + np.diag(gains[:, 0] + subject.spring)
     eye = np.eye(len(subject.joints))
@@ -172,14 +186,15 @@ def _cost(rollouts: Sequence[Rollout], values: np.ndarray) -> float:
 
 
 def _known_error(rollout: Rollout, values: np.ndarray) -> np.ndarray:
-    """Error at the ticks that `_first_order` takes, one after the other."""
+    """Error of the blocks that `_first_order` takes, one after the other."""
     one = rollout.signals
-    known = _known(one)[rollout.ticks]
-    return np.asarray(rollout.error(values)[known].ravel())
+    whole = np.zeros_like(one.position)
+    whole[rollout.ticks] = rollout.error(values)
+    return np.asarray(_blocks(one, whole)[_known(one)].ravel())
 
 
 def _known(one: Signals) -> np.ndarray:
-    return np.asarray(np.isfinite(residual_of(one)).all(1) & one.valid)
+    return np.asarray(_blocks(one, (np.isfinite(residual_of(one)).all(1) & one.valid).astype(float)) == 1)
 
 
 def _first_order(one: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture) -> tuple[np.ndarray, np.ndarray]:
@@ -187,7 +202,7 @@ def _first_order(one: Signals, drives: DriveSet, values: np.ndarray, posture: _P
     columns, rest = _columns(one, drives, values)
     stacked = np.concatenate([columns, rest[..., None]], -1)
     stacked[~np.isfinite(stacked)] = 0.0
-    found = closed_loop_of(one, drives, values, posture).response(stacked)[_known(one)].reshape(-1, drives.count + 1)
+    found = closed_loop_of(one, drives, values, posture).response(_blocks(one, stacked))[_known(one)].reshape(-1, drives.count + 1)
     # a torque that the model lacks (a positive trace) holds the robot back: position falls behind the prediction
     return -found[:, :-1], -found[:, -1]
 

@@ -13,12 +13,12 @@ from hyperleg_design.gap.baselines.drive_set import drive_set
 from hyperleg_design.gap.baselines.own import closed_loop_of, fit_own
 from hyperleg_design.gap.baselines.pace import fit_pace
 from hyperleg_design.gap.baselines.population import position_gap, predicted, squared_error
-from hyperleg_design.gap.rig_spec import rig_spec
 from hyperleg_design.gap.baselines.rollout import Rollout
 from hyperleg_design.gap.baselines.sysid import fit_sysid
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.log import write_log
 from hyperleg_design.gap.replay import replay, whole_log
+from hyperleg_design.gap.rig_spec import rig_spec
 from hyperleg_design.gap.subject import load_subject
 
 SERVO = """
@@ -119,7 +119,7 @@ def test_closed_loop_response_is_that_of_a_simulation(rig):
     one = rig.signals[0]
     values = np.zeros(rig.drives.count)
     loop = closed_loop_of(one, rig.drives, values)
-    held = loop.response(np.ones((len(one.time), 1, 1)))[-1, 0, 0]
+    held = loop.response(np.ones((len(loop.damping), 1, 1)))[-1, 0, 0]
     posture = one.position[-1, 0]
     assert held == pytest.approx(1 / (6 + 0.5 * 9.81 * 0.1 * np.cos(posture)), rel=0.05)
 
