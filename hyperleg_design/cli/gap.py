@@ -277,6 +277,29 @@ class Score:
         print(score_real(self.real, progress=True).markdown() if self.real else score(self.folder, reread=self.reread).markdown())
 
 
+@dataclass(frozen=True, kw_only=True)
+class Baselines:
+    """Fit PACE's parameter set (CMA-ES), mujoco.sysid and ours to a trial's cases: gap closed, cause named, time, in one table."""
+
+    folder: Annotated[str, tyro.conf.Positional]
+    """Of the trial; its key stays sealed until it was scored."""
+    methods: tuple[str, ...] = ("diagnosis", "own", "sysid", "pace")
+    """Some of these; diagnosis is what the trial's folder holds."""
+    cases: tuple[str, ...] = ()
+    """Some of the cases, such as 003 017; all by default."""
+    budget: float = 300.0
+    """Of one fit [s]."""
+    seed: int = 0
+    """Of CMA-ES."""
+
+    def run(self) -> None:
+        """Fit them."""
+        from hyperleg_design.gap.baselines.table import baselines_table
+
+        table = baselines_table(self.folder, methods=self.methods, cases=self.cases, budget=self.budget, seed=self.seed, progress=True)
+        print(table.markdown())
+
+
 VERBS = {
     "check": Check,
     "effects": Effects,
@@ -287,5 +310,6 @@ VERBS = {
     "excite": Excite,
     "blind": Blind,
     "score": Score,
+    "baselines": Baselines,
 }
 """By name."""
