@@ -1,0 +1,288 @@
+"""Which causes are named: by what they predict of data that they were not fitted to, never by the fit itself.
+
+One cause must beat none on held-out blocks by `evident`, close `worth` of the excess gap and be `visible` over the floor; a further
+one must do so beside those before it. What no list of effects explains is `unknown`. All rules are `thresholds.Thresholds`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap import screen, shape
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.fit import Base, Cause, Design, Fit, Held, predict
+from hyperleg_design.gap.samples import BLOCKS, LOGS
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.thresholds import Thresholds
+
+FINALISTS = 10
+"""Candidates that are judged on held-out data."""
+REFINED = 24
+"""Candidates that are fitted to the end before that."""
+ROUNDS = 8
+MOST_CAUSES = 3
+EXCESSIVE = 0.25
+"""A row counts for the gap from this share of the largest excess of any row."""
+SHAPED_ROWS = 4
+"""Rows with the largest excess whose shape is looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Some causes together, and how they predict held-out blocks."""
+
+    causes: tuple[Cause, ...]
+    fit: Fit
+    held: Held
+    gain: float
+    """Log-likelihood of held-out blocks over that of no cause."""
+
+    @property
+    def names(self) -> tuple[tuple[str, str], ...]:
+        """Effects and locations."""
+        return tuple(c.name for c in self.causes)
+
+    def values(self, place: int) -> np.ndarray:
+        """Fitted parameters of one cause."""
+        start = sum(len(c.nulls) for c in self.causes[:place])
+        cause = self.causes[place]
+        return np.clip(cause.nulls + self.fit.phi[start : start + len(cause.nulls)] * cause.usual, cause.low, cause.high)
+
+
+@dataclass(frozen=True, eq=False)
+class Judge:
+    """Everything that models are compared on."""
+
+    base: Base
+    thresholds: Thresholds
+    threads: int
+
+    @cached_property
+    def nothing(self) -> Model:
+        """Calibration errors alone."""
+        design = Design(self.base)
+        fit = design.fit()
+        return Model((), fit, predict(design, start=fit.scale), 0.0)
+
+    @cached_property
+    def floor(self) -> np.ndarray:
+        """Mean square that is expected of each group `(G,)`, in its unit."""
+        samples = self.base.samples
+        return np.bincount(samples.group, samples.floor**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
+
+    @cached_property
+    def counts(self) -> np.ndarray:
+        """Samples by block and group `(B, G)`."""
+        samples = self.base.samples
+        cell = samples.block * samples.groups + samples.group
+        return np.bincount(cell, minlength=self.base.blocks * samples.groups).reshape(self.base.blocks, samples.groups)
+
+    def rows(self, held: Held, blocks: np.ndarray | None = None) -> np.ndarray:
+        """Mean square of what is left of each row, episodes left out `(rows,)`, in its unit; of drawn blocks `(k, B)`, `(k, rows)`."""
+        samples = self.base.samples
+        square, count = held.square, self.counts
+        if blocks is not None:
+            square, count = blocks @ square, blocks @ count
+        else:
+            square, count = square.sum(0), count.sum(0)
+        mean = np.where(samples.episodic, 0.0, square / np.maximum(count, 1))
+        found = np.zeros((*mean.shape[:-1], len(samples.rows)))
+        for group, row in enumerate(samples.group_row):
+            found[..., row] += mean[..., group]
+        return found
+
+    @cached_property
+    def row_floor(self) -> np.ndarray:
+        """Mean square that is expected of each row `(rows,)`."""
+        samples = self.base.samples
+        return np.bincount(samples.group_row, np.where(samples.episodic, 0.0, self.floor), len(samples.rows))
+
+    def model(self, causes: Sequence[Cause]) -> Model:
+        """Fit causes together to the end and predict held-out blocks."""
+        design = Design(self.base, causes)
+        fit = design.fit(scale=self.nothing.fit.scale, rounds=ROUNDS)
+        held = predict(design, start=fit.scale)
+        return Model(tuple(causes), fit, held, held.total - self.nothing.held.total)
+
+    def shown(self, model: Model, place: int) -> np.ndarray:
+        """Mean square of one cause's trace in each row over the row's floor `(rows,)`."""
+        cause, samples = model.causes[place], self.base.samples
+        phi = (model.values(place) - cause.nulls) / cause.usual
+        trace = phi @ cause.columns + (0.0 if cause.linear else cause.constant)
+        mean = np.bincount(samples.group, trace**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
+        mean = np.where(samples.episodic, 0.0, mean)
+        return np.bincount(samples.group_row, mean, len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
+
+    def excess_rows(self, models: Sequence[Model] = ()) -> np.ndarray:
+        """Rows that count for the gap `(rows,)` of bool: those with much excess, else those in which causes show most."""
+        ratio = self.rows(self.nothing.held) / np.maximum(self.row_floor, 1e-300)
+        excess = np.maximum(ratio - 1, 0.0)
+        found = excess >= max(EXCESSIVE * float(excess.max(initial=0.0)), 1e-9)
+        for model in models:
+            for place in range(len(model.causes)):
+                seen = self.shown(model, place)
+                found |= (seen >= 0.3 * seen.max(initial=0.0)) & (seen > 0.25)
+        return found if found.any() else np.ones(len(ratio), bool)
+
+    def gap(self, held: Held, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
+        """Root mean square over some rows, each over its floor `()` or `(k,)`."""
+        mean = self.rows(held, blocks) / np.maximum(self.row_floor, 1e-300)
+        return np.sqrt(mean[..., rows].mean(-1))
+
+    def closed(self, held: Held, rows: np.ndarray, before: Held | None = None) -> float:
+        """Share of the excess gap of some rows that a model closes."""
+        first = float(self.gap(self.nothing.held if before is None else before, rows))
+        after = float(self.gap(held, rows))
+        lowest = min(1.0, after)
+        return (first - after) / max(first - lowest, 1e-9) if first > lowest else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """What was found."""
+
+    verdict: str
+    model: Model
+    rows: np.ndarray
+    """That count for the gap `(rows,)` of bool."""
+    singles: tuple[Model, ...]
+    """Best first: each cause alone, or, with several causes, each beside the others."""
+    slots: tuple[tuple[Model, ...], ...]
+    """For each named cause its rivals in its place, itself among them."""
+    shaped: tuple[tuple[shape.Shape, float, float], ...]
+    """Shapes with their gain over the model and the further share of the excess gap that they close, best first."""
+    not_judged: tuple[screen.NotJudged, ...]
+
+
+def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> tuple[Judge, Decision]:
+    """Name the causes.
+
+    Args:
+        base: residual and calibration errors.
+        thresholds: fixed rules.
+        wanted: effects and locations that are tried.
+        threads: that share the work.
+    """
+    judge = Judge(base, thresholds, threads)
+    nothing = judge.nothing
+    singles, not_judged = _finalists(judge, wanted, ())
+    rows = judge.excess_rows(singles[:1])
+    chosen = nothing
+    slots: list[tuple[Model, ...]] = []
+    best = next((m for m in singles if _named(judge, m, 0, nothing)), None)
+    if best is not None:
+        chosen, slots = best, [tuple(singles)]
+        rows = judge.excess_rows([best])
+        while len(chosen.causes) < MOST_CAUSES:
+            more, _ = _finalists(judge, wanted, chosen.causes)
+            further = next((m for m in more if _further(judge, m, chosen, rows)), None)
+            if further is None:
+                break
+            chosen, slots = further, [*slots, tuple(more)]
+            if len(chosen.causes) == 2:
+                chosen, slots = _swapped(judge, wanted, chosen, slots)
+            rows = judge.excess_rows([chosen])
+    shaped = _shaped(judge, chosen, rows)
+    verdict = _verdict(judge, chosen, rows, shaped)
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, tuple(not_judged))
+
+
+def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence[Cause]) -> tuple[list[Model], list[screen.NotJudged]]:
+    """Best candidates beside given causes, as models on held-out blocks, best first."""
+    taken = {c.name for c in beside}
+    base = judge.base
+    start = judge.nothing.fit if not beside else Design(base, beside).fit(scale=judge.nothing.fit.scale, rounds=ROUNDS)
+    found = screen.screen(base, start, [w for w in wanted if w not in taken], judge.threads, beside)
+    candidates = [c for c in found if isinstance(c, screen.Candidate)]
+    candidates.sort(key=lambda c: (-c.gain, c.name))
+    refined = screen.spread(lambda c: (_refined(base, c, start, beside), c), candidates[:REFINED], judge.threads)
+    refined.sort(key=lambda pair: (-pair[0], pair[1].name))
+    models = screen.spread(lambda pair: judge.model([*beside, pair[1].cause]), refined[:FINALISTS], judge.threads)
+    models.sort(key=lambda m: (-_rank(m), m.names))
+    return models, [c for c in found if isinstance(c, screen.NotJudged)]
+
+
+def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequence[Cause]) -> float:
+    return Design(base, [*beside, candidate.cause]).fit(scale=start.scale, rounds=ROUNDS).evidence
+
+
+def _rank(model: Model) -> float:
+    return model.gain
+
+
+def _named(judge: Judge, model: Model, place: int, before: Model) -> bool:
+    """Whether the last cause of a model is worth its name."""
+    rules = judge.thresholds
+    if model.gain - before.gain < rules.evident or float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
+        return False
+    rows = judge.excess_rows([model])
+    return judge.closed(model.held, rows) >= rules.worth
+
+
+def _further(judge: Judge, model: Model, before: Model, rows: np.ndarray) -> bool:
+    rules = judge.thresholds
+    if model.gain - before.gain < rules.second_evident:
+        return False
+    place = len(model.causes) - 1
+    if float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
+        return False
+    rows = rows | judge.excess_rows([model])
+    return judge.closed(model.held, rows) - judge.closed(before.held, rows) >= rules.second_worth
+
+
+def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots: list[tuple[Model, ...]]) -> tuple[Model, list[tuple[Model, ...]]]:
+    """Look for the first cause again beside the second: forward selection may have begun with what looked like both."""
+    models, _ = _finalists(judge, wanted, pair.causes[1:])
+    turned = [_turned(m) for m in models]
+    if turned and turned[0].gain > pair.gain + 1e-6 and turned[0].names != pair.names:
+        return turned[0], [tuple(turned), slots[1]]
+    return pair, [tuple(turned) if any(t.names == pair.names for t in turned) else slots[0], slots[1]]
+
+
+def _turned(model: Model) -> Model:
+    """The last cause first."""
+    size = len(model.causes[-1].nulls)
+    order = np.r_[np.arange(len(model.fit.phi) - size, len(model.fit.phi)), np.arange(len(model.fit.phi) - size)]
+    fit = replace(model.fit, phi=model.fit.phi[order], covariance=model.fit.covariance[np.ix_(order, order)])
+    return replace(model, causes=(model.causes[-1], *model.causes[:-1]), fit=fit)
+
+
+def _shaped(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
+    """Shapes beside the chosen causes, in the rows with most excess left or before."""
+    base = judge.base
+    before = judge.rows(judge.nothing.held) / np.maximum(judge.row_floor, 1e-300)
+    order = np.argsort(-before, kind="stable")
+    looked = order[rows[order]][:SHAPED_ROWS]
+
+    def tried(one: shape.Shape) -> tuple[shape.Shape, float, float] | None:
+        columns = shape.columns(base, judge.nothing.fit, one)
+        if columns is None:
+            return None
+        design = Design(base, chosen.causes, ridge=columns)
+        fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
+        held = predict(design, start=fit.scale)
+        gain = held.total - judge.nothing.held.total - chosen.gain
+        return one, gain, judge.closed(held, rows) - judge.closed(chosen.held, rows)
+
+    found = [t for t in screen.spread(tried, shape.shapes(base.samples, looked), judge.threads) if t is not None]
+    return tuple(sorted(found, key=lambda t: (-t[1], t[0].name, t[0].row)))
+
+
+def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[tuple[shape.Shape, float, float]]) -> str:
+    rules = judge.thresholds
+    beyond = bool(shaped) and shaped[0][1] > rules.beyond_evident and shaped[0][2] > rules.beyond
+    excess = float(judge.gap(judge.nothing.held, rows))
+    if not chosen.causes:
+        return "unknown" if excess > rules.largest_excess or beyond else "none"
+    if beyond or judge.closed(chosen.held, rows) < rules.required:
+        return "unknown"
+    return "explained"
+
+
+__all__ = ["BLOCKS", "EFFECTS", "LOGS", "Decision", "Judge", "Model", "decide"]

@@ -1,0 +1,390 @@
+"""Diagnose the gap between logs and a robot's model: where it lies, which effects cause it, how far it shrinks with them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design import provenance
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap import experiment, screen
+from hyperleg_design.gap.check import Check, check_log
+from hyperleg_design.gap.conditioning import condition
+from hyperleg_design.gap.decide import Decision, Judge, Model, decide
+from hyperleg_design.gap.diagnosis import Diagnosis, Named, Place, Shrinkage, Value
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.equivalence import alike
+from hyperleg_design.gap.finding import NOTE, WARNING
+from hyperleg_design.gap.fit import Design, predict
+from hyperleg_design.gap.preparation import Prepared, prepare
+from hyperleg_design.gap.samples import BLOCKS, LOGS
+from hyperleg_design.gap.subject import load_subject
+from hyperleg_design.gap.thresholds import Thresholds, load_thresholds
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.log import Log
+    from hyperleg_design.gap.signals import Signals
+
+DRAWS = 400
+"""Of the block bootstrap."""
+MOST_RIVALS, MOST_SHAPES, MOST_ERRORS = 8, 3, 12
+"""Listed."""
+LEAST_SHARE = 0.02
+"""Of the excess, below which a place is not listed."""
+NORMAL = 1.96
+KIND = {"motion": "joint", "drive": "motor", "control": "motor", "base": "robot", "ground": "foot"}
+UNIT = {"motion": "Nm", "drive": "Nm", "control": "Nm", "base": "N, Nm", "ground": "N"}
+
+
+def diagnose(
+    robot: str | Path | None,
+    logs: Sequence[Log],
+    reference: Sequence[Log] = (),
+    *,
+    seed: int = 0,
+    thresholds: str | Path | Thresholds | None = None,
+    threads: int = 2,
+    show: Callable[[str], None] | None = None,
+) -> Diagnosis:
+    """Diagnose logs of a robot.
+
+    Args:
+        robot: a design of ours, an MJCF or a URDF file; none: what the logs name.
+        logs: to be diagnosed; those whose metadata call them references count as such.
+        reference: of the same robot when all was well.
+        seed: of the bootstrap; the same logs and seed give the same diagnosis.
+        thresholds: rules, or a file of them; the shipped ones by default.
+        threads: that share the work; they change no result.
+        show: takes lines of progress.
+
+    Raises:
+        InputError: no log to diagnose, a log that is not fit for it, or one that does not go with the robot.
+    """
+    say = show or (lambda _: None)
+    tests = [log for log in logs if log.metadata.role != "reference"]
+    healthy = [*(log for log in logs if log.metadata.role == "reference"), *reference]
+    if not tests:
+        raise InputError("diagnose", "logs", len(logs), "name no log to be diagnosed: give at least one that is not a reference")
+    subject = load_subject(robot, [*tests, *healthy])
+    checks = [check_log(log, subject) for log in [*tests, *healthy]]
+    for check in checks:
+        check.refuse()
+    say(f"conditioning {len(checks)} logs of {subject.name}")
+    return diagnose_signals(
+        [condition(log, subject) for log in tests], [condition(log, subject) for log in healthy],
+        seed=seed, thresholds=thresholds, threads=threads, show=show, checks=checks,
+    )  # fmt: skip
+
+
+def diagnose_signals(
+    signals: Sequence[Signals],
+    references: Sequence[Signals] = (),
+    *,
+    seed: int = 0,
+    thresholds: str | Path | Thresholds | None = None,
+    threads: int = 2,
+    show: Callable[[str], None] | None = None,
+    checks: Sequence[Check] = (),
+    effects: Sequence[str] | None = None,
+) -> Diagnosis:
+    """Diagnose conditioned logs; arguments as of `diagnose`.
+
+    Args:
+        signals: of the logs to be diagnosed.
+        references: of logs of the healthy robot.
+        seed: of the bootstrap.
+        thresholds: rules, or a file of them.
+        threads: that share the work.
+        show: takes lines of progress.
+        checks: of the logs, for remarks and doubts.
+        effects: of the catalogue that are tried; all by default.
+
+    Raises:
+        InputError: no log, or none with a residual.
+    """
+    say = show or (lambda _: None)
+    rules = thresholds if isinstance(thresholds, Thresholds) else load_thresholds(thresholds)
+    if not signals:
+        raise InputError("diagnose", "logs", None, "are missing: give at least one log")
+    say("calibration errors and floor")
+    ready = prepare(signals, references, rules)
+    samples = ready.base.samples
+    if not len(samples.value):
+        raise InputError(signals[0].log.name, "", None, "has too few ticks of which torques and motion are known: log longer")
+    say(f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue")
+    judge, found = decide(ready.base, rules, screen.places(samples.sieves[0].signals.subject, effects), threads)
+    say("intervals, rivals and the next experiment")
+    return _Report(ready, judge, found, seed, list(signals), list(references), list(checks)).diagnosis()
+
+
+class _Report:
+    """Everything of a decision that the file tells."""
+
+    def __init__(
+        self, ready: Prepared, judge: Judge, found: Decision, seed: int, signals: list[Signals], references: list[Signals], checks: list[Check]
+    ) -> None:
+        self.ready, self.judge, self.found, self.seed = ready, judge, found, seed
+        self.signals, self.references, self.checks = signals, references, checks
+        samples = ready.base.samples
+        shared = samples.sessions < len(signals)
+        # a session that is held out whole cannot be calibrated: then blocks are held out, not logs
+        self.way = LOGS if shared and samples.folds(LOGS) > 1 else BLOCKS
+        self.kept: dict[int, Any] = {}
+
+    def held(self, model: Model) -> Any:
+        """Prediction of the data held out for the gap."""
+        if self.way == BLOCKS:
+            return model.held
+        key = id(model)
+        if key not in self.kept:
+            self.kept[key] = predict(Design(self.judge.base, model.causes), self.way, start=model.fit.scale)
+        return self.kept[key]
+
+    def closed(self, model: Model) -> float:
+        """Share of the excess gap that a model closes."""
+        return min(self.judge.closed(self.held(model), self.found.rows, self.held(self.judge.nothing)), 1.0)
+
+    def diagnosis(self) -> Diagnosis:
+        """All of it."""
+        judge, found = self.judge, self.found
+        verdict = found.verdict
+        named = found.model.causes if verdict in ("explained", "ambiguous") else ()
+        doubts = self.doubts()
+        sets: list[list[Model]] = []
+        if named:
+            sets = [alike(judge, slot, found.model, found.rows) for slot in found.slots]
+            if any(sets):
+                verdict = "ambiguous"
+        probabilities = self.probabilities(sets)
+        causes, rivals = self.named(probabilities) if verdict != "none" else ((), self.rivals_of_none())
+        if verdict == "unknown":
+            rivals, causes = (*causes, *rivals), ()
+        equivalent = tuple(
+            (found.model.causes[place].name, *(m.causes[self._differs(m)].name for m in group)) for place, group in enumerate(sets) if group
+        )
+        trial = experiment.separating(equivalent[0]) if equivalent else None
+        return Diagnosis(
+            verdict=verdict, gap=self.gap(bool(named)), where=self.where(), causes=tuple(causes), rivals=tuple(rivals[:MOST_RIVALS]),
+            equivalent=equivalent, separating_experiment=None if trial is None else experiment.as_mapping(trial, equivalent[0]),
+            not_judged=tuple({"effect": n.effect, "location": n.location, "reason": n.reason} for n in found.not_judged),
+            residual_shape=self.shape(), checks=doubts, nuisance=self.nuisance(), provenance=self.provenance(),
+        )  # fmt: skip
+
+    def _differs(self, model: Model) -> int:
+        names = self.found.model.names
+        return next((i for i, name in enumerate(model.names) if name not in names), len(model.names) - 1)
+
+    def draws(self) -> np.ndarray:
+        """How often each block is drawn `(DRAWS, B)`."""
+        rng = np.random.default_rng([self.seed, 20])
+        count = self.judge.base.blocks
+        return rng.multinomial(count, np.full(count, 1 / count), size=DRAWS).astype(float)
+
+    def gap(self, named: bool) -> Shrinkage:
+        """Before, after and floor over the rows that count, in their unit."""
+        judge, rows = self.judge, self.found.rows
+        samples = judge.base.samples
+        model = self.found.model if named else judge.nothing
+        scale = float(np.sqrt(judge.row_floor[rows].mean()))
+        first, last = self.held(judge.nothing), self.held(model)
+        before, after = float(judge.gap(first, rows)), float(judge.gap(last, rows))
+        drawn = self.draws()
+        b, a = judge.gap(first, rows, drawn), judge.gap(last, rows, drawn)
+        lowest = np.minimum(1.0, a)
+        shares = np.where(b > lowest, (b - a) / np.maximum(b - lowest, 1e-9), 0.0)
+        closed = self.closed(model) if named else 0.0
+        low, high = (float(v) for v in np.percentile(np.minimum(shares, 1.0), [2.5, 97.5])) if named else (0.0, 0.0)
+        units = dict.fromkeys(UNIT.get(samples.rows[r].balance, "Nm") for r in np.flatnonzero(rows))
+        return Shrinkage(before * scale, after * scale, min(1.0, after) * scale, closed, (min(low, closed), max(high, closed)), ", ".join(units))
+
+    def where(self) -> tuple[Place, ...]:
+        """Shares of the excess, and the regime of each place in which it is most."""
+        judge, samples = self.judge, self.judge.base.samples
+        ratio = judge.rows(judge.nothing.held) / np.maximum(judge.row_floor, 1e-300)
+        excess = np.maximum(ratio - 1, 0.0)
+        shares: dict[tuple[str, str], float] = {}
+        for row, value in zip(samples.rows, excess, strict=True):
+            key = (
+                row.name.rsplit("_", 1)[0] if row.balance == "ground" else "robot" if row.balance == "base" else row.name,
+                KIND.get(row.balance, "joint"),
+            )
+            shares[key] = shares.get(key, 0.0) + float(value)
+        total = sum(shares.values())
+        if total <= 0:
+            return ()
+        found = []
+        for (name, kind), value in sorted(shares.items(), key=lambda item: (-item[1], item[0])):
+            if value / total < LEAST_SHARE:
+                continue
+            found.append(Place(name, kind, "all", value / total))
+        regimes = [self._regime(p.location, p.kind) for p in found[:3]]
+        return (*found, *(r for r in regimes if r is not None))
+
+    def _regime(self, name: str, kind: str) -> Place | None:
+        """What a joint or motor was doing where its residual is largest for its time."""
+        if kind not in ("joint", "motor"):
+            return None
+        left = self.judge.nothing.held.left
+        samples = self.judge.base.samples
+        best: tuple[float, str, float] | None = None
+        total: dict[str, float] = {}
+        ticks: dict[str, float] = {}
+        for place, row in enumerate(samples.rows):
+            if row.name != name or KIND.get(row.balance) != kind:
+                continue
+            for one, sieve in enumerate(samples.sieves):
+                own = [i for i, r in enumerate(sieve.rows) if (r.balance, r.column) == (row.balance, row.column)]
+                if not own:
+                    continue
+                part = samples.where[one][own[0]]
+                index = np.clip(np.round(samples.time[part] / sieve.signals.step).astype(int), 0, len(sieve.signals.time) - 1)
+                for regime, mask in _regimes(sieve.signals, row.balance, row.column).items():
+                    chosen = mask[index]
+                    total[regime] = total.get(regime, 0.0) + float((left[part][chosen] ** 2).sum())
+                    ticks[regime] = ticks.get(regime, 0.0) + float(samples.share[part][chosen].sum())
+                    total["all"] = total.get("all", 0.0) + (float((left[part] ** 2).sum()) if regime == "forward" else 0.0)
+            del place
+        for regime, value in total.items():
+            if regime != "all" and ticks[regime] > 0 and total["all"] > 0 and value / total["all"] >= 0.2:
+                density = value / ticks[regime]
+                if best is None or density > best[0]:
+                    best = (density, regime, value / total["all"])
+        return None if best is None else Place(name, kind, best[1], min(best[2], 1.0))
+
+    def probabilities(self, sets: Sequence[Sequence[Model]]) -> list[dict[tuple[tuple[str, str], ...], float]]:
+        """Of every model in each slot: tempered held-out likelihoods of the rivals, of none and of unknown, made one."""
+        rules, found = self.judge.thresholds, self.found
+        shaped = found.shaped[0][1] if found.shaped and found.shaped[0][2] > 0 else 0.0
+        slots: Sequence[Sequence[Model]] = found.slots or (found.singles,)
+        tables = []
+        for place, slot in enumerate(slots):
+            models = list({m.names: m for m in [*slot, *([found.model] if found.slots else [])]}.values())
+            other = found.model.gain if place == len(slots) - 1 and found.slots else max((m.gain for m in models), default=0.0)
+            scores = np.array([m.gain for m in models] + [0.0 if place == 0 else _without(found, place), other + shaped - rules.beyond_evident])
+            weights = np.exp(rules.temperature * (scores - scores.max()))
+            weights /= weights.sum()
+            certain = np.minimum(weights, rules.most_certain)
+            tables.append({m.names: float((1 - rules.doubt) * w) for m, w in zip(models, certain, strict=False)})
+        return tables
+
+    def named(self, tables: Sequence[dict[tuple[tuple[str, str], ...], float]]) -> tuple[tuple[Named, ...], tuple[Named, ...]]:
+        """Causes and rivals with parameters."""
+        found, judge = self.found, self.judge
+        slots: Sequence[Sequence[Model]] = found.slots or (found.singles,)
+        causes: list[Named] = []
+        total = self.closed(found.model) if found.slots else 0.0
+        for place in range(len(found.model.causes)):
+            rest = tuple(c for i, c in enumerate(found.model.causes) if i != place)
+            alone = self.closed(judge.model(rest)) if rest else 0.0
+            cause = found.model.causes[place]
+            closed = total - alone if rest else total
+            causes.append(
+                Named(*cause.name, tables[place].get(found.model.names, 0.0), closed, parameters(judge, found.model, place))
+            )  # fmt: skip
+        rivals: dict[tuple[str, str], Named] = {}
+        for place, slot in enumerate(slots):
+            for model in slot:
+                differs = self._differs(model) if found.slots else 0
+                name = model.causes[differs].name
+                if name in found.model.names or name in rivals:
+                    continue
+                probability = tables[place].get(model.names, 0.0)
+                rivals[name] = Named(*name, probability, self.closed(model), parameters(judge, model, differs))
+        return tuple(causes), tuple(sorted(rivals.values(), key=lambda r: (-r.probability, -r.closed, r.effect, r.location)))
+
+    def rivals_of_none(self) -> tuple[Named, ...]:
+        """What was tried though nothing is wrong."""
+        table = self.probabilities([])[0]
+        return tuple(Named(*m.causes[0].name, table.get(m.names, 0.0), self.closed(m), parameters(self.judge, m, 0)) for m in self.found.singles[:3])
+
+    def shape(self) -> tuple[dict[str, Any], ...]:
+        """What the residual beside the causes looks like."""
+        samples = self.judge.base.samples
+        found = []
+        for one, gain, closed in self.found.shaped[:MOST_SHAPES]:
+            if gain > 0 and closed > 0:
+                place = "robot" if one.row < 0 else samples.rows[one.row].name
+                found.append({"shape": one.name, "location": place, "says": one.says, "closed_beyond": closed, "gain": gain})
+        return tuple(found)
+
+    def nuisance(self) -> tuple[dict[str, Any], ...]:
+        """Largest calibration errors, in usual sizes."""
+        fit, prior = self.found.model.fit, self.ready.base.prior
+        errors = fit.errors + prior.mean
+        rows = [
+            {"error": one.name, "session": s, "value": float(errors[s, i] * one.spread), "usual": float(one.spread)}
+            for s in range(len(errors))
+            for i, one in enumerate(self.ready.errors)
+        ]
+        return tuple(sorted(rows, key=lambda r: (-abs(r["value"]) / r["usual"], r["error"], r["session"]))[:MOST_ERRORS])
+
+    def doubts(self) -> tuple[str, ...]:
+        """Remarks on the logs."""
+        found = []
+        for check in self.checks:
+            found += [
+                f"{check.name}: {f.severity}: {f.signal + ' ' if f.signal else ''}{f.what}" for f in check.findings if f.severity in (WARNING, NOTE)
+            ]
+        for s in (*self.signals, *self.references):
+            found += [f"{s.log.name}: {note}" for note in s.notes]
+        if not self.ready.calibrated:
+            found.append("no reference logs: the floor is that of a robot known as well as robots usually are")
+        samples = self.ready.base.samples
+        for row, one in enumerate(samples.rows):
+            share = float(samples.episodic[samples.group[samples.row == row]].mean())
+            if share > 0.01:
+                found.append(f"{one.balance} of {one.name}: episodes of much larger residuals, {100 * share:.0f} % of the time, count for little")
+        return tuple(dict.fromkeys(found))
+
+    def provenance(self) -> dict[str, Any]:
+        """What made it, of which logs."""
+        return {
+            "logs": [s.log.name for s in self.signals], "reference": [s.log.name for s in self.references], "robot": self.signals[0].subject.name,
+            "seed": self.seed, "held_out": "logs" if self.way == LOGS else "blocks", "commit": provenance.git_commit(),
+            "versions": provenance.versions(("hyperleg-design", "numpy", "scipy")),
+        }  # fmt: skip
+
+
+def _without(found: Decision, place: int) -> float:
+    """Gain of the model before a cause was added, for slots after the first."""
+    return max((m.gain for m in found.slots[place - 1] if len(m.causes) == place), default=0.0)
+
+
+def _regimes(signals: Signals, balance: str, column: int) -> dict[str, np.ndarray]:
+    """What a joint or motor was doing `(t,)` of bool each."""
+    velocity = signals.velocity[:, column] if balance == "motion" else signals.velocity @ signals.subject.joint_from_motor[:, column]
+    speed = np.abs(velocity)
+    middle = np.median(speed)
+    reach = max(round(0.05 / signals.step), 1)
+    turns = np.flatnonzero(np.diff(np.sign(velocity)) != 0)
+    reversal = np.zeros(len(speed), bool)
+    for turn in turns.tolist():
+        reversal[max(turn - reach, 0) : turn + reach + 1] = True
+    found = {"forward": velocity >= 0, "backward": velocity < 0, "slow": speed < middle, "fast": speed >= middle, "reversal": reversal}
+    if balance == "motion":
+        load = np.abs(signals.rigid[:, column])
+        found |= {"light load": load < np.median(load), "heavy load": load >= np.median(load)}
+        place = signals.position[:, column]
+        found |= {"low posture": place < np.median(place), "high posture": place >= np.median(place)}
+    return found
+
+
+def parameters(judge: Judge, model: Model, place: int) -> dict[str, Value]:
+    """Values of one cause with 95 % intervals, calibration errors and coloured noise included."""
+    cause = model.causes[place]
+    start = sum(len(c.nulls) for c in model.causes[:place])
+    values = model.values(place)
+    deviation = np.sqrt(np.maximum(np.diag(model.fit.covariance), 0.0))[start : start + len(values)] * cause.usual
+    found = {}
+    for i, parameter in enumerate(EFFECTS[cause.effect].parameters):
+        reach = judge.thresholds.interval * NORMAL * deviation[i]
+        found[parameter.name] = Value(
+            float(values[i]), float(max(values[i] - reach, cause.low[i])), float(min(values[i] + reach, cause.high[i])), parameter.unit
+        )
+    return found
+
+
+__all__ = ["diagnose", "diagnose_signals", "parameters"]

@@ -1,0 +1,191 @@
+"""A diagnosis as `diagnosis.json` holds it (`diagnosis_schema.json`): verdict, gap, where, causes, rivals, what to do next."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import short_name
+from hyperleg_design.writing import write_json
+
+SCHEMA = 1
+VERDICTS = ("explained", "ambiguous", "none", "unknown")
+SCHEMA_FILE = Path(__file__).with_name("diagnosis_schema.json")
+DIGITS = 6
+"""Significant digits of numbers."""
+
+
+@dataclass(frozen=True)
+class Value:
+    """A parameter with its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Named:
+    """A cause, or a rival of one."""
+
+    effect: str
+    location: str
+    probability: float
+    closed: float
+    """Share of the excess gap that it closes on held-out data; of several causes, what it adds to those before."""
+    parameters: Mapping[str, Value]
+
+    def mapping(self) -> dict[str, Any]:
+        """As the file holds it."""
+        values = {n: {"value": p.value, "low": p.low, "high": p.high, "unit": p.unit} for n, p in self.parameters.items()}
+        return {"effect": self.effect, "location": self.location, "probability": self.probability, "closed": self.closed, "parameters": values}
+
+
+@dataclass(frozen=True)
+class Shrinkage:
+    """How large the gap is and how far it shrinks, on held-out data, over the rows that count."""
+
+    before: float
+    after: float
+    floor: float
+    closed: float
+    closed_interval: tuple[float, float]
+    unit: str
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the gap lies."""
+
+    location: str
+    kind: str
+    """`joint`, `motor`, `link`, `foot`, `sensor` or `robot`."""
+    regime: str
+    """`all`, or what joint, motor or foot was doing."""
+    share: float
+    """Of the squared excess; in a regime, of that of its place."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What logs say of the gap."""
+
+    verdict: str
+    """One of `VERDICTS`."""
+    gap: Shrinkage
+    where: tuple[Place, ...]
+    causes: tuple[Named, ...]
+    rivals: tuple[Named, ...]
+    equivalent: tuple[tuple[tuple[str, str], ...], ...]
+    """Sets of (effect, location) that these data cannot tell apart."""
+    separating_experiment: Mapping[str, Any] | None
+    not_judged: tuple[Mapping[str, str], ...] = ()
+    residual_shape: tuple[Mapping[str, Any], ...] = ()
+    checks: tuple[str, ...] = ()
+    nuisance: tuple[Mapping[str, Any], ...] = ()
+    """Calibration errors that were fitted along, the largest first, in usual sizes."""
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+
+    def mapping(self) -> dict[str, Any]:
+        """As `diagnosis.json` holds it, numbers rounded to `DIGITS`."""
+        gap = {
+            "before": self.gap.before, "after": self.gap.after, "floor": self.gap.floor, "closed": self.gap.closed,
+            "closed_interval": list(self.gap.closed_interval), "unit": self.gap.unit,
+        }  # fmt: skip
+        found = {
+            "schema": SCHEMA,
+            "verdict": self.verdict,
+            "gap": gap,
+            "where": [{"location": w.location, "kind": w.kind, "regime": w.regime, "share": w.share} for w in self.where],
+            "causes": [c.mapping() for c in self.causes],
+            "rivals": [r.mapping() for r in self.rivals],
+            "equivalent": [[{"effect": e, "location": p} for e, p in group] for group in self.equivalent],
+            "separating_experiment": None if self.separating_experiment is None else dict(self.separating_experiment),
+            "not_judged": [dict(one) for one in self.not_judged],
+            "residual_shape": [dict(one) for one in self.residual_shape],
+            "checks": list(self.checks),
+            "nuisance": [dict(one) for one in self.nuisance],
+            "provenance": dict(self.provenance),
+        }
+        rounded: dict[str, Any] = _rounded(found)
+        return rounded
+
+
+def write_diagnosis(path: str | Path, diagnosis: Diagnosis) -> Path:
+    """Write `diagnosis.json` whole or not at all.
+
+    Raises:
+        OutputError: it cannot be written, or a number in it is not finite.
+    """
+    return write_json(path, diagnosis.mapping())
+
+
+def read_diagnosis(path: str | Path) -> Diagnosis:
+    """Read a `diagnosis.json`.
+
+    Raises:
+        InputError: it cannot be read, or is no diagnosis of this schema.
+    """
+    path = Path(path)
+    where = short_name(path)
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(where, "", None, f"cannot be read ({error.strerror})") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(where, "", None, f"is not JSON ({' '.join(str(error).split())[:80]})") from None
+    if not isinstance(content, dict) or content.get("schema") != SCHEMA:
+        found = content.get("schema") if isinstance(content, dict) else None
+        raise InputError(where, "schema", found, f"expects {SCHEMA}: this is no diagnosis, or one of another version")
+    if content.get("verdict") not in VERDICTS:
+        raise InputError(where, "verdict", content.get("verdict"), f"expects one of {', '.join(VERDICTS)}")
+    try:
+        gap = content["gap"]
+        low, high = gap["closed_interval"]
+        numbers = {name: float(gap[name]) for name in ("before", "after", "floor", "closed")}
+        return Diagnosis(
+            verdict=content["verdict"],
+            gap=Shrinkage(**numbers, closed_interval=(float(low), float(high)), unit=str(gap["unit"])),
+            where=tuple(Place(str(w["location"]), str(w["kind"]), str(w["regime"]), float(w["share"])) for w in content["where"]),
+            causes=_named(content["causes"]),
+            rivals=_named(content["rivals"]),
+            equivalent=tuple(tuple((str(m["effect"]), str(m["location"])) for m in group) for group in content["equivalent"]),
+            separating_experiment=content["separating_experiment"],
+            not_judged=tuple(content.get("not_judged", ())),
+            residual_shape=tuple(content.get("residual_shape", ())),
+            checks=tuple(content.get("checks", ())),
+            nuisance=tuple(content.get("nuisance", ())),
+            provenance=dict(content.get("provenance", {})),
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(where, "", None, f"is not a whole diagnosis ({type(error).__name__}: {error})") from None
+
+
+def _named(entries: Sequence[Mapping[str, Any]]) -> tuple[Named, ...]:
+    return tuple(
+        Named(
+            str(one["effect"]), str(one["location"]), float(one["probability"]), float(one["closed"]),
+            {str(n): Value(float(p["value"]), float(p["low"]), float(p["high"]), str(p["unit"])) for n, p in one["parameters"].items()},
+        )
+        for one in entries
+    )  # fmt: skip
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(k): _rounded(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(v) for v in value]
+    if isinstance(value, bool) or value is None or isinstance(value, str):
+        return value
+    if hasattr(value, "item"):
+        value = value.item()
+    if isinstance(value, float):
+        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else value
+    return value

@@ -1,0 +1,449 @@
+"""Fits by generalised least squares: causes linearised, calibration errors of each session as random effects, noise scaled by group.
+
+With samples over their floor, y = c + X phi + Z z_s + e, phi ~ N(0, WIDTH^2) in usual sizes, z_s ~ N(mean, covariance) of session s,
+e ~ N(0, scale_g^2). Scales are fitted along: scale_g^2 = (nu + rss_g) / (nu + n_g), the floor counting for `nu` numbers. All fits
+work on sums of products, so that one more costs little.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from hyperleg_design.gap.samples import BLOCKS, Products, Samples, products
+
+WIDTH = 4.0
+"""Standard deviation of a cause's parameters over their usual distance from the null (assumed: wide)."""
+LIMIT = 2.5
+"""Calibration errors are small: none goes beyond so many of its standard deviations."""
+ROUNDS = 3
+"""Fits between which the noise's scales are set anew."""
+CLAMPS = 4
+"""Fits in which calibration errors that would leave their limits are set to them."""
+FREEDOM = 40.0
+"""Most degrees of freedom of a predictive distribution: the scale of other data is never known better (assumed)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prior:
+    """Of the calibration errors of a session, in usual sizes."""
+
+    mean: np.ndarray
+    """`(p,)`"""
+    covariance: np.ndarray
+    """`(p, p)`"""
+
+    @cached_property
+    def most(self) -> np.ndarray:
+        """Largest errors, from the mean `(p,)`."""
+        return np.asarray(LIMIT * np.sqrt(np.diag(self.covariance)))
+
+    @cached_property
+    def precision(self) -> np.ndarray:
+        """`(p, p)`"""
+        return np.linalg.inv(self.covariance)
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """Residual and calibration errors of all samples, with their sums of products."""
+
+    samples: Samples
+    errors: np.ndarray
+    """Columns of the p calibration errors, weighted `(p, S)`."""
+    value: np.ndarray
+    """Residual less the prior mean's share, weighted `(S,)`."""
+    prior: Prior
+    freedom: float
+    """nu."""
+
+    @cached_property
+    def stacked(self) -> np.ndarray:
+        """Errors, then value `(p + 1, S)`."""
+        return np.concatenate([self.errors, self.value[None]])
+
+    @cached_property
+    def number(self) -> np.ndarray:
+        """Independent numbers by part and group `(P, G)`."""
+        found = np.zeros((len(self.samples.session), self.samples.groups))
+        np.add.at(found, (self.samples.part, self.samples.group), self.samples.share)
+        return found
+
+    @cached_property
+    def sums(self) -> list[list[np.ndarray]]:
+        """By way of holding out and fold: products `(sessions, G, p + 1, p + 1)`."""
+        samples, size = self.samples, len(self.errors) + 1
+        found = [[np.zeros((samples.sessions, samples.groups, size, size)) for _ in range(samples.folds(way))] for way in range(len(samples.fold))]
+        for piece in samples.pieces:
+            mine = self.stacked[:, piece.start : piece.stop]
+            product = mine @ mine.T
+            for way, fold in enumerate(samples.fold[:, piece.part]):
+                found[way][fold][samples.session[piece.part], piece.group] += product
+        return found
+
+    @cached_property
+    def total(self) -> np.ndarray:
+        """Products of all samples `(sessions, G, p + 1, p + 1)`."""
+        return np.asarray(sum(self.sums[BLOCKS]))
+
+    @cached_property
+    def raw(self) -> np.ndarray:
+        """Mean square of the residual by group `(G,)`, over the floor, the floor's own weight included."""
+        samples = self.samples
+        square = np.bincount(samples.group, self.value**2, samples.groups)
+        return np.maximum((self.freedom + square) / (self.freedom + self.number.sum(0)), 1.0)
+
+    @cached_property
+    def _kept(self) -> dict[bytes, tuple[np.ndarray, tuple[np.ndarray, bool], float]]:
+        return {}
+
+    def normal(self, of_base: np.ndarray, weight: np.ndarray, key: bytes | None) -> tuple[np.ndarray, tuple[np.ndarray, bool], float]:
+        """Weighted products of the base, the factor of the errors' normal equations, and its log determinant; kept under a key."""
+        from scipy.linalg import cho_factor
+
+        if key is not None and key in self._kept:
+            return self._kept[key]
+        size = len(self.errors)
+        summed = (weight @ of_base.reshape(len(weight), -1)).reshape(of_base.shape[1:])
+        factor = cho_factor(summed[:size, :size] + self.prior.precision, check_finite=False)
+        found = summed, factor, 2 * float(np.log(np.diag(factor[0])).sum())
+        if key is not None and len(self._kept) < 64:
+            self._kept[key] = found
+        return found
+
+    @cached_property
+    def blocks(self) -> int:
+        """Number of blocks of the bootstrap."""
+        return int(self.samples.block.max(initial=-1)) + 1
+
+
+@dataclass(frozen=True, eq=False)
+class Cause:
+    """One effect at one place, linearised at some values; its trace is `constant + columns phi` with phi = (values - nulls) / usual."""
+
+    effect: str
+    location: str
+    values: np.ndarray
+    """At which it is linearised `(k,)`."""
+    nulls: np.ndarray
+    usual: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    """Bounds `(k,)` each."""
+    shape: np.ndarray
+    """Parameters that only shape `(k,)` of bool."""
+    columns: np.ndarray
+    """`(k, S)` in the residual's unit."""
+    constant: np.ndarray
+    """`(S,)`; 0 where the trace is linear."""
+    linear: bool
+
+    @property
+    def name(self) -> tuple[str, str]:
+        """Effect and location."""
+        return self.effect, self.location
+
+    @property
+    def phi(self) -> np.ndarray:
+        """`values` in usual sizes from the nulls."""
+        return np.asarray((self.values - self.nulls) / self.usual)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """Result of a fit."""
+
+    phi: np.ndarray
+    """Of all causes one after the other."""
+    covariance: np.ndarray
+    """Of phi, calibration errors and noise's scale included."""
+    errors: np.ndarray
+    """Of each session `(sessions, p)`."""
+    scale: np.ndarray
+    """Variance over the floor's `(G,)`."""
+    evidence: float
+    """Laplace's log evidence, up to what all fits of the same samples share."""
+    rss: np.ndarray
+    """`(G,)`, over the floor."""
+
+
+class Design:
+    """Columns of some causes beside a base, ready for fits.
+
+    Args:
+        base: residual and calibration errors.
+        causes: linearised.
+        ridge: columns that belong to no cause, weighted `(k, S)`, with unit prior variance.
+    """
+
+    def __init__(self, base: Base, causes: Sequence[Cause] = (), ridge: np.ndarray | None = None) -> None:
+        self.base, self.causes = base, tuple(causes)
+        weight = base.samples.weight
+        parts = [c.columns * weight for c in causes] + ([] if ridge is None else [ridge])
+        self.count = sum(len(p) for p in parts)
+        self.deviation = np.concatenate([np.where(c.shape, 1.0, WIDTH) if len(c.shape) else np.zeros(0) for c in causes] + ([] if ridge is None else [np.ones(len(ridge))]) or [np.zeros(0)])  # fmt: skip
+        self.low = np.concatenate([(c.low - c.nulls) / c.usual for c in causes] + ([] if ridge is None else [np.full(len(ridge), -np.inf)]) or [np.zeros(0)])  # fmt: skip
+        self.high = np.concatenate([(c.high - c.nulls) / c.usual for c in causes] + ([] if ridge is None else [np.full(len(ridge), np.inf)]) or [np.zeros(0)])  # fmt: skip
+        constant = np.zeros(len(weight))
+        for c in causes:
+            if not c.linear:
+                constant = constant + c.constant
+        self.constant = constant * weight
+        self.shifted = bool(self.constant.any())
+        self.columns = np.concatenate([*parts, self.constant[None]]) if parts else np.zeros((1, len(weight)))
+        self.products: Products | None = products(base.samples, self.columns, base.stacked) if self.count or self.shifted else None
+
+    def gathered(self, way: int, fold: int | None, session: int, inside: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Sums of products of a fold, of all but it (`inside` False), or of everything (no fold), in one session.
+
+        Returns:
+            Of the base `(G, p + 1, p + 1)`, of own columns `(G, k + 1, k + 1)`, between them `(G, k + 1, p + 1)`.
+        """
+        base = self.base
+        if fold is None:
+            of_base = base.total[session]
+            parts = base.samples.session == session
+        else:
+            one = base.sums[way][fold][session]
+            of_base = one if inside else base.total[session] - one
+            parts = (base.samples.session == session) & ((base.samples.fold[way] == fold) == inside)
+        if self.products is None:
+            groups = base.samples.groups
+            return of_base, np.zeros((groups, 1, 1)), np.zeros((groups, 1, of_base.shape[-1]))
+        return of_base, self.products.own[parts].sum(0), self.products.cross[parts].sum(0)
+
+    def solve(
+        self, weight: np.ndarray, way: int = BLOCKS, without: int | None = None, held: np.ndarray | None = None, start: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """One fit at given weights of the groups `(G,)`.
+
+        Args:
+            weight: over the floor's.
+            way: of holding out.
+            without: fold held out.
+            held: values of phi that are fixed, NaN where free `(k,)`.
+            start: calibration errors known to be at their limits, 0 where not `(sessions, p)`.
+
+        Returns:
+            phi `(k,)`, its covariance, errors `(sessions, p)`, and the log determinant that evidence needs.
+        """
+        from scipy.linalg import cho_factor, cho_solve
+
+        base, k = self.base, self.count
+        size = len(base.errors)
+        most = base.prior.most
+        sums = [self.gathered(way, without, session, False) for session in range(base.samples.sessions)]
+        weighed = []
+        for session, (of_base, own, cross) in enumerate(sums):
+            key = weight.tobytes() + bytes([session]) if without is None else None
+            summed, factor, log = base.normal(of_base, weight, key)
+            weighed.append((summed, factor, log, np.tensordot(weight, own, 1), np.tensordot(weight, cross, 1)))
+        clamped = np.zeros((len(sums), size)) if start is None else start
+        for attempt in range(CLAMPS):
+            matrix, right, determinant, kept = np.diag(1 / self.deviation**2), np.zeros(k), 0.0, []
+            for session, (summed, factor, log, mine, between) in enumerate(weighed):
+                fixed = clamped[session] != 0
+                target, across = summed[:size, size] - between[k, :size], between[:k, :size]
+                own_right = between[:k, size] - mine[:k, k]
+                if fixed.any():
+                    free = ~fixed
+                    normal = summed[:size, :size] + base.prior.precision
+                    target = target - normal[:, fixed] @ clamped[session, fixed]
+                    own_right = own_right - across[:, fixed] @ clamped[session, fixed]
+                    solved = np.zeros((size, k + 1))
+                    factor = cho_factor(normal[np.ix_(free, free)], check_finite=False)
+                    solved[free] = cho_solve(factor, np.concatenate([across[:, free], target[None, free]]).T, check_finite=False)
+                else:
+                    solved = cho_solve(factor, np.concatenate([across, target[None]]).T, check_finite=False)
+                matrix = matrix + mine[:k, :k] - across @ solved[:, :k]
+                right = right + own_right - across @ solved[:, k]
+                determinant += log
+                kept.append(solved)
+            phi, covariance = _bounded(matrix, right, self.low, self.high, held)
+            errors = np.stack([solved[:, k] - solved[:, :k] @ phi for solved in kept]) + clamped
+            beyond = np.abs(errors) > most * (1 + 1e-9)
+            if not beyond.any() or attempt == CLAMPS - 1:
+                break
+            clamped = np.where(beyond, np.clip(errors, -most, most), clamped)
+        errors = np.clip(errors, -most, most)
+        if k:
+            determinant += float(np.linalg.slogdet(matrix)[1]) + 2 * float(np.log(self.deviation).sum())
+        return phi, covariance, errors, np.array(determinant)
+
+    def rss(self, phi: np.ndarray, errors: np.ndarray, way: int = BLOCKS, fold: int | None = None, inside: bool = True) -> np.ndarray:
+        """Squares left over by group `(G,)`, over the floor."""
+        found = np.zeros(self.base.samples.groups)
+        for session in range(self.base.samples.sessions):
+            of_base, own, cross = self.gathered(way, fold, session, inside)
+            u = np.append(errors[session], -1.0)
+            found += (of_base @ u) @ u
+            if self.products is not None:
+                v = np.append(phi, 1.0)
+                found += np.einsum("k,gkl,l->g", v, own, v) + 2 * np.einsum("k,gkp,p->g", v, cross, u)
+        return np.maximum(found, 0.0)
+
+    def fit(self, way: int = BLOCKS, without: int | None = None, scale: np.ndarray | None = None, rounds: int = ROUNDS) -> Fit:
+        """Fit, with the noise's scales fitted along.
+
+        Args:
+            way: of holding out.
+            without: fold held out.
+            scale: to begin with `(G,)`.
+            rounds: of setting the scales.
+        """
+        base = self.base
+        number = _number(base, way, without, False)
+        if scale is None:
+            # from large noise to small: calibration errors first take what their priors allow, not all that they could
+            scale, rounds = base.raw, 2 * rounds
+        for _ in range(max(rounds, 1)):
+            phi, covariance, errors, determinant = self.solve(1 / scale, way, without)
+            rss = self.rss(phi, errors, way, without, without is None)
+            if rounds:
+                scale = (base.freedom + rss) / (base.freedom + number)
+        penalty = float(np.sum((phi / self.deviation) ** 2)) if self.count else 0.0
+        penalty += float(np.einsum("sp,pq,sq->", errors, base.prior.precision, errors))
+        evidence = -0.5 * float(np.sum((base.freedom + number) * np.log(scale))) - 0.5 * penalty - 0.5 * float(determinant)
+        return Fit(phi, covariance, errors, scale, evidence, rss)
+
+    def left(self, phi: np.ndarray, errors: np.ndarray) -> np.ndarray:
+        """What is left of every sample, weighted `(S,)`; errors by session `(sessions, p)`."""
+        base = self.base
+        session = base.samples.session[base.samples.part]
+        found = base.value - self.constant
+        if self.count:
+            found = found - phi @ self.columns[: self.count]
+        for s in range(base.samples.sessions):
+            found = found - np.where(session == s, errors[s] @ base.errors, 0.0)
+        return np.asarray(found)
+
+
+def _number(base: Base, way: int, fold: int | None, inside: bool) -> np.ndarray:
+    if fold is None:
+        return np.asarray(base.number.sum(0))
+    return np.asarray(base.number[(base.samples.fold[way] == fold) == inside].sum(0))
+
+
+def _bounded(
+    matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray, held: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Least squares within bounds: what would leave them is set to them, the rest fitted again."""
+    k = len(right)
+    fixed = np.full(k, np.nan) if held is None else held.copy()
+    phi = np.zeros(k)
+    for _ in range(k + 1):
+        free = np.isnan(fixed)
+        phi = np.where(free, 0.0, fixed)
+        if free.any():
+            phi[free] = np.linalg.solve(matrix[np.ix_(free, free)], right[free] - matrix[np.ix_(free, ~free)] @ phi[~free])
+        outside = free & ((phi < low) | (phi > high))
+        if not outside.any():
+            break
+        fixed[outside] = np.clip(phi[outside], low[outside], high[outside])
+    return phi, np.linalg.inv(matrix) if k else np.zeros((0, 0))
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """How a model predicts data that it was not fitted to."""
+
+    likelihood: np.ndarray
+    """Log-likelihood by block of the bootstrap `(B,)`."""
+    square: np.ndarray
+    """Sum of the squares that are left, by block and group, in the residual's unit `(B, G)`."""
+    left: np.ndarray
+    """What is left of every sample, weighted `(S,)`."""
+
+    @property
+    def total(self) -> float:
+        """Log-likelihood of all blocks."""
+        return float(self.likelihood.sum())
+
+
+def predict(design: Design, way: int = BLOCKS, start: np.ndarray | None = None) -> Held:
+    """Fit without each fold and predict it.
+
+    Args:
+        design: columns of the model.
+        way: of holding out.
+        start: scales to begin with `(G,)`.
+    """
+    base = design.base
+    samples = base.samples
+    left, spread, freedom = np.zeros(len(samples.value)), np.ones(len(samples.value)), np.ones(len(samples.value))
+    fold_of = samples.fold[way][samples.part]
+    for fold in range(samples.folds(way)):
+        found = design.fit(way, fold, start, rounds=ROUNDS if start is None else 2)
+        errors = found.errors
+        # a session that was held out whole has no fit of its own: its errors stay at the prior mean
+        here = fold_of == fold
+        left[here] = design.left(found.phi, errors)[here]
+        spread[here] = found.scale[samples.group[here]]
+        freedom[here] = np.minimum(base.freedom + _number(base, way, fold, False), FREEDOM)[samples.group[here]]
+    cell = samples.block * samples.groups + samples.group
+    cells, inverse = np.unique(cell, return_inverse=True)
+    size = np.bincount(inverse, samples.share)
+    square = np.bincount(inverse, left**2)
+    nu, scale = (np.bincount(inverse, v * samples.share) / size for v in (freedom, spread))
+    each = -0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale)
+    likelihood = np.bincount(cells // samples.groups, each, base.blocks)
+    squares = np.bincount(cell, (left / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups)
+    return Held(likelihood, squares, left)
+
+
+def moved(cause: Cause, values: np.ndarray, columns: np.ndarray, constant: np.ndarray) -> Cause:
+    """The same cause linearised elsewhere."""
+    return replace(cause, values=values, columns=columns, constant=constant)
+
+
+ROBUST_FREEDOM = 4.0
+"""Of the Student distribution that finds episodes."""
+EPISODE = 6.0
+"""Residual over the robust scale of its group from which there is an episode."""
+NEAR_EPISODE = 0.15
+"""Time around such a sample that belongs to the episode [s]."""
+MOST_EPISODES = 0.3
+"""Share of a row above which there are no episodes but noise that is larger than thought."""
+
+
+def episodes(base: Base) -> np.ndarray:
+    """Samples in rare episodes of residuals much larger than the rest of their row `(S,)` of bool.
+
+    They are found after a fit of the calibration errors with Student weights, which such episodes do not bend.
+    """
+    from scipy.linalg import cho_factor, cho_solve
+
+    samples = base.samples
+    session = samples.session[samples.part]
+    weight, left = np.ones(len(base.value)), base.value.copy()
+    plain = np.abs(base.value) / np.sqrt(samples.share)
+    scale = np.ones(samples.groups)
+    for _ in range(4):
+        for s in range(samples.sessions):
+            mine = session == s
+            columns = base.errors[:, mine] * np.sqrt(weight[mine] / scale[samples.group[mine]])
+            target = base.value[mine] * np.sqrt(weight[mine] / scale[samples.group[mine]])
+            factor = cho_factor(columns @ columns.T + base.prior.precision, check_finite=False)
+            left[mine] = base.value[mine] - cho_solve(factor, columns @ target) @ base.errors[:, mine]
+        plain = np.abs(left) / np.sqrt(samples.share)
+        for group in range(samples.groups):
+            scale[group] = max(float(np.median(plain[samples.group == group])) / 0.6745, 0.5) ** 2
+        weight = (ROBUST_FREEDOM + 1) / (ROBUST_FREEDOM + plain**2 / scale[samples.group])
+    found = np.zeros(len(left), bool)
+    large = plain > EPISODE * np.sqrt(scale[samples.group])
+    log = samples.log[samples.part]
+    for key in np.unique(samples.row[large] * (log.max() + 1) + log[large]).tolist():
+        row, number = divmod(key, int(log.max()) + 1)
+        mine = (samples.row == row) & (log == number)
+        times = np.sort(samples.time[mine & large])
+        after = np.clip(np.searchsorted(times, samples.time[mine]), 0, len(times) - 1)
+        near = np.minimum(np.abs(times[after] - samples.time[mine]), np.abs(times[np.maximum(after - 1, 0)] - samples.time[mine]))
+        found[mine] = near <= NEAR_EPISODE
+    for row in range(len(samples.rows)):
+        mine = samples.row == row
+        if mine.any() and found[mine].mean() > MOST_EPISODES:
+            found[mine] = False
+    return found

@@ -1,0 +1,133 @@
+"""What a residual may be when nothing is wrong: noise that a log shows by itself, and how well models of robots are known anyhow.
+
+Of each sample of `filtering`, as a standard deviation. Torque noise is the residual's own level above its cutoff, taken as white;
+noise of accelerations is the smoother's, times the joint's inertia. Beyond noise, drives and friction of a healthy robot are known
+to shares of their size (`floor_torque`, `floor_friction`), which `nuisance` cannot express. Reference logs scale all of it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.filtering import Sieve
+    from hyperleg_design.gap.thresholds import Thresholds
+
+NEAR = 0.5
+"""Time over which the size of a load is averaged [s]."""
+LEAST = 1e-4
+"""Floor over the torque that a joint is made for, at least: what single precision and rounding in logs leave."""
+
+
+def expected(sieve: Sieve, thresholds: Thresholds) -> list[np.ndarray]:
+    """Standard deviation that each sample of each row may have, `(samples,)` a row, in the row's unit."""
+    load, still = _loads(sieve)
+    return [_row(sieve, row, load, still, thresholds) for row in range(len(sieve.rows))]
+
+
+def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, np.ndarray], thresholds: Thresholds) -> np.ndarray:
+    signals, one = sieve.signals, sieve.rows[row]
+    moving = load[one.balance][:, one.column]
+    constant = still[one.balance][one.column]
+    residual = np.where(sieve.mask[row], signals.residual[one.balance][:, one.column], 0.0)
+    density = _white(residual, sieve.mask[row], one.cutoff, signals.step)
+    samples = sieve.sample(row, np.nan_to_num(moving)[None])[0]
+    level, _, _ = sieve.labels(row)
+    whole = np.sqrt(np.nanmean(np.where(sieve.mask[row], moving, np.nan) ** 2)) if sieve.mask[row].any() else 0.0
+    found, start = np.empty(len(samples)), 0
+    for band in sieve.bands[row]:
+        part = slice(start, start + len(band.kept))
+        start = part.stop
+        local = _smoothed(samples[part] ** 2, band.count / (sieve.length * signals.step) * NEAR)
+        noise = density * (band.high - band.low) + _of_acceleration(sieve, row, band.low, band.high)
+        share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
+        dry = (thresholds.floor_friction * constant) ** 2 / len(sieve.bands[row])
+        found[part] = np.sqrt(noise + share + dry + (LEAST * _strength(sieve, row)) ** 2)
+    assert len(level) == start
+    return found
+
+
+def _loads(sieve: Sieve) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """By balance: size of what is balanced `(t, columns)`, and friction of the model `(columns,)`."""
+    signals = sieve.signals
+    subject = signals.subject
+    found: dict[str, np.ndarray] = {}
+    still: dict[str, np.ndarray] = {}
+    for balance, residual in signals.residual.items():
+        still[balance] = np.zeros(residual.shape[1])
+        if balance == "motion":
+            found[balance] = applied(subject.joint_from_motor, signals.believed)
+            still[balance] = subject.coulomb
+        elif balance == "base" and signals.contact is not None:
+            total = np.linalg.norm(np.nan_to_num(signals.contact).sum(1), axis=-1)
+            found[balance] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
+        elif balance == "ground" and signals.contact is not None:
+            found[balance] = np.repeat(np.linalg.norm(signals.contact, axis=-1), 3, axis=-1)
+        elif signals.command is not None and residual.shape[1] == signals.command.shape[1]:
+            found[balance] = signals.command
+        else:
+            found[balance] = residual
+    return found, still
+
+
+def _strength(sieve: Sieve, row: int) -> float:
+    one, subject = sieve.rows[row], sieve.signals.subject
+    if one.balance == "motion":
+        return float(joint_strength(subject)[one.column])
+    if one.balance in ("base", "ground"):
+        return 100.0
+    limit = float(subject.torque_limit[one.column])
+    return limit if np.isfinite(limit) else 1.0
+
+
+def _white(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -> float:
+    """One-sided density of a residual above its cutoff, by the median, which lines and leaks do not move [unit^2/Hz]."""
+    known = np.flatnonzero(mask)
+    if len(known) < 64:
+        return 0.0
+    # second differences take out what is slow, so that none of it leaks
+    third = np.diff(np.interp(np.arange(known[0], known[-1] + 1), known, residual[known]), 3)
+    power = np.abs(np.fft.rfft(third * np.hanning(len(third)))) ** 2
+    frequency = np.fft.rfftfreq(len(third), step)
+    # interpolation onto even ticks takes noise away near the Nyquist frequency
+    first = min(1.3 * cutoff, 0.3 / step)
+    high = (frequency > first) & (frequency < min(2 * first, 0.45 / step))
+    if high.sum() < 8:
+        return 0.0
+    passed = (2 * np.sin(np.pi * frequency[high] * step)) ** 6
+    passed = passed * (1 - (1 - np.cos(2 * np.pi * frequency[high] * step)) / 3)  # mean of linear interpolation at any place
+    density = np.median(power[high] / passed) / np.log(2)
+    return float(2 * step * density / np.sum(np.hanning(len(third)) ** 2))
+
+
+def _of_acceleration(sieve: Sieve, row: int, low: float, high: float) -> float:
+    """Variance in a band of the torque that noise of positions feigns, twice differentiated, below the smoother's crossover."""
+    signals, one = sieve.signals, sieve.rows[row]
+    if one.balance != "motion" or signals.noise is None or not np.isfinite(signals.noise[one.column]):
+        return 0.0
+    subject = signals.subject
+    inertia = float(joint_inertia(subject)[one.column] + subject.armature[one.column, one.column])
+    density = 2 * signals.step * float(signals.noise[one.column]) ** 2
+    stiff = _feedback(sieve, row)
+    return density * (inertia**2 * (2 * np.pi) ** 4 * (high**5 - low**5) / 5 + stiff**2 * (high - low))
+
+
+def _feedback(sieve: Sieve, row: int) -> float:
+    """Torque over noise of position where the torque is computed from the logged position [Nm/rad]."""
+    signals, one = sieve.signals, sieve.rows[row]
+    gain = float(signals.subject.gains[one.column, 0]) if signals.measured is None and signals.target is not None else 0.0
+    return gain if np.isfinite(gain) else 0.0
+
+
+def _smoothed(values: np.ndarray, width: float) -> np.ndarray:
+    """Moving average that keeps the length."""
+    reach = max(round(width), 1)
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    index = np.arange(len(values))
+    left, right = np.maximum(index - reach, 0), np.minimum(index + reach + 1, len(values))
+    return np.asarray((total[right] - total[left]) / np.maximum(right - left, 1))

@@ -1,0 +1,148 @@
+"""The usual small calibration errors, which are no causes: priors of each, fitted anew for every recording session.
+
+Each is one parameter of an effect of the catalogue at one place, so that its trace is the effect's own. Widths are assumed, of the
+order that data sheets and drawings are wrong by; `WIDE` is what a robot that is never described well (a harmonic drive without
+friction in its model) may differ by for life, which reference logs tell; `DAY` is what changes from one session to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from hyperleg_design.gap.filtering import Sieve
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+TORQUE_CONSTANT = 0.02
+COULOMB, COULOMB_LEAST = 0.1, 0.0015
+"""Of the model's friction, and of the torque that the joint is made for."""
+VISCOUS, VISCOUS_LEAST = 0.12, 0.001
+BREAKAWAY = 0.08
+"""Of the model's Coulomb friction."""
+LOAD_FRICTION = 0.006
+OFFSET = 0.003
+"""[rad]"""
+MASS, CENTRE, SHORTEST = 0.03, 0.03, 0.03
+"""Of the link's mass; of the distance of its centre of mass from its joint, at least of so many metres."""
+ROTOR, OWN_INERTIA = 0.06, 0.01
+"""Of the rotor's inertia and of that of its joint."""
+TORQUE_OFFSET, SPRING = 0.002, 0.002
+"""Of the torque that the joint is made for, and that a radian."""
+LATE, LATE_TICKS = 0.001, 0.15
+"""[s] and ticks of the log, of all drives; a lag of one of them is half."""
+GAIN = 0.01
+GYRO, ACCELEROMETER = 0.003, 0.05
+"""[rad/s], [m/s^2]"""
+GROUND = 0.1
+WIDE = {
+    "coulomb_friction": 15.0, "viscous_friction": 15.0, "stribeck_friction": 15.0, "load_dependent_friction": 10.0, "torque_constant": 4.0,
+    "encoder_offset": 4.0, "link_mass": 4.0, "link_com": 4.0, "rotor_inertia": 5.0, "joint_spring": 6.0, "command_delay": 6.0,
+    "actuator_bandwidth": 6.0, "controller_gain": 3.0, "imu_bias": 4.0, "ground_friction": 3.0, "ground_compliance": 5.0,
+}  # fmt: skip
+DAY = {
+    "coulomb_friction": 0.5, "viscous_friction": 0.6, "stribeck_friction": 0.5, "load_dependent_friction": 0.5, "torque_constant": 0.4,
+    "encoder_offset": 0.35, "link_mass": 0.1, "link_com": 0.1, "rotor_inertia": 0.1, "joint_spring": 0.6, "command_delay": 0.3,
+    "actuator_bandwidth": 0.3, "controller_gain": 0.3, "imu_bias": 1.0, "ground_friction": 0.7, "ground_compliance": 0.7,
+}  # fmt: skip
+ABOVE_CALIBRATED = 0.08
+"""Day-to-day change of friction over what reference logs calibrated."""
+LEAST = 1e-3
+"""Trace at its usual size over the floor, below which a nuisance is left out."""
+
+
+@dataclass(frozen=True)
+class Usual:
+    """One calibration error."""
+
+    effect: str
+    location: str
+    parameter: int
+    spread: float
+    """Standard deviation from the null, in the parameter's unit."""
+
+    @property
+    def name(self) -> str:
+        """For people."""
+        return f"{self.effect} at {self.location}: {EFFECTS[self.effect].parameters[self.parameter].name}"
+
+
+def usual_errors(subject: Subject, step: float) -> list[Usual]:
+    """Calibration errors of a robot whose logs have a step [s]."""
+    strength, inertia = joint_strength(subject), joint_inertia(subject)
+    found: list[Usual] = []
+    for j, joint in enumerate(subject.joints):
+        coulomb = COULOMB * subject.coulomb[j] + COULOMB_LEAST * strength[j]
+        found += [
+            Usual("coulomb_friction", joint, 0, coulomb),
+            Usual("viscous_friction", joint, 0, VISCOUS * subject.viscous[j] + VISCOUS_LEAST * strength[j]),
+            Usual("stribeck_friction", joint, 0, BREAKAWAY * subject.coulomb[j] + 0.3 * COULOMB_LEAST * strength[j]),
+            Usual("load_dependent_friction", joint, 0, LOAD_FRICTION),
+            Usual("encoder_offset", joint, 0, OFFSET),
+            Usual("joint_spring", joint, 0, SPRING * strength[j]),
+            Usual("joint_spring", joint, 1, TORQUE_OFFSET * strength[j]),
+            Usual("controller_gain", joint, 0, GAIN),
+            Usual("controller_gain", joint, 1, GAIN),
+        ]
+    late = LATE + LATE_TICKS * step
+    found.append(Usual("command_delay", "robot", 0, late))
+    for m, motor in enumerate(subject.motors):
+        column = np.abs(subject.joint_from_motor[:, m])
+        main = int(np.argmax(column))
+        rotor = ROTOR * subject.rotor_inertia[m] + OWN_INERTIA * inertia[main] / max(float(column[main]), 1e-9) ** 2
+        found += [
+            Usual("torque_constant", motor, 0, TORQUE_CONSTANT),
+            Usual("rotor_inertia", motor, 0, rotor),
+            Usual("actuator_bandwidth", motor, 0, 0.5 * late),
+        ]
+    for link in EFFECTS["link_mass"].locations(subject):
+        own = subject.tree.link_inertial[subject.tree.link(link)]
+        arm = max(float(np.linalg.norm(own[1:4] / own[0])), SHORTEST)
+        found.append(Usual("link_mass", link, 0, MASS * own[0]))
+        found += [Usual("link_com", link, axis, CENTRE * arm) for axis in range(3)]
+    if subject.floating:
+        found += [Usual("imu_bias", "imu", i, GYRO if i < 3 else ACCELEROMETER) for i in range(6)]
+        for foot in subject.feet:
+            found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, GROUND)]
+            found.append(Usual("ground_compliance", foot, 1, GROUND))
+    places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
+    return [one for one in found if one.location in places[one.effect] and one.spread > 0]
+
+
+def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarray]]:
+    """Trace of each error at one spread from its null, by balance `(t, columns)`."""
+    found = []
+    for one in errors:
+        effect = EFFECTS[one.effect]
+        values = effect.nulls
+        low, high = effect.bounds(one.location, signals.subject)[:, one.parameter]
+        sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
+        values[one.parameter] = np.clip(values[one.parameter] + sign * one.spread, low, high)
+        moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
+        found.append({b: v[0] / moved for b, v in effect.trace(signals, one.location, values[None]).items()} if moved else {})
+    return found
+
+
+def columns(sieve: Sieve, errors: Sequence[Usual]) -> dict[int, np.ndarray]:
+    """Samples of all errors at one spread each, by row `(errors, samples)`."""
+    found = {row: np.zeros((len(errors), sieve.count(row))) for row in range(len(sieve.rows))}
+    for place, trace in enumerate(traces(sieve.signals, errors)):
+        for row, one in enumerate(sieve.rows):
+            if one.balance in trace:
+                values = trace[one.balance][:, one.column]
+                if np.any(np.nan_to_num(values) != 0):
+                    found[row][place] = sieve.sample(row, values[None])[0]
+    return found
+
+
+def spreads(errors: Sequence[Usual], factors: Mapping[str, float]) -> np.ndarray:
+    """Factor of each error's effect `(errors,)`."""
+    return np.array([factors.get(one.effect, 1.0) for one in errors])

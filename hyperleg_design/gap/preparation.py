@@ -1,0 +1,153 @@
+"""From conditioned logs to what causes are fitted on: samples over their floor, and calibration errors with priors from reference logs.
+
+Reference logs calibrate the healthy robot: errors as wide as `nuisance.WIDE` are fitted to them, what they leave over scales the
+floor, and the logs under test may differ from them by the usual change from day to day.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap import filtering, floor, nuisance
+from hyperleg_design.gap.fit import Base, Design, Fit, Prior, episodes
+from hyperleg_design.gap.samples import Samples, gather
+from hyperleg_design.gap.screen import reach
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.filtering import Sieve
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.thresholds import Thresholds
+
+MOST_SESSIONS = 4
+"""Sessions told apart; more are dealt to these in turn."""
+LEAST_SCALE, MOST_SCALE = 0.5, 400.0
+"""Range of the variance of reference logs over the floor assumed without them that is believed."""
+SPARE = 1.15
+"""Of the floor from reference logs: other motions on another day fit a little worse (assumed)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """Ready for causes."""
+
+    base: Base
+    errors: tuple[nuisance.Usual, ...]
+    """Of the base's columns."""
+    calibrated: bool
+    """Whether reference logs were at hand."""
+
+
+def prepare(signals: Sequence[Signals], references: Sequence[Signals], thresholds: Thresholds) -> Prepared:
+    """Samples, calibration errors and their priors.
+
+    Args:
+        signals: conditioned logs under test.
+        references: conditioned logs of the healthy robot.
+        thresholds: fixed rules.
+    """
+    subject = signals[0].subject
+    usual = nuisance.usual_errors(subject, signals[0].step)
+    own = _Columns(signals, usual, thresholds, sessions_of(signals))
+    kept = np.array([reach(own.samples, row[None]) > nuisance.LEAST for row in own.errors], bool)
+    if references:
+        healthy = _Columns(references, usual, thresholds, np.zeros(len(references), int))
+        kept |= np.array([reach(healthy.samples, row[None]) > nuisance.LEAST for row in healthy.errors], bool)
+        errors = [one for one, k in zip(usual, kept, strict=True) if k]
+        wide = np.diag(nuisance.spreads(errors, nuisance.WIDE) ** 2)
+        base = healthy.base(kept, Prior(np.zeros(len(errors)), wide), thresholds)
+        fit = Design(base).fit()
+        prior = _after(base, fit, errors)
+        scales = _scales(base, fit)
+        own = own.scaled(scales)
+    else:
+        errors = [one for one, k in zip(usual, kept, strict=True) if k]
+        prior = Prior(np.zeros(len(errors)), np.eye(len(errors)))
+    return Prepared(own.base(kept, prior, thresholds), tuple(errors), bool(references))
+
+
+def sessions_of(signals: Sequence[Signals]) -> np.ndarray:
+    """Number of the session of each log; a log without one is a session of its own."""
+    names = [s.log.metadata.session or f"\0{i}" for i, s in enumerate(signals)]
+    order = list(dict.fromkeys(names))
+    return np.array([order.index(name) % MOST_SESSIONS for name in names])
+
+
+class _Columns:
+    """Samples of some logs with the columns of all calibration errors."""
+
+    def __init__(
+        self, signals: Sequence[Signals], usual: Sequence[nuisance.Usual], thresholds: Thresholds, sessions: np.ndarray,
+        kept: tuple[list[Sieve], list[list[np.ndarray]], np.ndarray] | None = None,
+    ) -> None:  # fmt: skip
+        self.sessions, self.thresholds = sessions, thresholds
+        if kept is None:
+            self.sieves = [filtering.sieve(s, filtering.sticking(s)) for s in signals]
+            self.floors = [floor.expected(one, thresholds) for one in self.sieves]
+            self.samples = gather(self.sieves, self.floors, sessions.tolist(), thresholds.information)
+            self.errors = np.zeros((len(usual), len(self.samples.value)))
+            for one, places in zip(self.sieves, self.samples.where, strict=True):
+                for row, columns in nuisance.columns(one, usual).items():
+                    self.errors[:, places[row]] = columns
+        else:
+            self.sieves, self.floors, self.errors = kept
+            self.samples = gather(self.sieves, self.floors, sessions.tolist(), thresholds.information)
+
+    def scaled(self, scales: dict[tuple[str, int, int], float]) -> _Columns:
+        """With the floor of each row and band scaled in variance."""
+        floors = []
+        usual = float(np.median(list(scales.values()))) if scales else 1.0
+        for one, rows in zip(self.sieves, self.floors, strict=True):
+            changed = []
+            for place, values in enumerate(rows):
+                row = one.rows[place]
+                band, _, _ = one.labels(place)
+                factor = np.array([scales.get((row.balance, row.column, int(b)), usual) for b in range(int(band.max(initial=-1)) + 1)])
+                changed.append(values * SPARE * np.sqrt(factor[band]) if len(band) else values)
+            floors.append(changed)
+        return _Columns([], (), self.thresholds, self.sessions, (self.sieves, floors, self.errors))
+
+    def base(self, kept: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
+        """Base without the errors that show nowhere, its episodes apart."""
+        found = _base(self.samples, self.errors[kept], prior, thresholds)
+        apart = episodes(found)
+        if not apart.any():
+            return found
+        samples = gather(self.sieves, self.floors, self.sessions.tolist(), thresholds.information, apart)
+        return _base(samples, self.errors[kept], prior, thresholds)
+
+
+def _base(samples: Samples, errors: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
+    weight = samples.weight
+    return Base(samples, errors * weight, (samples.value - prior.mean @ errors) * weight, prior, thresholds.floor_weight)
+
+
+def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual]) -> Prior:
+    """What reference logs tell of another day."""
+    weight = 1 / fit.scale
+    size = len(errors)
+    normal = (weight @ base.total[0].reshape(len(weight), -1)).reshape(size + 1, size + 1)[:size, :size] + base.prior.precision
+    known = np.linalg.inv(normal)
+    mean = fit.errors[0]
+    day = nuisance.spreads(errors, nuisance.DAY)
+    friction = np.array([one.effect.endswith("_friction") and not one.effect.startswith("ground") for one in errors])
+    day = np.hypot(day, np.where(friction, nuisance.ABOVE_CALIBRATED * np.abs(mean), 0.0))
+    return Prior(mean, known + np.diag(day**2))
+
+
+def _scales(base: Base, fit: Fit) -> dict[tuple[str, int, int], float]:
+    """Variance over the floor by balance, column and band."""
+    samples = base.samples
+    number = base.number.sum(0)
+    found = {}
+    for group in np.flatnonzero(~samples.episodic).tolist():
+        row = samples.rows[samples.group_row[group]]
+        scale = (base.freedom + fit.rss[group]) / (base.freedom + number[group])
+        found[row.balance, row.column, int(samples.group_band[group])] = float(np.clip(scale, LEAST_SCALE, MOST_SCALE))
+    return found
+
+
+__all__ = ["Prepared", "prepare", "replace", "sessions_of"]
