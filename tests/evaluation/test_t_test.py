@@ -28,7 +28,8 @@ def run(planned_trial):
         way = np.arange(0, share * (ends[-1] - PROTOCOL.arrival), SPEED * 0.005)
         place = np.column_stack([np.interp(way, ends, course[:, k]) for k in (0, 1)])
         place[1:] += [0.0, aside]
-        cut = {name: getattr(planned_trial, name)[: len(way)] for name in rollout.SIGNALS}
+        found = {name: getattr(planned_trial, name) for name in rollout.SIGNALS}
+        cut = {name: values[: len(way)] for name, values in found.items() if values is not None}
         cut["base_position"] = np.column_stack([place, cut["base_position"][:, 2]])
         cut["base_velocity"] = np.gradient(cut["base_position"], 0.005, axis=0)
         return dataclasses.replace(planned_trial, outcome=outcome, end_time=len(way) * 0.005, **cut)
