@@ -7,7 +7,7 @@ friction in its model) may differ by for life, which reference logs tell; `DAY` 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -118,7 +118,13 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
 
 
 def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarray]]:
-    """Trace of each error at one spread from its null, by balance `(t, columns)`."""
+    """Trace of each error at one spread from its null, by balance `(t, columns)`.
+
+    Torque constants scale the torque that the motion needs, not the measured one: else all of them together could scale the noise
+    away, masses and loads along with it, which no motion contradicts.
+    """
+    needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)
+    modelled = replace(signals, believed=np.where(np.isfinite(needed), needed, signals.believed))
     found = []
     for one in errors:
         effect = EFFECTS[one.effect]
@@ -126,8 +132,9 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
         low, high = effect.bounds(one.location, signals.subject)[:, one.parameter]
         sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
         values[one.parameter] = np.clip(values[one.parameter] + sign * one.spread, low, high)
+        source = modelled if one.effect == "torque_constant" else signals
         moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
-        found.append({b: v[0] / moved for b, v in effect.trace(signals, one.location, values[None]).items()} if moved else {})
+        found.append({b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()} if moved else {})
     return found
 
 

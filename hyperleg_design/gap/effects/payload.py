@@ -21,10 +21,10 @@ SHARE = 0.2
 
 
 class Payload(InertialEffect):
-    """A point mass fixed to a link, over what the model or the log's metadata already put there.
+    """A body fixed to a link, over what the model or the log's metadata already put there, equally hard to turn about any axis.
 
     A motion feels its mass and its first moment, mass times com, so com means nothing where mass is 0; one joint alone cannot
-    tell the two apart.
+    tell the two apart. Left out, the body's own inertia would bend the estimates of its mass: the wrist of an arm feels it.
     """
 
     identifier: ClassVar[str] = "payload"
@@ -34,12 +34,13 @@ class Payload(InertialEffect):
         Parameter("com_x", "m", 0.0, -1.0, 1.0, 0.05, "centre of mass in the link's frame: a hand's breadth (assumed)", shape=True),
         Parameter("com_y", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
         Parameter("com_z", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
+        Parameter("gyration_squared", "m^2", 0.0, 0.0, 0.1, 0.0025, "of a body 10 cm across (assumed)", shape=True),
     )
 
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Of the point mass, see `InertialEffect.added`."""
-        mass, (x, y, z) = values[:, 0], values[:, 1:].T
-        inertia = (y * y + z * z, -x * y, x * x + z * z, -x * z, -y * z, x * x + y * y)
+        """Of the body, see `InertialEffect.added`."""
+        mass, (x, y, z, own_inertia) = values[:, 0], values[:, 1:].T
+        inertia = (y * y + z * z + own_inertia, -x * y, x * x + z * z + own_inertia, -x * z, -y * z, x * x + y * y + own_inertia)
         return mass[:, None] * np.stack([np.ones_like(x), x, y, z, *inertia], -1)
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
@@ -53,7 +54,8 @@ class Payload(InertialEffect):
         found = super().example(location, subject, size)
         own = subject.tree.link_inertial[subject.tree.link(location)]
         if own[0] > 0:
-            found[1:] = np.clip(1.5 * own[1:4] / own[0], -1.0, 1.0)
+            found[1:4] = np.clip(1.5 * own[1:4] / own[0], -1.0, 1.0)
+            found[4] = 0.0
         return found
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
@@ -66,7 +68,7 @@ class Payload(InertialEffect):
         """The mass and first moment that a linear fit to the log finds, and the usual mass where `example` has it."""
         low, high = self.bounds(location, signals.subject)
         shown = self.example(location, signals.subject)
-        tried = [shown, shown * np.array([-1.0, 1.0, 1.0, 1.0])]
+        tried = [shown, shown * np.array([-1.0, 1.0, 1.0, 1.0, 1.0])]
         residual = signals.residual["motion"]
         known = np.isfinite(residual) & signals.valid[:, None]
         columns, values = rigid.link_regressor(signals, location)[..., :4][known], residual[known]
@@ -74,6 +76,6 @@ class Payload(InertialEffect):
         if len(values) and square[0, 0] > 0:
             fitted = np.linalg.solve(square + RIDGE * np.trace(square) / 4 * np.eye(4), columns.T @ values)
             if abs(fitted[0]) > 1e-3 * shown[0]:
-                tried.insert(0, np.array([fitted[0], *(fitted[1:] / fitted[0])]))
+                tried.insert(0, np.array([fitted[0], *(fitted[1:] / fitted[0]), 0.0]))
         found = np.clip(tried, low, high)
         return np.asarray(found[found[:, 0] != 0])

@@ -16,7 +16,7 @@ from hyperleg_design.gap.mechanism import mechanism_of, pinocchio_model
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.simulation.alteration import edited
 
-VALUES = {"payload": [0.7, 0.03, -0.05, 0.12], "link_mass": [0.4], "link_com": [0.02, -0.01, 0.03]}
+VALUES = {"payload": [0.7, 0.03, -0.05, 0.12, 0.004], "link_mass": [0.4], "link_com": [0.02, -0.01, 0.03]}
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def test_rows_of_joints_beyond_the_link_are_untouched(name, arm):
 
 def test_a_payload_weighs_what_it_weighs(arm):
     model = arm.subject.model
-    changed = edited(model, (effect("payload").alteration("wrist_3", np.array([2.5, 0, 0.02, 0.1]), arm.subject),))
+    changed = edited(model, (effect("payload").alteration("wrist_3", np.array([2.5, 0, 0.02, 0.1, 0]), arm.subject),))
     body = model.body("wrist_3_link").id
     assert changed.body_mass[body] - model.body_mass[body] == pytest.approx(2.5)
     moments = [m.body_mass[body] * m.body_ipos[body] for m in (changed, model)]
@@ -76,7 +76,7 @@ def test_a_payload_weighs_what_it_weighs(arm):
 
 
 def test_simulations_have_their_own_rows(arm):
-    values = np.array([[0.0, 0, 0, 0], [1.0, 0, 0, 0.1]])
+    values = np.array([[0.0, 0, 0, 0, 0], [1.0, 0, 0, 0.1, 0.002]])
     added = effect("payload").alteration("forearm", values, arm.subject)
     model = arm.subject.model
     body = model.body("forearm").id
@@ -85,7 +85,7 @@ def test_simulations_have_their_own_rows(arm):
 
 
 def test_inertia_stays_that_of_a_body(arm):
-    values = np.array([1.0, 0.3, -0.2, 0.1])
+    values = np.array([1.0, 0.3, -0.2, 0.1, 0.01])
     changed = edited(arm.subject.model, (effect("payload").alteration("forearm", values, arm.subject),))
     inertia = changed.body_inertia[changed.body("forearm").id]
     assert np.all(inertia > 0)
@@ -93,7 +93,7 @@ def test_inertia_stays_that_of_a_body(arm):
 
 
 def test_more_than_all_of_a_link_cannot_go(arm):
-    for name, values in (("payload", [-3.0, 0, 0, 0]), ("link_mass", [-3.0])):
+    for name, values in (("payload", [-3.0, 0, 0, 0, 0]), ("link_mass", [-3.0])):
         with pytest.raises(InputError, match=r"takes more than the 2\.3 kg"):
             effect(name).alteration("forearm", np.array(values), arm.subject)
 
@@ -126,7 +126,7 @@ def test_a_link_moved_keeps_its_mass_and_shape(arm):
 def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):
     import dataclasses
 
-    values = np.array([2.0, 0.05, -0.02, 0.15])
+    values = np.array([2.0, 0.05, -0.02, 0.15, 0.0])
     one = effect("payload")
     residual = {**arm.residual, "motion": arm.residual["motion"] + one.trace(arm, "wrist_1_link", values[None])["motion"][0]}
     loaded = dataclasses.replace(arm, residual=residual)
