@@ -145,7 +145,7 @@ class _Report:
 
     def closed(self, model: Model) -> float:
         """Share of the excess gap that a model closes."""
-        return min(self.judge.closed(self.held(model), self.found.rows, self.held(self.judge.nothing)), 1.0)
+        return float(np.clip(self.judge.closed(self.held(model), self.found.rows, self.held(self.found.model)), -9.99, 1.0))
 
     def diagnosis(self) -> Diagnosis:
         """All of it."""
@@ -189,10 +189,10 @@ class _Report:
         samples = judge.base.samples
         model = self.found.model if named else judge.nothing
         scale = float(np.sqrt(judge.row_floor[rows].mean()))
-        first, last = self.held(judge.nothing), self.held(model)
-        before, after = float(judge.gap(first, rows)), float(judge.gap(last, rows))
+        last = self.held(model)
+        before, after = float(judge.gap(last.bare, rows)), float(judge.gap(last.square, rows))
         drawn = self.draws()
-        b, a = judge.gap(first, rows, drawn), judge.gap(last, rows, drawn)
+        b, a = judge.gap(last.bare, rows, drawn), judge.gap(last.square, rows, drawn)
         lowest = np.minimum(1.0, a)
         shares = np.where(b > lowest, (b - a) / np.maximum(b - lowest, 1e-9), 0.0)
         closed = self.closed(model) if named else 0.0
@@ -203,8 +203,7 @@ class _Report:
     def where(self) -> tuple[Place, ...]:
         """Shares of the excess, and the regime of each place in which it is most."""
         judge, samples = self.judge, self.judge.base.samples
-        ratio = judge.rows(judge.nothing.held) / np.maximum(judge.row_floor, 1e-300)
-        excess = np.maximum(ratio - 1, 0.0)
+        excess = np.maximum(judge.rows(self.found.model.held.bare) - 1, 0.0)
         shares: dict[tuple[str, str], float] = {}
         for row, value in zip(samples.rows, excess, strict=True):
             key = (
@@ -314,7 +313,7 @@ class _Report:
         """Largest calibration errors, in usual sizes."""
         fit, prior = self.found.model.fit, self.ready.base.prior
         errors = fit.errors + prior.mean
-        rows = [
+        rows: list[dict[str, Any]] = [
             {"error": one.name, "session": s, "value": float(errors[s, i] * one.spread), "usual": float(one.spread)}
             for s in range(len(errors))
             for i, one in enumerate(self.ready.errors)

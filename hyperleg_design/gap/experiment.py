@@ -45,7 +45,10 @@ def _set(*names: str) -> frozenset[str]:
 EXPERIMENTS: tuple[Experiment, ...] = (
     Experiment("log torque or current", "repeat the motion with motor torques or currents logged beside the targets", 2, (
         (_set("controller_gain", "command_delay", "actuator_bandwidth", "torque_saturation", "voltage_sag"),
-         FRICTION | INERTIAL | _set("torque_constant", "transmission_ratio", "rotor_inertia", "joint_spring", "encoder_offset", "thermal_derating", "backlash", "transmission_elasticity", "cogging")),
+         FRICTION | INERTIAL | _set(
+             "torque_constant", "transmission_ratio", "rotor_inertia", "joint_spring", "encoder_offset", "thermal_derating", "backlash",
+             "transmission_elasticity", "cogging",
+         )),
     )),
     Experiment("several amplitudes", "repeat one motion at a quarter, half and full amplitude", 3, (
         (_set("controller_gain"), _set("torque_saturation", "backlash")),
@@ -79,11 +82,13 @@ EXPERIMENTS: tuple[Experiment, ...] = (
         (_set("load_dependent_friction"), FRICTION - {"load_dependent_friction"}),
     )),
     Experiment("torque-off swing", "switch the drive off, move the joint by hand or let it swing, and log its positions", 3, (
-        (_set("viscous_friction", "coulomb_friction", "joint_spring"), _set("controller_gain", "torque_constant", "transmission_ratio", "voltage_sag")),
+        (_set("viscous_friction", "coulomb_friction", "joint_spring"),
+         _set("controller_gain", "torque_constant", "transmission_ratio", "voltage_sag")),
         (INERTIAL | _set("rotor_inertia"), _set("controller_gain", "torque_constant", "voltage_sag", "transmission_ratio")),
     )),
     Experiment("known payload", "hang a known mass on the last link, declare it as payload in the metadata, and repeat the motion", 5, (
-        (_set("torque_constant", "transmission_ratio", "thermal_derating", "controller_gain"), INERTIAL | _set("encoder_offset", "joint_spring", "load_dependent_friction")),
+        (_set("torque_constant", "transmission_ratio", "thermal_derating", "controller_gain"),
+         INERTIAL | _set("encoder_offset", "joint_spring", "load_dependent_friction")),
         (_set("load_dependent_friction"), FRICTION - {"load_dependent_friction"}),
     )),
     Experiment("cold and warm", "log motor temperature, and repeat the motion cold and after ten minutes of hard work", 15, (

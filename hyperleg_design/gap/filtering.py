@@ -8,6 +8,7 @@ more, and each counts for its `share`. So noise that is coloured over the whole 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -174,7 +175,7 @@ def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[_Band,
     edges = [0.0, *(e for e in EDGES if e < 0.8 * row.cutoff), row.cutoff]
     total = np.concatenate([[0], np.cumsum(mask)])
     found = []
-    for index, (low, high) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for index, (low, high) in enumerate(itertools.pairwise(edges)):
         top = min(high * (1 + OVERLAP), 0.5 / step)
         first = int(np.ceil(low * (1 - OVERLAP) * span)) if low else 0
         last = int(np.floor(top * span))
