@@ -29,6 +29,18 @@ ROUNDS = 8
 MOST_CAUSES = 3
 EXCESSIVE = 0.25
 """A row counts for the gap from this share of the largest excess of any row."""
+JUDGED_SHAPES = 5
+"""Shapes that are judged on held-out data."""
+PER_PARAMETER = 0.5
+"""Log prior odds against each parameter, beside what held-out data say."""
+RARE = {"transmission_ratio": -1.0, "voltage_sag": -1.0, "thermal_derating": -0.5}
+"""Log prior odds of effects that look like another and are rarer (assumed: belts and gears have the ratio of their teeth)."""
+LARGEST_ERROR, HEAVIER, OWN_MASS = 0.8, 5.0, 0.1
+"""Error over a link's own mass from which it is rather something that hangs there; log odds for as much again; the usual error."""
+NEGATIVE = 8.0
+"""Log prior odds against a load that weighs less than nothing, beyond what is declared."""
+EXPLAINED = 0.5
+"""Share of the squares in episodes that a model leaves at most, if they are to count."""
 SHAPED_ROWS = 4
 """Rows with the largest excess whose shape is looked at."""
 
@@ -41,7 +53,7 @@ class Model:
     fit: Fit
     held: Held
     gain: float
-    """Log-likelihood of held-out blocks over that of no cause."""
+    """Log-likelihood of held-out blocks over that of no cause, and how much more plausible the calibration errors are."""
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
@@ -68,7 +80,7 @@ class Judge:
         """Calibration errors alone."""
         design = Design(self.base)
         fit = design.fit()
-        return Model((), fit, predict(design, start=fit.scale), 0.0)
+        return Model((), fit, predict(design, fit=fit), 0.0)
 
     @cached_property
     def floor(self) -> np.ndarray:
@@ -83,64 +95,75 @@ class Judge:
         cell = samples.block * samples.groups + samples.group
         return np.bincount(cell, minlength=self.base.blocks * samples.groups).reshape(self.base.blocks, samples.groups)
 
-    def rows(self, held: Held, blocks: np.ndarray | None = None) -> np.ndarray:
-        """Mean square of what is left of each row, episodes left out `(rows,)`, in its unit; of drawn blocks `(k, B)`, `(k, rows)`."""
-        samples = self.base.samples
-        square, count = held.square, self.counts
+    def rows(self, square: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
+        """Mean square of each row over its floor, then of each row's episodes `(2 rows,)`; of drawn blocks `(k, B)`, `(k, 2 rows)`.
+
+        Args:
+            square: sums by block and group `(B, G)`, as of `fit.Held`.
+            blocks: how often each block is drawn.
+        """
+        count = self.counts
         if blocks is not None:
             square, count = blocks @ square, blocks @ count
         else:
             square, count = square.sum(0), count.sum(0)
-        mean = np.where(samples.episodic, 0.0, square / np.maximum(count, 1))
-        found = np.zeros((*mean.shape[:-1], len(samples.rows)))
-        for group, row in enumerate(samples.group_row):
+        mean = square / np.maximum(count, 1)
+        found = np.zeros((*mean.shape[:-1], 2 * len(self.base.samples.rows)))
+        for group, row in enumerate(self.group_row):
             found[..., row] += mean[..., group]
-        return found
+        return found / np.maximum(self.row_floor, 1e-300)
+
+    @cached_property
+    def group_row(self) -> np.ndarray:
+        """Row of each group, episodes after all rows `(G,)`."""
+        samples = self.base.samples
+        return samples.group_row + np.where(samples.episodic, len(samples.rows), 0)
 
     @cached_property
     def row_floor(self) -> np.ndarray:
-        """Mean square that is expected of each row `(rows,)`."""
-        samples = self.base.samples
-        return np.bincount(samples.group_row, np.where(samples.episodic, 0.0, self.floor), len(samples.rows))
+        """Mean square that is expected of each row and of its episodes `(2 rows,)`."""
+        return np.bincount(self.group_row, self.floor, 2 * len(self.base.samples.rows))
 
     def model(self, causes: Sequence[Cause]) -> Model:
         """Fit causes together to the end and predict held-out blocks."""
         design = Design(self.base, causes)
         fit = design.fit(scale=self.nothing.fit.scale, rounds=ROUNDS)
-        held = predict(design, start=fit.scale)
-        return Model(tuple(causes), fit, held, held.total - self.nothing.held.total)
+        held = predict(design, fit=fit)
+        return Model(tuple(causes), fit, held, self.gain(fit, held))
+
+    def gain(self, fit: Fit, held: Held) -> float:
+        """Log-likelihood of held-out blocks over that of no cause, the cost of the calibration errors taken into account."""
+        return held.total - self.nothing.held.total + self.nothing.fit.implausible - fit.implausible
 
     def shown(self, model: Model, place: int) -> np.ndarray:
-        """Mean square of one cause's trace in each row over the row's floor `(rows,)`."""
+        """Mean square of one cause's trace in each row, and in its episodes, over the floor `(2 rows,)`."""
         cause, samples = model.causes[place], self.base.samples
         phi = (model.values(place) - cause.nulls) / cause.usual
         trace = phi @ cause.columns + (0.0 if cause.linear else cause.constant)
         mean = np.bincount(samples.group, trace**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
-        mean = np.where(samples.episodic, 0.0, mean)
-        return np.bincount(samples.group_row, mean, len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
+        return np.bincount(self.group_row, mean, 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
 
-    def excess_rows(self, models: Sequence[Model] = ()) -> np.ndarray:
-        """Rows that count for the gap `(rows,)` of bool: those with much excess, else those in which causes show most."""
-        ratio = self.rows(self.nothing.held) / np.maximum(self.row_floor, 1e-300)
-        excess = np.maximum(ratio - 1, 0.0)
+    def excess_rows(self, model: Model) -> np.ndarray:
+        """Rows that count for the gap `(2 rows,)` of bool: those with much excess when a model's causes are left out.
+
+        Episodes count where the model explains them.
+        """
+        bare, left = self.rows(model.held.bare), self.rows(model.held.square)
+        excess = np.maximum(bare - 1, 0.0)
+        episode = np.arange(len(excess)) >= len(self.base.samples.rows)
+        excess[episode & (left > EXPLAINED * bare)] = 0.0
         found = excess >= max(EXCESSIVE * float(excess.max(initial=0.0)), 1e-9)
-        for model in models:
-            for place in range(len(model.causes)):
-                seen = self.shown(model, place)
-                found |= (seen >= 0.3 * seen.max(initial=0.0)) & (seen > 0.25)
-        return found if found.any() else np.ones(len(ratio), bool)
+        return found if found.any() else ~episode
 
-    def gap(self, held: Held, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
-        """Root mean square over some rows, each over its floor `()` or `(k,)`."""
-        mean = self.rows(held, blocks) / np.maximum(self.row_floor, 1e-300)
-        return np.sqrt(mean[..., rows].mean(-1))
+    def gap(self, square: np.ndarray, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
+        """Root mean square over some rows, each over its floor `()` or `(k,)`; squares as of `fit.Held`."""
+        return np.asarray(np.sqrt(self.rows(square, blocks)[..., rows].mean(-1)))
 
-    def closed(self, held: Held, rows: np.ndarray, before: Held | None = None) -> float:
-        """Share of the excess gap of some rows that a model closes."""
-        first = float(self.gap(self.nothing.held if before is None else before, rows))
-        after = float(self.gap(held, rows))
+    def closed(self, held: Held, rows: np.ndarray, before: Held) -> float:
+        """Share of the excess gap of some rows that a model closes; the gap is the one without the causes of `before`."""
+        first, after = float(self.gap(before.bare, rows)), float(self.gap(held.square, rows))
         lowest = min(1.0, after)
-        return (first - after) / max(first - lowest, 1e-9) if first > lowest else 0.0
+        return (first - after) / (first - lowest) if first > lowest + 1e-9 else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,13 +195,13 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     judge = Judge(base, thresholds, threads)
     nothing = judge.nothing
     singles, not_judged = _finalists(judge, wanted, ())
-    rows = judge.excess_rows(singles[:1])
+    rows = judge.excess_rows(singles[0] if singles else nothing)
     chosen = nothing
     slots: list[tuple[Model, ...]] = []
     best = next((m for m in singles if _named(judge, m, 0, nothing)), None)
     if best is not None:
         chosen, slots = best, [tuple(singles)]
-        rows = judge.excess_rows([best])
+        rows = judge.excess_rows(best)
         while len(chosen.causes) < MOST_CAUSES:
             more, _ = _finalists(judge, wanted, chosen.causes)
             further = next((m for m in more if _further(judge, m, chosen, rows)), None)
@@ -187,7 +210,7 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
             chosen, slots = further, [*slots, tuple(more)]
             if len(chosen.causes) == 2:
                 chosen, slots = _swapped(judge, wanted, chosen, slots)
-            rows = judge.excess_rows([chosen])
+            rows = judge.excess_rows(chosen)
     shaped = _shaped(judge, chosen, rows)
     verdict = _verdict(judge, chosen, rows, shaped)
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, tuple(not_judged))
@@ -213,7 +236,19 @@ def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequen
 
 
 def _rank(model: Model) -> float:
-    return model.gain
+    """Held-out likelihood and what is plausible before any log."""
+    return model.gain + plausible(model)
+
+
+def plausible(model: Model) -> float:
+    """Log prior of the last cause of a model, over that of any other."""
+    cause = model.causes[-1]
+    found = -PER_PARAMETER * len(cause.nulls) + RARE.get(cause.effect, 0.0)
+    if cause.effect == "link_mass":
+        found -= HEAVIER * max(abs(float(model.values(len(model.causes) - 1)[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0)
+    if cause.effect == "payload" and model.values(len(model.causes) - 1)[0] < -cause.declared:
+        found -= NEGATIVE
+    return found
 
 
 def _named(judge: Judge, model: Model, place: int, before: Model) -> bool:
@@ -221,8 +256,7 @@ def _named(judge: Judge, model: Model, place: int, before: Model) -> bool:
     rules = judge.thresholds
     if model.gain - before.gain < rules.evident or float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
         return False
-    rows = judge.excess_rows([model])
-    return judge.closed(model.held, rows) >= rules.worth
+    return judge.closed(model.held, judge.excess_rows(model), model.held) >= rules.worth
 
 
 def _further(judge: Judge, model: Model, before: Model, rows: np.ndarray) -> bool:
@@ -232,8 +266,8 @@ def _further(judge: Judge, model: Model, before: Model, rows: np.ndarray) -> boo
     place = len(model.causes) - 1
     if float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
         return False
-    rows = rows | judge.excess_rows([model])
-    return judge.closed(model.held, rows) - judge.closed(before.held, rows) >= rules.second_worth
+    rows = rows | judge.excess_rows(model)
+    return judge.closed(model.held, rows, model.held) - judge.closed(before.held, rows, model.held) >= rules.second_worth
 
 
 def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots: list[tuple[Model, ...]]) -> tuple[Model, list[tuple[Model, ...]]]:
@@ -256,31 +290,43 @@ def _turned(model: Model) -> Model:
 def _shaped(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
     """Shapes beside the chosen causes, in the rows with most excess left or before."""
     base = judge.base
-    before = judge.rows(judge.nothing.held) / np.maximum(judge.row_floor, 1e-300)
+    before = judge.rows(chosen.held.bare)
     order = np.argsort(-before, kind="stable")
-    looked = order[rows[order]][:SHAPED_ROWS]
+    looked = np.array(list(dict.fromkeys((order[rows[order]] % len(base.samples.rows)).tolist()))[:SHAPED_ROWS], int)
 
-    def tried(one: shape.Shape) -> tuple[shape.Shape, float, float] | None:
+    def rough(one: shape.Shape) -> tuple[shape.Shape, Design, float] | None:
         columns = shape.columns(base, judge.nothing.fit, one)
         if columns is None:
             return None
         design = Design(base, chosen.causes, ridge=columns)
-        fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
-        held = predict(design, start=fit.scale)
-        gain = held.total - judge.nothing.held.total - chosen.gain
-        return one, gain, judge.closed(held, rows) - judge.closed(chosen.held, rows)
+        return one, design, design.fit(scale=chosen.fit.scale, rounds=1).evidence
 
-    found = [t for t in screen.spread(tried, shape.shapes(base.samples, looked), judge.threads) if t is not None]
+    def judged(found: tuple[shape.Shape, Design, float]) -> tuple[shape.Shape, float, float]:
+        one, design, _ = found
+        fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
+        held = predict(design, fit=fit)
+        gain = judge.gain(fit, held) - chosen.gain
+        return one, gain, _beyond(judge, chosen, held, rows)
+
+    first = [t for t in screen.spread(rough, shape.shapes(base.samples, looked), judge.threads) if t is not None]
+    first.sort(key=lambda t: (-t[2], t[0].name, t[0].row))
+    found = screen.spread(judged, first[:JUDGED_SHAPES], judge.threads)
     return tuple(sorted(found, key=lambda t: (-t[1], t[0].name, t[0].row)))
+
+
+def _beyond(judge: Judge, chosen: Model, held: Held, rows: np.ndarray) -> float:
+    """Share of what the chosen causes leave, in squares over the rows with excess, that something further closes."""
+    after, further = float(judge.gap(chosen.held.square, rows)), float(judge.gap(held.square, rows))
+    return 1 - (further / max(after, 1e-12)) ** 2
 
 
 def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[tuple[shape.Shape, float, float]]) -> str:
     rules = judge.thresholds
     beyond = bool(shaped) and shaped[0][1] > rules.beyond_evident and shaped[0][2] > rules.beyond
-    excess = float(judge.gap(judge.nothing.held, rows))
+    excess = float(judge.gap(judge.nothing.held.square, rows))
     if not chosen.causes:
         return "unknown" if excess > rules.largest_excess or beyond else "none"
-    if beyond or judge.closed(chosen.held, rows) < rules.required:
+    if beyond or judge.closed(chosen.held, rows, chosen.held) < rules.required:
         return "unknown"
     return "explained"
 

@@ -13,7 +13,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap import experiment, screen
 from hyperleg_design.gap.check import Check, check_log
 from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.decide import Decision, Judge, Model, decide
+from hyperleg_design.gap.decide import Decision, Judge, Model, decide, plausible
 from hyperleg_design.gap.diagnosis import Diagnosis, Named, Place, Shrinkage, Value
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.equivalence import alike
@@ -140,7 +140,7 @@ class _Report:
             return model.held
         key = id(model)
         if key not in self.kept:
-            self.kept[key] = predict(Design(self.judge.base, model.causes), self.way, start=model.fit.scale)
+            self.kept[key] = predict(Design(self.judge.base, model.causes), self.way, fit=model.fit)
         return self.kept[key]
 
     def closed(self, model: Model) -> float:
@@ -197,13 +197,15 @@ class _Report:
         shares = np.where(b > lowest, (b - a) / np.maximum(b - lowest, 1e-9), 0.0)
         closed = self.closed(model) if named else 0.0
         low, high = (float(v) for v in np.percentile(np.minimum(shares, 1.0), [2.5, 97.5])) if named else (0.0, 0.0)
-        units = dict.fromkeys(UNIT.get(samples.rows[r].balance, "Nm") for r in np.flatnonzero(rows))
+        units = dict.fromkeys(UNIT.get(samples.rows[r % len(samples.rows)].balance, "Nm") for r in np.flatnonzero(rows).tolist())
         return Shrinkage(before * scale, after * scale, min(1.0, after) * scale, closed, (min(low, closed), max(high, closed)), ", ".join(units))
 
     def where(self) -> tuple[Place, ...]:
         """Shares of the excess, and the regime of each place in which it is most."""
         judge, samples = self.judge, self.judge.base.samples
-        excess = np.maximum(judge.rows(self.found.model.held.bare) - 1, 0.0)
+        whole = np.where(self.found.rows, judge.rows(self.found.model.held.bare), 0.0)
+        calm = judge.rows(self.found.model.held.bare)[: len(samples.rows)]
+        excess = np.maximum(calm - 1, 0.0) + np.maximum(whole[len(samples.rows) :] - 1, 0.0)
         shares: dict[tuple[str, str], float] = {}
         for row, value in zip(samples.rows, excess, strict=True):
             key = (
@@ -262,7 +264,8 @@ class _Report:
         for place, slot in enumerate(slots):
             models = list({m.names: m for m in [*slot, *([found.model] if found.slots else [])]}.values())
             other = found.model.gain if place == len(slots) - 1 and found.slots else max((m.gain for m in models), default=0.0)
-            scores = np.array([m.gain for m in models] + [0.0 if place == 0 else _without(found, place), other + shaped - rules.beyond_evident])
+            none = 0.0 if place == 0 else _without(found, place)
+            scores = np.array([*(m.gain + plausible(m) for m in models), none, other + shaped - rules.beyond_evident])
             weights = np.exp(rules.temperature * (scores - scores.max()))
             weights /= weights.sum()
             certain = np.minimum(weights, rules.most_certain)

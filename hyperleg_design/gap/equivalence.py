@@ -22,18 +22,24 @@ def alike(judge: Judge, slot: Sequence[Model], chosen: Model, rows: np.ndarray) 
         rows: that count for the gap.
     """
     rules = judge.thresholds
-    best = judge.closed(chosen.held, rows)
+    best = judge.closed(chosen.held, rows, chosen.held)
     found = []
     for model in slot:
         if model.names == chosen.names:
             continue
-        behind = chosen.gain - model.gain
-        short = best - judge.closed(model.held, rows)
+        behind = _score(chosen) - _score(model)
+        short = best - judge.closed(model.held, rows, chosen.held)
         difference = chosen.held.likelihood - model.held.likelihood
         doubtful = behind < 1.5 * float(np.sqrt(len(difference)) * difference.std())
         if (behind < rules.alike or (doubtful and behind < 3 * rules.alike)) and short < rules.alike_closed:
             found.append(model)
     return sorted(found, key=lambda m: (-m.gain, m.names))
+
+
+def _score(model: Model) -> float:
+    from hyperleg_design.gap.decide import plausible
+
+    return model.gain + plausible(model)
 
 
 def sine(base: Base, weight: np.ndarray, one: np.ndarray, other: np.ndarray) -> float:

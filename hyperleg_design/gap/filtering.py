@@ -53,7 +53,9 @@ class Row:
 
 
 @dataclass(frozen=True, eq=False)
-class _Band:
+class Band:
+    """One band of one row."""
+
     index: int
     low: float
     high: float
@@ -62,6 +64,8 @@ class _Band:
     gain: np.ndarray
     count: int
     """Samples over the whole transform."""
+    length: int
+    """Ticks of the whole transform."""
     kept: np.ndarray
     """Samples that count."""
 
@@ -74,7 +78,7 @@ class Sieve:
     rows: tuple[Row, ...]
     mask: np.ndarray
     """Known ticks `(rows, t)`."""
-    bands: tuple[tuple[_Band, ...], ...]
+    bands: tuple[tuple[Band, ...], ...]
     """Of each row."""
     length: int
     """Of the transforms."""
@@ -168,7 +172,7 @@ def _cutoff(signals: Signals, balance: str, column: int) -> float:
     return min(HIGHEST, OF_BANDWIDTH * float(signals.bandwidth[column]), most)
 
 
-def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[_Band, ...]:
+def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[Band, ...]:
     from scipy.fft import next_fast_len
 
     span = length * step
@@ -192,7 +196,7 @@ def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[_Band,
         right = np.clip(np.ceil(place + reach).astype(int), 0, len(mask))
         near = (total[right] - total[left]) / np.maximum(np.minimum(place + reach, length) - np.maximum(place - reach, 0), 1.0)
         kept = np.flatnonzero((near >= KNOWN) & (place < len(mask)))
-        found.append(_Band(index, low, high, slice(first, last + 1), gain, int(count), kept))
+        found.append(Band(index, low, high, slice(first, last + 1), gain, int(count), length, kept))
     return tuple(found)
 
 

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from hyperleg_design.gap.endogenous import Factor
 from hyperleg_design.gap.samples import BLOCKS, Products, Samples, products
 
 WIDTH = 4.0
@@ -23,6 +24,8 @@ ROUNDS = 3
 """Fits between which the noise's scales are set anew."""
 CLAMPS = 4
 """Fits in which calibration errors that would leave their limits are set to them."""
+TRUST = 3.0
+"""Standard deviations from the fit to all data within which causes that are not linear are taken as linear on parts of them."""
 FREEDOM = 40.0
 """Most degrees of freedom of a predictive distribution: the scale of other data is never known better (assumed)."""
 
@@ -90,6 +93,21 @@ class Base:
         return np.asarray(sum(self.sums[BLOCKS]))
 
     @cached_property
+    def _parts(self) -> dict[tuple[int, int, int], np.ndarray]:
+        return {}
+
+    def part(self, way: int, fold: int | None, session: int, inside: bool) -> np.ndarray:
+        """Products of a fold, of all but it, or of everything, in one session `(G, p + 1, p + 1)`."""
+        if fold is None:
+            return np.asarray(self.total[session])
+        if inside:
+            return self.sums[way][fold][session]
+        key = way, fold, session
+        if key not in self._parts:
+            self._parts[key] = self.total[session] - self.sums[way][fold][session]
+        return self._parts[key]
+
+    @cached_property
     def raw(self) -> np.ndarray:
         """Mean square of the residual by group `(G,)`, over the floor, the floor's own weight included."""
         samples = self.samples
@@ -140,6 +158,10 @@ class Cause:
     constant: np.ndarray
     """`(S,)`; 0 where the trace is linear."""
     linear: bool
+    declared: float = 0.0
+    """Payload that the logs declare at its place [kg]."""
+    factor: Factor | None = None
+    """How it scales the torque that the balance trusts."""
 
     @property
     def name(self) -> tuple[str, str]:
@@ -168,6 +190,8 @@ class Fit:
     """Laplace's log evidence, up to what all fits of the same samples share."""
     rss: np.ndarray
     """`(G,)`, over the floor."""
+    implausible: float
+    """Half the calibration errors' square in their own priors: what they cost."""
 
 
 class Design:
@@ -181,12 +205,16 @@ class Design:
 
     def __init__(self, base: Base, causes: Sequence[Cause] = (), ridge: np.ndarray | None = None) -> None:
         self.base, self.causes = base, tuple(causes)
+        self._kept: dict[tuple[int, int | None, int, bool], tuple[np.ndarray, np.ndarray]] = {}
         weight = base.samples.weight
         parts = [c.columns * weight for c in causes] + ([] if ridge is None else [ridge])
         self.count = sum(len(p) for p in parts)
-        self.deviation = np.concatenate([np.where(c.shape, 1.0, WIDTH) if len(c.shape) else np.zeros(0) for c in causes] + ([] if ridge is None else [np.ones(len(ridge))]) or [np.zeros(0)])  # fmt: skip
-        self.low = np.concatenate([(c.low - c.nulls) / c.usual for c in causes] + ([] if ridge is None else [np.full(len(ridge), -np.inf)]) or [np.zeros(0)])  # fmt: skip
-        self.high = np.concatenate([(c.high - c.nulls) / c.usual for c in causes] + ([] if ridge is None else [np.full(len(ridge), np.inf)]) or [np.zeros(0)])  # fmt: skip
+        free = 0 if ridge is None else len(ridge)
+        self.deviation = np.concatenate([*(np.where(c.shape, 1.0, WIDTH) for c in causes), np.ones(free)])
+        self.low = np.concatenate([*((c.low - c.nulls) / c.usual for c in causes), np.full(free, -np.inf)])
+        self.high = np.concatenate([*((c.high - c.nulls) / c.usual for c in causes), np.full(free, np.inf)])
+        starts = np.cumsum([0, *(len(c.nulls) for c in causes)])
+        self.factors = [(int(at) + c.factor.parameter, c.factor) for at, c in zip(starts[:-1], causes, strict=True) if c.factor is not None]
         constant = np.zeros(len(weight))
         for c in causes:
             if not c.linear:
@@ -196,6 +224,17 @@ class Design:
         self.columns = np.concatenate([*parts, self.constant[None]]) if parts else np.zeros((1, len(weight)))
         self.products: Products | None = products(base.samples, self.columns, base.stacked) if self.count or self.shifted else None
 
+    def trust(self, fit: Fit) -> None:
+        """Keep causes that are not linear where their linearisation holds: near a fit, within a few standard deviations."""
+        start = 0
+        for cause in self.causes:
+            part = slice(start, start + len(cause.nulls))
+            start = part.stop
+            if not cause.linear:
+                reach = TRUST * np.sqrt(np.maximum(np.diag(fit.covariance)[part], 0.0))
+                self.low[part] = np.maximum(self.low[part], fit.phi[part] - reach)
+                self.high[part] = np.minimum(self.high[part], fit.phi[part] + reach)
+
     def gathered(self, way: int, fold: int | None, session: int, inside: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Sums of products of a fold, of all but it (`inside` False), or of everything (no fold), in one session.
 
@@ -203,20 +242,26 @@ class Design:
             Of the base `(G, p + 1, p + 1)`, of own columns `(G, k + 1, k + 1)`, between them `(G, k + 1, p + 1)`.
         """
         base = self.base
-        if fold is None:
-            of_base = base.total[session]
-            parts = base.samples.session == session
-        else:
-            one = base.sums[way][fold][session]
-            of_base = one if inside else base.total[session] - one
-            parts = (base.samples.session == session) & ((base.samples.fold[way] == fold) == inside)
+        of_base = base.part(way, fold, session, inside)
         if self.products is None:
             groups = base.samples.groups
             return of_base, np.zeros((groups, 1, 1)), np.zeros((groups, 1, of_base.shape[-1]))
-        return of_base, self.products.own[parts].sum(0), self.products.cross[parts].sum(0)
+        key = way, fold, session, inside
+        if key not in self._kept:
+            parts = base.samples.session == session
+            if fold is not None:
+                parts &= (base.samples.fold[way] == fold) == inside
+            self._kept[key] = self.products.own[parts].sum(0), self.products.cross[parts].sum(0)
+        return of_base, *self._kept[key]
 
     def solve(
-        self, weight: np.ndarray, way: int = BLOCKS, without: int | None = None, held: np.ndarray | None = None, start: np.ndarray | None = None
+        self,
+        weight: np.ndarray,
+        way: int = BLOCKS,
+        without: int | None = None,
+        held: np.ndarray | None = None,
+        start: np.ndarray | None = None,
+        near: np.ndarray | None = None,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """One fit at given weights of the groups `(G,)`.
 
@@ -226,6 +271,7 @@ class Design:
             without: fold held out.
             held: values of phi that are fixed, NaN where free `(k,)`.
             start: calibration errors known to be at their limits, 0 where not `(sessions, p)`.
+            near: phi at which what scales torques is linearised `(k,)`; 0 by default.
 
         Returns:
             phi `(k,)`, its covariance, errors `(sessions, p)`, and the log determinant that evidence needs.
@@ -242,8 +288,14 @@ class Design:
             summed, factor, log = base.normal(of_base, weight, key)
             weighed.append((summed, factor, log, np.tensordot(weight, own, 1), np.tensordot(weight, cross, 1)))
         clamped = np.zeros((len(sums), size)) if start is None else start
+        near = np.zeros(k) if near is None else near
+        part = float(_number(base, way, without, False).sum() / base.number.sum()) if self.factors else 1.0
         for attempt in range(CLAMPS):
             matrix, right, determinant, kept = np.diag(1 / self.deviation**2), np.zeros(k), 0.0, []
+            for at, one in self.factors:
+                first, second = one.slopes(float(near[at]))
+                matrix[at, at] += part * second
+                right[at] += part * (first + second * near[at])
             for session, (summed, factor, log, mine, between) in enumerate(weighed):
                 fixed = clamped[session] != 0
                 target, across = summed[:size, size] - between[k, :size], between[:k, :size]
@@ -299,23 +351,31 @@ class Design:
         if scale is None:
             # from large noise to small: calibration errors first take what their priors allow, not all that they could
             scale, rounds = base.raw, 2 * rounds
+        phi = np.zeros(self.count)
         for _ in range(max(rounds, 1)):
-            phi, covariance, errors, determinant = self.solve(1 / scale, way, without)
+            phi, covariance, errors, determinant = self.solve(1 / scale, way, without, near=phi)
             rss = self.rss(phi, errors, way, without, without is None)
             if rounds:
                 scale = (base.freedom + rss) / (base.freedom + number)
-        penalty = float(np.sum((phi / self.deviation) ** 2)) if self.count else 0.0
-        penalty += float(np.einsum("sp,pq,sq->", errors, base.prior.precision, errors))
+        cost = float(np.einsum("sp,pq,sq->", errors, base.prior.precision, errors))
+        penalty = cost + (float(np.sum((phi / self.deviation) ** 2)) if self.count else 0.0)
         evidence = -0.5 * float(np.sum((base.freedom + number) * np.log(scale))) - 0.5 * penalty - 0.5 * float(determinant)
-        return Fit(phi, covariance, errors, scale, evidence, rss)
+        evidence += self.scaled(phi) * float(number.sum() / base.number.sum())
+        return Fit(phi, covariance, errors, scale, evidence, rss, 0.5 * cost)
+
+    def scaled(self, phi: np.ndarray) -> float:
+        """Log-likelihood of all samples by which causes that scale torques pay for it."""
+        return sum(one.log(float(phi[at])) for at, one in self.factors)
+
+    def trace(self, phi: np.ndarray) -> np.ndarray:
+        """What the causes leave in every sample, weighted `(S,)`."""
+        return np.asarray(phi @ self.columns[: self.count] + self.constant) if self.count else self.constant
 
     def left(self, phi: np.ndarray, errors: np.ndarray) -> np.ndarray:
         """What is left of every sample, weighted `(S,)`; errors by session `(sessions, p)`."""
         base = self.base
         session = base.samples.session[base.samples.part]
-        found = base.value - self.constant
-        if self.count:
-            found = found - phi @ self.columns[: self.count]
+        found = base.value - self.trace(phi)
         for s in range(base.samples.sessions):
             found = found - np.where(session == s, errors[s] @ base.errors, 0.0)
         return np.asarray(found)
@@ -356,6 +416,8 @@ class Held:
     """Sum of the squares that are left, by block and group, in the residual's unit `(B, G)`."""
     left: np.ndarray
     """What is left of every sample, weighted `(S,)`."""
+    bare: np.ndarray
+    """As `square`, had the causes not been there: the same calibration errors, without the causes' traces `(B, G)`."""
 
     @property
     def total(self) -> float:
@@ -363,24 +425,31 @@ class Held:
         return float(self.likelihood.sum())
 
 
-def predict(design: Design, way: int = BLOCKS, start: np.ndarray | None = None) -> Held:
+def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
     """Fit without each fold and predict it.
 
     Args:
         design: columns of the model.
         way: of holding out.
-        start: scales to begin with `(G,)`.
+        fit: to all data: scales to begin with, and where causes are linearised.
     """
+    start = None if fit is None else fit.scale
+    if fit is not None:
+        design.trust(fit)
     base = design.base
     samples = base.samples
     left, spread, freedom = np.zeros(len(samples.value)), np.ones(len(samples.value)), np.ones(len(samples.value))
+    bare = np.zeros(len(samples.value))
+    scaled = []
     fold_of = samples.fold[way][samples.part]
     for fold in range(samples.folds(way)):
         found = design.fit(way, fold, start, rounds=ROUNDS if start is None else 2)
         errors = found.errors
+        scaled.append(design.scaled(found.phi))
         # a session that was held out whole has no fit of its own: its errors stay at the prior mean
         here = fold_of == fold
-        left[here] = design.left(found.phi, errors)[here]
+        rest, trace = design.left(found.phi, errors), design.trace(found.phi)
+        left[here], bare[here] = rest[here], (rest + trace)[here]
         spread[here] = found.scale[samples.group[here]]
         freedom[here] = np.minimum(base.freedom + _number(base, way, fold, False), FREEDOM)[samples.group[here]]
     cell = samples.block * samples.groups + samples.group
@@ -390,8 +459,13 @@ def predict(design: Design, way: int = BLOCKS, start: np.ndarray | None = None) 
     nu, scale = (np.bincount(inverse, v * samples.share) / size for v in (freedom, spread))
     each = -0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale)
     likelihood = np.bincount(cells // samples.groups, each, base.blocks)
-    squares = np.bincount(cell, (left / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups)
-    return Held(likelihood, squares, left)
+    for fold in range(samples.folds(way) if design.factors else 0):
+        share = np.bincount(samples.block, samples.share * (fold_of == fold), base.blocks)
+        likelihood = likelihood + scaled[fold] * share / samples.share.sum()
+    squares, whole = (
+        np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups) for v in (left, bare)
+    )
+    return Held(likelihood, squares, left, whole)
 
 
 def moved(cause: Cause, values: np.ndarray, columns: np.ndarray, constant: np.ndarray) -> Cause:

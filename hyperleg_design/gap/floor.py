@@ -13,13 +13,16 @@ import numpy as np
 
 from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
+from hyperleg_design.gap.nuisance import stop
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.filtering import Sieve
+    from hyperleg_design.gap.filtering import Band, Sieve
     from hyperleg_design.gap.thresholds import Thresholds
 
 NEAR = 0.5
 """Time over which the size of a load is averaged [s]."""
+TURNING, TURNING_TIME = 0.006, 0.05
+"""Way on which friction may turn over [rad], half of it; and time around it for which that counts [s]."""
 LEAST = 1e-4
 """Floor over the torque that a joint is made for, at least: what single precision and rounding in logs leave."""
 
@@ -39,6 +42,7 @@ def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, n
     samples = sieve.sample(row, np.nan_to_num(moving)[None])[0]
     level, _, _ = sieve.labels(row)
     whole = np.sqrt(np.nanmean(np.where(sieve.mask[row], moving, np.nan) ** 2)) if sieve.mask[row].any() else 0.0
+    turning = _turning(sieve, row) if constant > 0 else np.zeros(len(signals.time))
     found, start = np.empty(len(samples)), 0
     for band in sieve.bands[row]:
         part = slice(start, start + len(band.kept))
@@ -46,10 +50,22 @@ def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, n
         local = _smoothed(samples[part] ** 2, band.count / (sieve.length * signals.step) * NEAR)
         noise = density * (band.high - band.low) + _of_acceleration(sieve, row, band.low, band.high)
         share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
-        dry = (thresholds.floor_friction * constant) ** 2 / len(sieve.bands[row])
+        dry = ((thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant) ** 2 / len(sieve.bands[row])
         found[part] = np.sqrt(noise + share + dry + (LEAST * _strength(sieve, row)) ** 2)
     assert len(level) == start
     return found
+
+
+def _turning(sieve: Sieve, row: int) -> np.ndarray:
+    """How much of a joint's friction turns over at each tick, averaged around it `(t,)`."""
+    part = 1 - stop(sieve.signals.position[:, sieve.rows[row].column], TURNING) ** 2
+    return _smoothed(part * sieve.mask[row], TURNING_TIME / sieve.signals.step)
+
+
+def _at(values: np.ndarray, band: Band) -> np.ndarray:
+    """Values of ticks at the samples of a band."""
+    place = np.minimum((band.kept * (band.length / band.count)).astype(int), len(values) - 1)
+    return np.asarray(values[place])
 
 
 def _loads(sieve: Sieve) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
 
 if TYPE_CHECKING:
@@ -53,6 +54,13 @@ DAY = {
     "encoder_offset": 0.35, "link_mass": 0.1, "link_com": 0.1, "rotor_inertia": 0.1, "joint_spring": 0.6, "command_delay": 0.3,
     "actuator_bandwidth": 0.3, "controller_gain": 0.3, "imu_bias": 1.0, "ground_friction": 0.7, "ground_compliance": 0.7,
 }  # fmt: skip
+TURNOVER = "friction_turnover"
+"""Friction of models turns over with speed, as tanh(v / v_s); that of robots at once, or over a way on which bristles bend. By how
+much of these differences, nobody knows: no effect of the catalogue, and no calibration error that is small."""
+WAYS = (0.0015, 0.006)
+"""On which it turns over, half of each [rad]; assumed, beside that of `effects.friction`."""
+AT_ONCE, OF_WAY = 0.5, 0.3
+"""Share of the model's friction that turns over at once, and on each of these ways."""
 ABOVE_CALIBRATED = 0.08
 """Day-to-day change of friction over what reference logs calibrated."""
 LEAST = 1e-3
@@ -72,7 +80,8 @@ class Usual:
     @property
     def name(self) -> str:
         """For people."""
-        return f"{self.effect} at {self.location}: {EFFECTS[self.effect].parameters[self.parameter].name}"
+        parameter = "share" if self.effect == TURNOVER else EFFECTS[self.effect].parameters[self.parameter].name
+        return f"{self.effect} at {self.location}: {parameter}"
 
 
 def usual_errors(subject: Subject, step: float) -> list[Usual]:
@@ -80,6 +89,8 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
     strength, inertia = joint_strength(subject), joint_inertia(subject)
     found: list[Usual] = []
     for j, joint in enumerate(subject.joints):
+        if subject.coulomb[j] > 0:
+            found += [Usual(TURNOVER, joint, i, OF_WAY if i else AT_ONCE) for i in range(1 + len(WAYS))]
         coulomb = COULOMB * subject.coulomb[j] + COULOMB_LEAST * strength[j]
         found += [
             Usual("coulomb_friction", joint, 0, coulomb),
@@ -113,7 +124,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
         for foot in subject.feet:
             found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, GROUND)]
             found.append(Usual("ground_compliance", foot, 1, GROUND))
-    places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
+    places = {TURNOVER: set(subject.joints)} | {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 
 
@@ -127,6 +138,9 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
     modelled = replace(signals, believed=np.where(np.isfinite(needed), needed, signals.believed))
     found = []
     for one in errors:
+        if one.effect == TURNOVER:
+            found.append({b: v * one.spread for b, v in _turnover(signals, one.location, one.parameter).items()})
+            continue
         effect = EFFECTS[one.effect]
         values = effect.nulls
         low, high = effect.bounds(one.location, signals.subject)[:, one.parameter]
@@ -136,6 +150,29 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
         moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
         found.append({b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()} if moved else {})
     return found
+
+
+def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
+    """Friction of the model that turns over at once less that of the model as it is; or on a way, less that at once."""
+    subject, rows = signals.subject, np.zeros_like(signals.position)
+    j = subject.joints.index(joint)
+    at_once = sliding(signals)[:, j]
+    turned = np.tanh(signals.velocity[:, j] / subject.friction_speed[j])
+    shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
+    rows[:, j] = subject.coulomb[j] * shape
+    return {"motion": rows}
+
+
+def stop(position: np.ndarray, way: float) -> np.ndarray:
+    """Prandtl's stop operator of positions `(t,)`: from -1 to 1 on twice a way [rad], starting from where it is going first."""
+    moved = np.diff(position, prepend=position[0]) / way
+    far = np.abs(position - position[0]) > way
+    state = float(np.sign(position[np.argmax(far)] - position[0])) if far.any() else 0.0
+    out = np.empty(len(position))
+    for tick, step in enumerate(moved.tolist()):
+        state = min(max(state + step, -1.0), 1.0)
+        out[tick] = state
+    return out
 
 
 def columns(sieve: Sieve, errors: Sequence[Usual]) -> dict[int, np.ndarray]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.endogenous import factor
 from hyperleg_design.gap.fit import Base, Cause, Design, Fit, moved
 
 if TYPE_CHECKING:
@@ -97,7 +98,15 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         columns = np.where(some[:, None], (found[:k] - found[k]) / np.where(some, divide, 1.0)[:, None], 0.0)
         constant = found[k] - ((values - nulls) / usual) @ columns
     shape = np.array([p.shape for p in effect.parameters])
-    return Cause(effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear)
+    declared = max((float(kg[0]) for place, kg in subject.declared.payload.items() if _same_place(subject, place, location)), default=0.0)
+    scaled = factor(samples, effect.identifier, location, usual)
+    return Cause(effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled)
+
+
+def _same_place(subject: Subject, one: str, other: str) -> bool:
+    tree = subject.tree
+    known = (*tree.links, *tree.joints)
+    return one in known and other in known and tree.link(one) == tree.link(other)
 
 
 def reach(samples: Samples, columns: np.ndarray) -> float:
@@ -227,7 +236,7 @@ def descend(base: Base, effect: Effect, location: str, start: np.ndarray, nothin
     weight = 1 / scale
     value = _cost(design, weight, cause.phi, before)
     for _ in range(steps):
-        phi, *_ = design.solve(weight)
+        phi, *_ = design.solve(weight, near=np.concatenate([np.zeros(before), cause.phi]))
         step = phi[before:] - cause.phi
         bettered = False
         for _ in range(4):
@@ -256,9 +265,10 @@ def _cost(design: Design, weight: np.ndarray, phi: np.ndarray, before: int) -> f
     held = np.full(design.count, np.nan)
     held[before:] = phi
     found, _, errors, _ = design.solve(weight, held=held)
+    paid = 2 * design.scaled(np.concatenate([found[:before], phi]))
     rss = float(weight @ design.rss(found, errors))
     precision = design.base.prior.precision
-    return rss + float(np.sum((found / design.deviation) ** 2)) + float(np.einsum("sp,pq,sq->", errors, precision, errors))
+    return rss - paid + float(np.sum((found / design.deviation) ** 2)) + float(np.einsum("sp,pq,sq->", errors, precision, errors))
 
 
 __all__ = ["Candidate", "NotJudged", "descend", "lacking", "linearise", "moved", "places", "reach", "screen", "spread"]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects.friction import sliding
+from hyperleg_design.gap.nuisance import stop
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.fit import Base, Fit
@@ -149,7 +150,7 @@ class _Basis:
             x = 2 * time / self.longest - 1
             return np.stack([x, x**2, x**3, (x - 0.3) * (x > 0.3), (x + 0.3) * (x < -0.3)])
         if name == "memory":
-            return np.stack([_stop(q, width) for width in STOPS])
+            return np.stack([stop(q, width) for width in STOPS])
         if name == "load_over_position":
             load = np.nan_to_num(signals.believed[:, self.motor])
             angle = signals.position @ signals.subject.joint_from_motor[:, self.motor]
@@ -176,16 +177,6 @@ class _Basis:
         """Overlapping bumps over the range of a joint `(PIECES, t)`."""
         place = (position - self.low) / max(self.high - self.low, 1e-9) * (PIECES - 1)
         return np.asarray(np.clip(1 - np.abs(place - np.arange(PIECES)[:, None]), 0, None))
-
-
-def _stop(position: np.ndarray, width: float) -> np.ndarray:
-    """Prandtl's stop operator, from -1 to 1."""
-    out = np.empty(len(position))
-    state = 0.0
-    for tick, step in enumerate(np.diff(position, prepend=position[0]) / width):
-        state = min(max(state + step, -1.0), 1.0)
-        out[tick] = state
-    return out
 
 
 def _rhythm(base: Base, row: int) -> float:

@@ -19,6 +19,7 @@ class Thresholds:
 
     floor_torque: float
     floor_friction: float
+    floor_turning: float
     floor_leak: float
     floor_weight: float
     information: float

@@ -1,0 +1,79 @@
+"""Effects that scale the torque which the balance itself is made of, and what keeps them from explaining noise away.
+
+A closed loop gives whatever torque is needed, model errors e included. An effect that takes a share of the believed torque for its own
+trace takes that share of e along, so that least squares would always rather scale torques down. The density of the believed torque has
+the missing term: with u = (1 + a phi) believed - needed, it is p(u) (1 + a phi), so the log-likelihood gains n mean log(1 + a phi).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.effects.friction import sliding
+from hyperleg_design.gap.effects.placing import is_measured
+from hyperleg_design.gap.effects.thermal_derating import rise
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.samples import Samples
+    from hyperleg_design.gap.signals import Signals
+
+LEAST = 0.05
+"""Factor below which the logarithm is cut."""
+TICKS = 200
+"""Ticks of a log that stand for all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Factor:
+    """How a cause scales believed torques: 1 + slope phi of one parameter."""
+
+    parameter: int
+    slope: np.ndarray
+    """At some ticks `(t,)`, over the usual size of the parameter."""
+    number: float
+    """Independent numbers in the rows that it scales."""
+
+    def log(self, phi: float) -> float:
+        """N mean log of the factor."""
+        return self.number * float(np.mean(np.log(np.maximum(1 + self.slope * phi, LEAST))))
+
+    def slopes(self, phi: float) -> tuple[float, float]:
+        """First derivative of `log`, and its second with the sign turned."""
+        ratio = self.slope / np.maximum(1 + self.slope * phi, LEAST)
+        return self.number * float(ratio.mean()), self.number * float((ratio**2).mean())
+
+
+def factor(samples: Samples, effect: str, location: str, usual: np.ndarray) -> Factor | None:
+    """Of an effect at a place; None where it scales no believed torque."""
+    subject = samples.sieves[0].signals.subject
+    if effect in ("torque_constant", "transmission_ratio", "thermal_derating"):
+        motor = subject.motors.index(location)
+        joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
+    elif effect in ("load_dependent_friction", "controller_gain"):
+        joint = subject.joints.index(location)
+        motor = int(np.argmax(np.abs(subject.joint_from_motor[joint])))
+    else:
+        return None
+    rows = [i for i, r in enumerate(samples.rows) if r.balance == "motion" and r.column == joint]
+    if not rows:
+        return None
+    if effect == "controller_gain" and any(is_measured(s.signals, motor) for s in samples.sieves):
+        return None
+    number = float(samples.share[samples.row == rows[0]].sum())
+    slopes = np.concatenate([_slope(s.signals, effect, motor, joint) for s in samples.sieves]) * usual[0]
+    return Factor(0, slopes, number)
+
+
+def _slope(signals: Signals, effect: str, motor: int, joint: int) -> np.ndarray:
+    """Change of the factor with the parameter, at some ticks."""
+    every = max(len(signals.time) // TICKS, 1)
+    if effect == "thermal_derating":
+        return -np.nan_to_num(rise(signals, motor))[::every]
+    if effect == "load_dependent_friction":
+        load = applied(signals.subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
+        return -(np.sign(np.nan_to_num(load)) * sliding(signals)[:, joint])[::every]
+    return np.ones(1)
