@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap import screen, shape
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap import nuisance, screen, shape
+from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.fit import Base, Cause, Design, Fit, Held, predict
-from hyperleg_design.gap.samples import BLOCKS, LOGS
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.thresholds import Thresholds
 
 FINALISTS = 10
@@ -39,6 +39,12 @@ LARGEST_ERROR, HEAVIER, OWN_MASS = 0.8, 5.0, 0.1
 """Error over a link's own mass from which it is rather something that hangs there; log odds for as much again; the usual error."""
 NEGATIVE = 8.0
 """Log prior odds against a load that weighs less than nothing, beyond what is declared."""
+TURNING = ("coulomb_friction", "stribeck_friction", "load_dependent_friction")
+"""Effects whose trace turns over with the motion; how, nobody knows better than of the model's own friction."""
+GENTLE = 0.05
+"""Least speed over which it may do so [rad/s]."""
+OWN_ROWS = 0.3
+"""Rows are a cause's own where its trace has this share of its largest square over the floor."""
 EXPLAINED = 0.5
 """Share of the squares in episodes that a model leaves at most, if they are to count."""
 SHAPED_ROWS = 4
@@ -153,6 +159,9 @@ class Judge:
         episode = np.arange(len(excess)) >= len(self.base.samples.rows)
         excess[episode & (left > EXPLAINED * bare)] = 0.0
         found = excess >= max(EXCESSIVE * float(excess.max(initial=0.0)), 1e-9)
+        for place in range(len(model.causes) if len(model.causes) > 1 else 0):
+            shown = self.shown(model, place)
+            found |= (shown >= OWN_ROWS * shown.max()) & (excess > 0.5)
         return found if found.any() else ~episode
 
     def gap(self, square: np.ndarray, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
@@ -204,7 +213,7 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
         rows = judge.excess_rows(best)
         while len(chosen.causes) < MOST_CAUSES:
             more, _ = _finalists(judge, wanted, chosen.causes)
-            further = next((m for m in more if _further(judge, m, chosen, rows)), None)
+            further = next((m for m in more if _further(judge, m, chosen)), None)
             if further is None:
                 break
             chosen, slots = further, [*slots, tuple(more)]
@@ -259,15 +268,20 @@ def _named(judge: Judge, model: Model, place: int, before: Model) -> bool:
     return judge.closed(model.held, judge.excess_rows(model), model.held) >= rules.worth
 
 
-def _further(judge: Judge, model: Model, before: Model, rows: np.ndarray) -> bool:
+def _further(judge: Judge, model: Model, before: Model) -> bool:
+    """Whether one more cause is worth its name beside those before it: in the rows where it shows, over what they leave."""
     rules = judge.thresholds
     if model.gain - before.gain < rules.second_evident:
         return False
     place = len(model.causes) - 1
     if float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
         return False
-    rows = rows | judge.excess_rows(model)
-    return judge.closed(model.held, rows, model.held) - judge.closed(before.held, rows, model.held) >= rules.second_worth
+    shown = judge.shown(model, place)
+    own = (shown >= OWN_ROWS * shown.max()) & (shown > 0) & (np.arange(len(shown)) < len(judge.base.samples.rows))
+    if not own.any():  # episodes alone are too little beside another cause
+        return False
+    left, less = judge.rows(before.held.square)[own].mean(), judge.rows(model.held.square)[own].mean()
+    return bool(left - less >= rules.second_worth * max(left - min(1.0, less), 1e-9))
 
 
 def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots: list[tuple[Model, ...]]) -> tuple[Model, list[tuple[Model, ...]]]:
@@ -294,19 +308,26 @@ def _shaped(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.
     order = np.argsort(-before, kind="stable")
     looked = np.array(list(dict.fromkeys((order[rows[order]] % len(base.samples.rows)).tolist()))[:SHAPED_ROWS], int)
 
+    beside = _companions(judge, chosen)
+    plain = Design(base, chosen.causes, ridge=beside) if beside is not None else None
+    start, known = chosen.gain, chosen.held
+    if plain is not None:
+        fit = plain.fit(scale=chosen.fit.scale, rounds=ROUNDS)
+        known = predict(plain, fit=fit)
+        start = judge.gain(fit, known)
+
     def rough(one: shape.Shape) -> tuple[shape.Shape, Design, float] | None:
         columns = shape.columns(base, judge.nothing.fit, one)
         if columns is None:
             return None
-        design = Design(base, chosen.causes, ridge=columns)
+        design = Design(base, chosen.causes, ridge=columns if beside is None else np.concatenate([columns, beside]))
         return one, design, design.fit(scale=chosen.fit.scale, rounds=1).evidence
 
     def judged(found: tuple[shape.Shape, Design, float]) -> tuple[shape.Shape, float, float]:
         one, design, _ = found
         fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
         held = predict(design, fit=fit)
-        gain = judge.gain(fit, held) - chosen.gain
-        return one, gain, _beyond(judge, chosen, held, rows)
+        return one, judge.gain(fit, held) - start, _beyond(judge, known, held, rows)
 
     first = [t for t in screen.spread(rough, shape.shapes(base.samples, looked), judge.threads) if t is not None]
     first.sort(key=lambda t: (-t[2], t[0].name, t[0].row))
@@ -314,9 +335,42 @@ def _shaped(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.
     return tuple(sorted(found, key=lambda t: (-t[1], t[0].name, t[0].row)))
 
 
-def _beyond(judge: Judge, chosen: Model, held: Held, rows: np.ndarray) -> float:
+def _companions(judge: Judge, chosen: Model) -> np.ndarray | None:
+    """Ways on which the friction of causes may turn over, as that of the model, weighted `(k, S)`."""
+    samples = judge.base.samples
+    subject = samples.sieves[0].signals.subject
+    found = []
+    for place, cause in enumerate(chosen.causes):
+        if cause.effect not in TURNING:
+            continue
+        joint = subject.joints.index(cause.location)
+        size = float(np.sqrt(judge.shown(chosen, place).max()))
+
+        def trace(signals: Signals, joint: int = joint) -> dict[str, np.ndarray]:
+            rows = np.zeros((len(nuisance.WAYS) + 1, *signals.position.shape))
+            at_once = sliding(signals)[:, joint]
+            rows[:-1, :, joint] = [nuisance.stop(signals.position[:, joint], way) - at_once for way in nuisance.WAYS]
+            rows[-1, :, joint] = np.tanh(signals.velocity[:, joint] / max(float(subject.friction_speed[joint]), GENTLE)) - at_once
+            return {"motion": rows}
+
+        columns = samples.columns(trace, len(nuisance.WAYS) + 1)
+        if columns is not None:
+            level = samples.columns(lambda s, j=joint: {"motion": _only(s, j)}, 1)  # type: ignore[misc]
+            assert level is not None
+            unit = screen.reach(samples, level)
+            found.append(columns * samples.weight * (nuisance.OF_WAY * size / max(unit, 1e-12)))
+    return np.concatenate(found) if found else None
+
+
+def _only(signals: Signals, joint: int) -> np.ndarray:
+    rows = np.zeros((1, *signals.position.shape))
+    rows[0, :, joint] = sliding(signals)[:, joint]
+    return rows
+
+
+def _beyond(judge: Judge, known: Held, held: Held, rows: np.ndarray) -> float:
     """Share of what the chosen causes leave, in squares over the rows with excess, that something further closes."""
-    after, further = float(judge.gap(chosen.held.square, rows)), float(judge.gap(held.square, rows))
+    after, further = float(judge.gap(known.square, rows)), float(judge.gap(held.square, rows))
     return 1 - (further / max(after, 1e-12)) ** 2
 
 
@@ -329,6 +383,3 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[tup
     if beyond or judge.closed(chosen.held, rows, chosen.held) < rules.required:
         return "unknown"
     return "explained"
-
-
-__all__ = ["BLOCKS", "EFFECTS", "LOGS", "Decision", "Judge", "Model", "decide"]

@@ -43,7 +43,7 @@ def _set(*names: str) -> frozenset[str]:
 
 
 EXPERIMENTS: tuple[Experiment, ...] = (
-    Experiment("log torque or current", "repeat the motion with motor torques or currents logged beside the targets", 2, (
+    Experiment("log torque or current", "repeat the motion with motor torques or currents logged beside the targets", 3, (
         (_set("controller_gain", "command_delay", "actuator_bandwidth", "torque_saturation", "voltage_sag"),
          FRICTION | INERTIAL | _set(
              "torque_constant", "transmission_ratio", "rotor_inertia", "joint_spring", "encoder_offset", "thermal_derating", "backlash",
@@ -81,7 +81,7 @@ EXPERIMENTS: tuple[Experiment, ...] = (
         (_set("backlash"), FRICTION | LATE | _set("transmission_elasticity", "cogging")),
         (_set("load_dependent_friction"), FRICTION - {"load_dependent_friction"}),
     )),
-    Experiment("torque-off swing", "switch the drive off, move the joint by hand or let it swing, and log its positions", 3, (
+    Experiment("torque-off swing", "switch the drive off, move the joint by hand or let it swing, and log its positions", 6, (
         (_set("viscous_friction", "coulomb_friction", "joint_spring"),
          _set("controller_gain", "torque_constant", "transmission_ratio", "voltage_sag")),
         (INERTIAL | _set("rotor_inertia"), _set("controller_gain", "torque_constant", "voltage_sag", "transmission_ratio")),

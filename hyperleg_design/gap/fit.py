@@ -507,7 +507,7 @@ def episodes(base: Base) -> np.ndarray:
             scale[group] = max(float(np.median(plain[samples.group == group])) / 0.6745, 0.5) ** 2
         weight = (ROBUST_FREEDOM + 1) / (ROBUST_FREEDOM + plain**2 / scale[samples.group])
     found = np.zeros(len(left), bool)
-    large = plain > EPISODE * np.sqrt(scale[samples.group])
+    large = (plain > EPISODE * np.sqrt(scale[samples.group])) & (samples.group_band[samples.group] > 0)
     log = samples.log[samples.part]
     for key in np.unique(samples.row[large] * (log.max() + 1) + log[large]).tolist():
         row, number = divmod(key, int(log.max()) + 1)

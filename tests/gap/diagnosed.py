@@ -1,0 +1,51 @@
+"""Logs of small robots with something wrong, made in plain MuJoCo, for tests of the diagnosis."""
+
+from __future__ import annotations
+
+import numpy as np
+import robots
+
+from hyperleg_design.gap.conditioning import condition
+from hyperleg_design.gap.preparation import prepare
+from hyperleg_design.gap.subject import load_subject
+from hyperleg_design.gap.thresholds import load_thresholds
+
+CHANGES = {
+    "healthy": [],
+    "viscous": [('name="knee" axis="0 1 0" damping="0.03"', 'name="knee" axis="0 1 0" damping="0.33"')],
+    "dry": [('name="hip" axis="0 1 0" damping="0.05"', 'name="hip" axis="0 1 0" damping="0.05" frictionloss="0.8"')],
+    "both": [
+        ('name="knee" axis="0 1 0" damping="0.03"', 'name="knee" axis="0 1 0" damping="0.33"'),
+        ('name="hip" axis="0 1 0" damping="0.05"', 'name="hip" axis="0 1 0" damping="0.05" frictionloss="0.8"'),
+    ],
+    "cubic": [],
+}  # fmt: skip
+
+
+def run(kind: str, seed: int, **metadata):
+    """Log of the coupled rig, as noisy as a cheap robot's."""
+    text = robots.COUPLED
+    for old, new in CHANGES[kind]:
+        assert old in text
+        text = text.replace(old, new)
+    log = robots.servo_run(text, robots.waves(2, [1.5, 1.5], seed=seed), 12.0, **metadata)
+    rng = np.random.default_rng([7, seed])
+    noise = {"position": 5e-5, "velocity": 5e-3, "motor_torque": 5e-3}
+    signals = {c: v + rng.normal(0, noise[c.partition("/")[0]], len(v)) for c, v in log.signals.items()}
+    if kind == "cubic":  # a torque that no effect has, as if somebody pulled at the hip with a spring that hardens
+        q = log.column("position/hip")
+        signals["motor_torque/m_front"] = signals["motor_torque/m_front"] + 4.0 * (q - 0.0) ** 3 / 12
+        signals["motor_torque/m_back"] = signals["motor_torque/m_back"] + 4.0 * (q - 0.0) ** 3 / 12
+    return log.changed(signals=signals, name=f"{kind}_{seed}")
+
+
+def conditioned(robot, *logs):
+    """Signals of logs of one robot."""
+    subject = load_subject(robot, logs)
+    return [condition(log, subject) for log in logs]
+
+
+def prepared(robot, *logs, references=()):
+    """What causes are fitted on."""
+    signals = conditioned(robot, *logs, *references)
+    return prepare(signals[: len(logs)], signals[len(logs) :], load_thresholds())
