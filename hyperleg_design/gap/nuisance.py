@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 TORQUE_CONSTANT = 0.02
-COULOMB, COULOMB_LEAST = 0.1, 0.0015
+COULOMB, COULOMB_LEAST = 0.08, 0.0008
 """Of the model's friction, and of the torque that the joint is made for."""
-VISCOUS, VISCOUS_LEAST = 0.12, 0.001
+VISCOUS, VISCOUS_LEAST = 0.12, 0.0007
 BREAKAWAY = 0.08
 """Of the model's Coulomb friction."""
 LOAD_FRICTION = 0.006

@@ -1,0 +1,53 @@
+import diagnosed
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.decide import Judge, decide, plausible
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.equivalence import alike, sine
+from hyperleg_design.gap.screen import linearise, places
+from hyperleg_design.gap.thresholds import load_thresholds
+
+
+@pytest.fixture(scope="module")
+def judged(robot_files):
+    ready = diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1)))
+    subject = ready.base.samples.sieves[0].signals.subject
+    friction = ("viscous_friction", "coulomb_friction", "stribeck_friction", "torque_constant")
+    return decide(ready.base, load_thresholds(), places(subject, friction))
+
+
+def test_the_gap_is_what_the_cause_leaves_out(judged):
+    judge, found = judged
+    assert found.verdict == "explained"
+    assert found.model.names == (("viscous_friction", "knee"),)
+    rows = [judge.base.samples.rows[r].name for r in np.flatnonzero(found.rows)]
+    assert rows == ["knee"]
+    assert judge.closed(found.model.held, found.rows, found.model.held) > 0.95
+    assert judge.closed(judge.nothing.held, found.rows, found.model.held) < 0.5
+
+
+def test_each_slot_has_the_chosen_first(judged):
+    judge, found = judged
+    assert found.slots[0][0].names == found.model.names
+    gains = [m.gain + plausible(m) for m in found.slots[0]]
+    assert gains == sorted(gains, reverse=True)
+    assert alike(judge, found.slots[0], found.model, found.rows) == []
+
+
+def test_angles_between_traces(judged):
+    judge, _ = judged
+    base = judge.base
+    weight = np.ones(base.samples.groups)
+    one = linearise(base.samples, EFFECTS["viscous_friction"], "knee", np.zeros(1)).columns * base.samples.weight
+    other = linearise(base.samples, EFFECTS["viscous_friction"], "hip", np.zeros(1)).columns * base.samples.weight
+    assert sine(base, weight, one, one) == pytest.approx(0, abs=1e-4)
+    assert sine(base, weight, one, 3 * one) == pytest.approx(0, abs=1e-4)
+    assert sine(base, weight, one, other) > 0.5
+
+
+def test_nothing_is_left_by_nothing(judged):
+    judge, _ = judged
+    assert isinstance(judge, Judge)
+    assert judge.nothing.gain == 0
+    assert np.allclose(judge.nothing.held.square, judge.nothing.held.bare)

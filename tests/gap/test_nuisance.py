@@ -1,0 +1,53 @@
+import diagnosed
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.filtering import sieve
+from hyperleg_design.gap.nuisance import DAY, TURNOVER, WIDE, columns, spreads, stop, traces, usual_errors
+
+
+@pytest.fixture(scope="module")
+def signals(robot_files):
+    return diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
+
+
+@pytest.fixture(scope="module")
+def errors(signals):
+    return usual_errors(signals.subject, signals.step)
+
+
+def test_every_error_belongs_to_the_catalogue_and_to_a_place_of_the_robot(signals, errors):
+    for one in errors:
+        assert one.spread > 0
+        assert one.effect == TURNOVER or one.location in EFFECTS[one.effect].locations(signals.subject)
+    assert set(WIDE) == set(DAY) <= set(EFFECTS)
+    assert np.all(spreads(errors, DAY) <= 1)
+    assert np.all(spreads(errors, WIDE) >= 1)
+
+
+def test_usual_errors_are_smaller_than_usual_causes(signals, errors):
+    for one in errors:
+        if one.effect != TURNOVER and one.effect != "controller_gain":
+            usual = EFFECTS[one.effect].usual(one.location, signals.subject)[one.parameter]
+            assert one.spread < 0.7 * abs(usual), one.name
+
+
+def test_traces_are_those_of_the_effects(signals, errors):
+    place = next(i for i, e in enumerate(errors) if e.effect == "viscous_friction" and e.location == "knee")
+    found = traces(signals, errors)[place]["motion"]
+    assert np.allclose(found[:, 1], errors[place].spread * signals.velocity[:, 1])
+    assert not found[:, 0].any()
+    sampled = columns(sieve(signals), errors)
+    assert sampled[1][place].any()
+    assert not sampled[0][place].any()
+
+
+def test_the_stop_operator_stays_between_its_ends_and_turns_over_on_its_way():
+    way = 0.01
+    position = np.concatenate([np.linspace(0, 0.1, 200), np.linspace(0.1, 0.0, 200)])
+    found = stop(position, way)
+    assert np.abs(found).max() <= 1
+    assert found[150] == 1
+    turned = position[200 + np.argmax(found[200:] <= -1 + 1e-9)]
+    assert turned == pytest.approx(0.1 - 2 * way, abs=2e-3)

@@ -1,0 +1,62 @@
+import diagnosed
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.fit import Design
+from hyperleg_design.gap.screen import Candidate, NotJudged, descend, lacking, linearise, places, screen
+
+
+@pytest.fixture(scope="module")
+def ready(robot_files):
+    return diagnosed.prepared(robot_files["coupled"], diagnosed.run("viscous", 0))
+
+
+@pytest.fixture(scope="module")
+def found(ready):
+    subject = ready.base.samples.sieves[0].signals.subject
+    return screen(ready.base, Design(ready.base).fit(), places(subject))
+
+
+def test_the_true_cause_leads(found):
+    best = max((c for c in found if isinstance(c, Candidate)), key=lambda c: c.gain)
+    assert best.name == ("viscous_friction", "knee")
+
+
+def test_threads_change_nothing(ready, found):
+    subject = ready.base.samples.sieves[0].signals.subject
+    again = screen(ready.base, Design(ready.base).fit(), places(subject), threads=3)
+    gains = [[(c.name, c.gain) for c in run if isinstance(c, Candidate)] for run in (found, again)]
+    assert gains[0] == gains[1]
+
+
+def test_what_logs_lack_is_said(ready, found):
+    told = {n.effect: n.reason for n in found if isinstance(n, NotJudged)}
+    assert "lack" in told["command_delay"]
+    signals = [s.signals for s in ready.base.samples.sieves]
+    assert lacking(EFFECTS["controller_gain"], "knee", signals) if EFFECTS["controller_gain"].locations(signals[0].subject) else True
+    assert not lacking(EFFECTS["coulomb_friction"], "knee", signals)
+
+
+def test_a_linearised_trace_is_the_trace(ready):
+    samples = ready.base.samples
+    effect = EFFECTS["encoder_offset"]
+    cause = linearise(samples, effect, "knee", np.array([0.05]))
+    exact = samples.columns(lambda s: effect.trace(s, "knee", np.array([[0.06]])), 1)[0]
+    near = cause.constant + (0.06 - cause.nulls[0]) / cause.usual[0] * cause.columns[0]
+    assert np.abs(near - exact).max() < 0.02 * np.abs(exact).max()
+
+
+def test_descent_finds_a_parameter_that_is_not_linear(robot_files):
+    from dataclasses import replace
+
+    from hyperleg_design.gap.preparation import prepare
+    from hyperleg_design.gap.thresholds import load_thresholds
+
+    signals = diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
+    effect = EFFECTS["stribeck_friction"]
+    values = np.array([1.0, 0.2])
+    shifted = {"motion": signals.residual["motion"] + effect.trace(signals, "hip", values[None])["motion"][0]}
+    ready = prepare([replace(signals, residual=shifted)], [], load_thresholds())
+    result = descend(ready.base, effect, "hip", np.array([0.3, 0.1]), Design(ready.base).fit(), 12)
+    assert result.cause.values == pytest.approx(values, rel=0.15)

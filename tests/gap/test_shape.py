@@ -1,0 +1,39 @@
+import diagnosed
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.fit import Design, predict
+from hyperleg_design.gap.shape import KINDS, columns, shapes
+
+
+@pytest.fixture(scope="module")
+def ready(robot_files):
+    return diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("cubic", s, session="a") for s in (0, 1)))
+
+
+def test_a_shape_of_position_tells_a_hardening_spring(ready):
+    base = ready.base
+    nothing = Design(base).fit()
+    row = next(i for i, r in enumerate(base.samples.rows) if r.name == "hip")
+    gains = {}
+    for one in shapes(base.samples, np.array([row])):
+        found = columns(base, nothing, one)
+        if found is not None:
+            gains[one.name] = predict(Design(base, ridge=found)).total
+    nothing_held = predict(Design(base)).total
+    assert gains["position"] > nothing_held + 10
+    assert max(gains, key=gains.__getitem__) in ("position", "load_over_position", "encoder_over_position")
+    assert gains["rhythm"] < nothing_held + 5
+    assert set(gains) <= set(KINDS)
+
+
+def test_columns_are_finite_and_sit_in_their_row(ready):
+    base = ready.base
+    nothing = Design(base).fit()
+    for one in shapes(base.samples, np.arange(len(base.samples.rows))):
+        found = columns(base, nothing, one)
+        if found is None:
+            continue
+        assert np.isfinite(found).all()
+        if one.row >= 0:
+            assert not found[:, base.samples.row != one.row].any()
