@@ -15,6 +15,7 @@ import numpy as np
 
 from hyperleg_design.gap import nuisance, screen, shape
 from hyperleg_design.gap.effects.friction import sliding
+from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Base, Cause, Design, Fit, Held, predict
 
 if TYPE_CHECKING:
@@ -47,6 +48,14 @@ OWN_ROWS = 0.3
 """Rows are a cause's own where its trace has this share of its largest square over the floor."""
 EXPLAINED = 0.5
 """Share of the squares in episodes that a model leaves at most, if they are to count."""
+SURE = 3.0
+"""Gain of a further cause over the least one, from which episodes count for it."""
+AT_LIMITS = ("torque_saturation", "voltage_sag")
+"""Effects of which that is not so: healthy drives reach limits too, which models often do not know."""
+PASSES = 2.0
+"""Gain that is stated, over the least that tells, of a shape that does for several causes."""
+SMALL_EXCESS, QUIET = 1.2, 3.0
+"""Gap over floor up to which a shape must be so many times more evident to be told, as no cause was named."""
 SHAPED_ROWS = 4
 """Rows with the largest excess whose shape is looked at."""
 
@@ -189,6 +198,8 @@ class Decision:
     """For each named cause its rivals in its place, itself among them."""
     shaped: tuple[tuple[shape.Shape, float, float], ...]
     """Shapes with their gain over the model and the further share of the excess gap that they close, best first."""
+    together: float
+    """Share of the time in which most drives at once do not do what they were told, beside the causes."""
     not_judged: tuple[screen.NotJudged, ...]
 
 
@@ -220,9 +231,10 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
             if len(chosen.causes) == 2:
                 chosen, slots = _swapped(judge, wanted, chosen, slots)
             rows = judge.excess_rows(chosen)
-    shaped = _shaped(judge, chosen, rows)
-    verdict = _verdict(judge, chosen, rows, shaped)
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, tuple(not_judged))
+    shaped = _better_shape(judge, chosen, rows) or _shaped(judge, chosen, rows)
+    lost = together(base.samples, chosen.held.left)
+    verdict = "unknown" if lost > thresholds.together else _verdict(judge, chosen, rows, shaped)
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, tuple(not_judged))
 
 
 def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence[Cause]) -> tuple[list[Model], list[screen.NotJudged]]:
@@ -261,27 +273,38 @@ def plausible(model: Model) -> float:
 
 
 def _named(judge: Judge, model: Model, place: int, before: Model) -> bool:
-    """Whether the last cause of a model is worth its name."""
+    """Whether the first cause is worth its name: by all rows with excess or, where it is beyond doubt, by those where it shows."""
     rules = judge.thresholds
-    if model.gain - before.gain < rules.evident or float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
+    gain = model.gain - before.gain
+    if gain < rules.evident or float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
         return False
-    return judge.closed(model.held, judge.excess_rows(model), model.held) >= rules.worth
+    if judge.closed(model.held, judge.excess_rows(model), model.held) >= rules.worth:
+        return True
+    return gain >= SURE * rules.second_evident and _closes_own(judge, model, before, rules.required)
 
 
 def _further(judge: Judge, model: Model, before: Model) -> bool:
     """Whether one more cause is worth its name beside those before it: in the rows where it shows, over what they leave."""
     rules = judge.thresholds
-    if model.gain - before.gain < rules.second_evident:
+    if model.gain - before.gain < rules.second_evident * len(before.causes):
         return False
-    place = len(model.causes) - 1
-    if float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
+    if float(np.sqrt(judge.shown(model, len(model.causes) - 1).max())) < rules.visible:
         return False
-    shown = judge.shown(model, place)
-    own = (shown >= OWN_ROWS * shown.max()) & (shown > 0) & (np.arange(len(shown)) < len(judge.base.samples.rows))
-    if not own.any():  # episodes alone are too little beside another cause
+    return _closes_own(judge, model, before, rules.second_worth)
+
+
+def _closes_own(judge: Judge, model: Model, before: Model, worth: float) -> bool:
+    """Whether the last cause closes a share of the excess squares in the rows where it shows."""
+    shown = judge.shown(model, len(model.causes) - 1)
+    calm = np.arange(len(shown)) < len(judge.base.samples.rows)
+    sure = model.gain - before.gain >= SURE * judge.thresholds.second_evident
+    if sure and model.causes[-1].effect not in AT_LIMITS:
+        calm |= ~calm  # episodes alone are too little, unless they speak clearly
+    own = (shown >= OWN_ROWS * shown.max()) & (shown > 0) & calm
+    if not own.any():
         return False
     left, less = judge.rows(before.held.square)[own].mean(), judge.rows(model.held.square)[own].mean()
-    return bool(left - less >= rules.second_worth * max(left - min(1.0, less), 1e-9))
+    return bool(left - less >= worth * max(left - min(1.0, less), 1e-9))
 
 
 def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots: list[tuple[Model, ...]]) -> tuple[Model, list[tuple[Model, ...]]]:
@@ -374,12 +397,31 @@ def _beyond(judge: Judge, known: Held, held: Held, rows: np.ndarray) -> float:
     return 1 - (further / max(after, 1e-12)) ** 2
 
 
+def _better_shape(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
+    """Shapes that predict more than the chosen causes do, without them: then the causes only stood for the shape.
+
+    Several causes must each be worth it beside a shape, as they must beside each other.
+    """
+    if not chosen.causes:
+        return ()
+    rules = judge.thresholds
+    needed = rules.beyond_evident if len(chosen.causes) == 1 else -rules.second_evident * (len(chosen.causes) - 1)
+    alone = _shaped(judge, judge.nothing, rows)
+    return tuple((one, max(gain - chosen.gain, PASSES * rules.beyond_evident), closed) for one, gain, closed in alone if gain - chosen.gain > needed)
+
+
 def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[tuple[shape.Shape, float, float]]) -> str:
     rules = judge.thresholds
-    beyond = bool(shaped) and shaped[0][1] > rules.beyond_evident and shaped[0][2] > rules.beyond
     excess = float(judge.gap(judge.nothing.held.square, rows))
+    needed = rules.beyond_evident * (QUIET if not chosen.causes and excess < SMALL_EXCESS else 1.0)
+    beyond = tells(rules, chosen, shaped) and shaped[0][1] > needed
     if not chosen.causes:
         return "unknown" if excess > rules.largest_excess or beyond else "none"
     if beyond or judge.closed(chosen.held, rows, chosen.held) < rules.required:
         return "unknown"
     return "explained"
+
+
+def tells(rules: Thresholds, chosen: Model, shaped: Sequence[tuple[shape.Shape, float, float]]) -> bool:
+    """Whether the best shape speaks against causes, or against none."""
+    return bool(shaped) and shaped[0][1] > rules.beyond_evident and shaped[0][2] > rules.beyond * max(len(chosen.causes), 1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,12 +14,12 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap import experiment, screen
 from hyperleg_design.gap.check import Check, check_log
 from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.decide import Decision, Judge, Model, decide, plausible
+from hyperleg_design.gap.decide import Decision, Judge, Model, decide, plausible, tells
 from hyperleg_design.gap.diagnosis import Diagnosis, Named, Place, Shrinkage, Value
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
-from hyperleg_design.gap.fit import Design, predict
+from hyperleg_design.gap.fit import Cause, Design, predict
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.samples import BLOCKS, LOGS
 from hyperleg_design.gap.subject import load_subject
@@ -65,7 +66,8 @@ def diagnose(
     """
     say = show or (lambda _: None)
     tests = [log for log in logs if log.metadata.role != "reference"]
-    healthy = [*(log for log in logs if log.metadata.role == "reference"), *reference]
+    well = [*(log for log in logs if log.metadata.role == "reference"), *reference]
+    healthy = [log.changed(metadata=replace(log.metadata, role="reference")) for log in well]
     if not tests:
         raise InputError("diagnose", "logs", len(logs), "name no log to be diagnosed: give at least one that is not a reference")
     subject = load_subject(robot, [*tests, *healthy])
@@ -258,14 +260,14 @@ class _Report:
     def probabilities(self, sets: Sequence[Sequence[Model]]) -> list[dict[tuple[tuple[str, str], ...], float]]:
         """Of every model in each slot: tempered held-out likelihoods of the rivals, of none and of unknown, made one."""
         rules, found = self.judge.thresholds, self.found
-        shaped = found.shaped[0][1] if found.shaped and found.shaped[0][2] > 0 else 0.0
+        shaped = found.shaped[0][1] if tells(rules, found.model, found.shaped) else 0.0
         slots: Sequence[Sequence[Model]] = found.slots or (found.singles,)
         tables = []
         for place, slot in enumerate(slots):
             models = list({m.names: m for m in [*slot, *([found.model] if found.slots else [])]}.values())
             other = found.model.gain if place == len(slots) - 1 and found.slots else max((m.gain for m in models), default=0.0)
             none = 0.0 if place == 0 else _without(found, place)
-            scores = np.array([*(m.gain + plausible(m) for m in models), none, other + shaped - rules.beyond_evident])
+            scores = np.array([*(m.gain + plausible(m) for m in models), none, other + shaped - rules.unlisted])
             weights = np.exp(rules.temperature * (scores - scores.max()))
             weights /= weights.sum()
             certain = np.minimum(weights, rules.most_certain)
@@ -305,7 +307,10 @@ class _Report:
     def shape(self) -> tuple[dict[str, Any], ...]:
         """What the residual beside the causes looks like."""
         samples = self.judge.base.samples
-        found = []
+        found: list[dict[str, Any]] = []
+        if self.found.together > self.judge.thresholds.together:
+            says = f"for {100 * self.found.together:.1f} % of the time most drives at once do not follow their commands: these get lost or come late"
+            found.append({"shape": "lost_commands", "location": "robot", "says": says, "closed_beyond": 0.0, "gain": 0.0})
         for one, gain, closed in self.found.shaped[:MOST_SHAPES]:
             if gain > 0 and closed > 0:
                 place = "robot" if one.row < 0 else samples.rows[one.row].name
@@ -386,7 +391,23 @@ def parameters(judge: Judge, model: Model, place: int) -> dict[str, Value]:
         found[parameter.name] = Value(
             float(values[i]), float(max(values[i] - reach, cause.low[i])), float(min(values[i] + reach, cause.high[i])), parameter.unit
         )
-    return found
+    return found | _derived(judge, cause, values, found)
+
+
+def _derived(judge: Judge, cause: Cause, values: np.ndarray, found: dict[str, Value]) -> dict[str, Value]:
+    """The same in words that people use, with intervals from those of the parameters, each moved alone."""
+    effect, subject = EFFECTS[cause.effect], judge.base.samples.sieves[0].signals.subject
+    middle = effect.derived(cause.location, values, subject)
+    below, above = dict.fromkeys(middle, 0.0), dict.fromkeys(middle, 0.0)
+    for i, parameter in enumerate(effect.parameters):
+        ends = [np.where(np.arange(len(values)) == i, end, values) for end in (found[parameter.name].low, found[parameter.name].high)]
+        tried = [effect.derived(cause.location, end, subject) for end in ends]
+        for name, (value, _) in middle.items():
+            moves = [t[name][0] - value for t in tried if name in t]
+            below[name] = float(np.hypot(below[name], min(*moves, 0.0)))
+            above[name] = float(np.hypot(above[name], max(*moves, 0.0)))
+    told = {name: Value(value, value - below[name], value + above[name], unit) for name, (value, unit) in middle.items()}
+    return {name: one for name, one in told.items() if np.isfinite([one.value, one.low, one.high]).all()}
 
 
 __all__ = ["diagnose", "diagnose_signals", "parameters"]

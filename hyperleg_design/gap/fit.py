@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import add
 
 import numpy as np
 
 from hyperleg_design.gap.endogenous import Factor
-from hyperleg_design.gap.samples import BLOCKS, Products, Samples, products
+from hyperleg_design.gap.samples import BLOCKS, Packed, Products, Samples, pack, products
+from hyperleg_design.gap.sums import Layout, Sums, layout_of
 
 WIDTH = 4.0
 """Standard deviation of a cause's parameters over their usual distance from the null (assumed: wide)."""
@@ -76,30 +78,38 @@ class Base:
         return found
 
     @cached_property
-    def sums(self) -> list[list[np.ndarray]]:
-        """By way of holding out and fold: products `(sessions, G, p + 1, p + 1)`."""
-        samples, size = self.samples, len(self.errors) + 1
-        found = [[np.zeros((samples.sessions, samples.groups, size, size)) for _ in range(samples.folds(way))] for way in range(len(samples.fold))]
+    def layout(self) -> Layout:
+        """Which columns each row shows."""
+        return layout_of(self.samples, self.stacked)
+
+    @cached_property
+    def packed(self) -> Packed:
+        """`stacked` without what is nothing."""
+        return pack(self.samples, self.stacked, self.layout.shown)
+
+    @cached_property
+    def sums(self) -> list[list[list[Sums]]]:
+        """Products of `stacked` by way of holding out, fold and session."""
+        samples = self.samples
+        found = [[[self.layout.empty() for _ in range(samples.sessions)] for _ in range(samples.folds(way))] for way in range(len(samples.fold))]
         for piece in samples.pieces:
-            mine = self.stacked[:, piece.start : piece.stop]
-            product = mine @ mine.T
-            for way, fold in enumerate(samples.fold[:, piece.part]):
-                found[way][fold][samples.session[piece.part], piece.group] += product
+            session = samples.session[piece.part]
+            self.layout.add([found[way][fold][session] for way, fold in enumerate(samples.fold[:, piece.part])], self.stacked, piece)
         return found
 
     @cached_property
-    def total(self) -> np.ndarray:
-        """Products of all samples `(sessions, G, p + 1, p + 1)`."""
-        return np.asarray(sum(self.sums[BLOCKS]))
+    def total(self) -> list[Sums]:
+        """Products of all samples by session."""
+        return [reduce(add, own) for own in zip(*self.sums[BLOCKS], strict=True)]
 
     @cached_property
-    def _parts(self) -> dict[tuple[int, int, int], np.ndarray]:
+    def _parts(self) -> dict[tuple[int, int, int], Sums]:
         return {}
 
-    def part(self, way: int, fold: int | None, session: int, inside: bool) -> np.ndarray:
-        """Products of a fold, of all but it, or of everything, in one session `(G, p + 1, p + 1)`."""
+    def part(self, way: int, fold: int | None, session: int, inside: bool) -> Sums:
+        """Products of a fold, of all but it, or of everything, in one session."""
         if fold is None:
-            return np.asarray(self.total[session])
+            return self.total[session]
         if inside:
             return self.sums[way][fold][session]
         key = way, fold, session
@@ -118,14 +128,14 @@ class Base:
     def _kept(self) -> dict[bytes, tuple[np.ndarray, tuple[np.ndarray, bool], float]]:
         return {}
 
-    def normal(self, of_base: np.ndarray, weight: np.ndarray, key: bytes | None) -> tuple[np.ndarray, tuple[np.ndarray, bool], float]:
+    def normal(self, of_base: Sums, weight: np.ndarray, key: bytes | None) -> tuple[np.ndarray, tuple[np.ndarray, bool], float]:
         """Weighted products of the base, the factor of the errors' normal equations, and its log determinant; kept under a key."""
         from scipy.linalg import cho_factor
 
         if key is not None and key in self._kept:
             return self._kept[key]
         size = len(self.errors)
-        summed = (weight @ of_base.reshape(len(weight), -1)).reshape(of_base.shape[1:])
+        summed = of_base.weighed(weight)
         factor = cho_factor(summed[:size, :size] + self.prior.precision, check_finite=False)
         found = summed, factor, 2 * float(np.log(np.diag(factor[0])).sum())
         if key is not None and len(self._kept) < 64:
@@ -205,7 +215,7 @@ class Design:
 
     def __init__(self, base: Base, causes: Sequence[Cause] = (), ridge: np.ndarray | None = None) -> None:
         self.base, self.causes = base, tuple(causes)
-        self._kept: dict[tuple[int, int | None, int, bool], tuple[np.ndarray, np.ndarray]] = {}
+        self._kept: dict[tuple[int, int, int, bool], tuple[np.ndarray, np.ndarray]] = {}
         weight = base.samples.weight
         parts = [c.columns * weight for c in causes] + ([] if ridge is None else [ridge])
         self.count = sum(len(p) for p in parts)
@@ -222,7 +232,17 @@ class Design:
         self.constant = constant * weight
         self.shifted = bool(self.constant.any())
         self.columns = np.concatenate([*parts, self.constant[None]]) if parts else np.zeros((1, len(weight)))
-        self.products: Products | None = products(base.samples, self.columns, base.stacked) if self.count or self.shifted else None
+        self.empty = not (self.count or self.shifted)
+
+    @cached_property
+    def whole(self) -> Products:
+        """Of its columns, by session."""
+        return products(self.base.samples, self.columns, self.base.packed, whole=True)
+
+    @cached_property
+    def products(self) -> Products:
+        """Of its columns, by part."""
+        return products(self.base.samples, self.columns, self.base.packed)
 
     def trust(self, fit: Fit) -> None:
         """Keep causes that are not linear where their linearisation holds: near a fit, within a few standard deviations."""
@@ -235,22 +255,22 @@ class Design:
                 self.low[part] = np.maximum(self.low[part], fit.phi[part] - reach)
                 self.high[part] = np.minimum(self.high[part], fit.phi[part] + reach)
 
-    def gathered(self, way: int, fold: int | None, session: int, inside: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def gathered(self, way: int, fold: int | None, session: int, inside: bool) -> tuple[Sums, np.ndarray, np.ndarray]:
         """Sums of products of a fold, of all but it (`inside` False), or of everything (no fold), in one session.
 
         Returns:
-            Of the base `(G, p + 1, p + 1)`, of own columns `(G, k + 1, k + 1)`, between them `(G, k + 1, p + 1)`.
+            Of the base (p + 1 columns), of own columns `(G, k + 1, k + 1)`, between them `(G, k + 1, p + 1)`.
         """
         base = self.base
         of_base = base.part(way, fold, session, inside)
-        if self.products is None:
+        if self.empty:
             groups = base.samples.groups
-            return of_base, np.zeros((groups, 1, 1)), np.zeros((groups, 1, of_base.shape[-1]))
+            return of_base, np.zeros((groups, 1, 1)), np.zeros((groups, 1, base.layout.size))
+        if fold is None:
+            return of_base, self.whole.own[session], self.whole.cross[session]
         key = way, fold, session, inside
         if key not in self._kept:
-            parts = base.samples.session == session
-            if fold is not None:
-                parts &= (base.samples.fold[way] == fold) == inside
+            parts = (base.samples.session == session) & ((base.samples.fold[way] == fold) == inside)
             self._kept[key] = self.products.own[parts].sum(0), self.products.cross[parts].sum(0)
         return of_base, *self._kept[key]
 
@@ -331,8 +351,8 @@ class Design:
         for session in range(self.base.samples.sessions):
             of_base, own, cross = self.gathered(way, fold, session, inside)
             u = np.append(errors[session], -1.0)
-            found += (of_base @ u) @ u
-            if self.products is not None:
+            found += of_base.square(u)
+            if not self.empty:
                 v = np.append(phi, 1.0)
                 found += np.einsum("k,gkl,l->g", v, own, v) + 2 * np.einsum("k,gkp,p->g", v, cross, u)
         return np.maximum(found, 0.0)
@@ -471,53 +491,3 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
 def moved(cause: Cause, values: np.ndarray, columns: np.ndarray, constant: np.ndarray) -> Cause:
     """The same cause linearised elsewhere."""
     return replace(cause, values=values, columns=columns, constant=constant)
-
-
-ROBUST_FREEDOM = 4.0
-"""Of the Student distribution that finds episodes."""
-EPISODE = 6.0
-"""Residual over the robust scale of its group from which there is an episode."""
-NEAR_EPISODE = 0.15
-"""Time around such a sample that belongs to the episode [s]."""
-MOST_EPISODES = 0.3
-"""Share of a row above which there are no episodes but noise that is larger than thought."""
-
-
-def episodes(base: Base) -> np.ndarray:
-    """Samples in rare episodes of residuals much larger than the rest of their row `(S,)` of bool.
-
-    They are found after a fit of the calibration errors with Student weights, which such episodes do not bend.
-    """
-    from scipy.linalg import cho_factor, cho_solve
-
-    samples = base.samples
-    session = samples.session[samples.part]
-    weight, left = np.ones(len(base.value)), base.value.copy()
-    plain = np.abs(base.value) / np.sqrt(samples.share)
-    scale = np.ones(samples.groups)
-    for _ in range(4):
-        for s in range(samples.sessions):
-            mine = session == s
-            columns = base.errors[:, mine] * np.sqrt(weight[mine] / scale[samples.group[mine]])
-            target = base.value[mine] * np.sqrt(weight[mine] / scale[samples.group[mine]])
-            factor = cho_factor(columns @ columns.T + base.prior.precision, check_finite=False)
-            left[mine] = base.value[mine] - cho_solve(factor, columns @ target) @ base.errors[:, mine]
-        plain = np.abs(left) / np.sqrt(samples.share)
-        for group in range(samples.groups):
-            scale[group] = max(float(np.median(plain[samples.group == group])) / 0.6745, 0.5) ** 2
-        weight = (ROBUST_FREEDOM + 1) / (ROBUST_FREEDOM + plain**2 / scale[samples.group])
-    found = np.zeros(len(left), bool)
-    large = (plain > EPISODE * np.sqrt(scale[samples.group])) & (samples.group_band[samples.group] > 0)
-    log = samples.log[samples.part]
-    for key in np.unique(samples.row[large] * (log.max() + 1) + log[large]).tolist():
-        row, number = divmod(key, int(log.max()) + 1)
-        mine = (samples.row == row) & (log == number)
-        times = np.sort(samples.time[mine & large])
-        after = np.clip(np.searchsorted(times, samples.time[mine]), 0, len(times) - 1)
-        near = np.minimum(np.abs(times[after] - samples.time[mine]), np.abs(times[np.maximum(after - 1, 0)] - samples.time[mine]))
-        found[mine] = near <= NEAR_EPISODE
-    for row in range(len(samples.rows)):
-        mine = samples.row == row
-        if mine.any() and found[mine].mean() > MOST_EPISODES:
-            found[mine] = False
-    return found

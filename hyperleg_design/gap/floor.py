@@ -13,6 +13,7 @@ import numpy as np
 
 from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
+from hyperleg_design.gap.ground import footings
 from hyperleg_design.gap.nuisance import stop
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, n
     level, _, _ = sieve.labels(row)
     whole = np.sqrt(np.nanmean(np.where(sieve.mask[row], moving, np.nan) ** 2)) if sieve.mask[row].any() else 0.0
     turning = _turning(sieve, row) if constant > 0 else np.zeros(len(signals.time))
+    sinking = _smoothed(_sinking(sieve, row) ** 2, NEAR / signals.step)
     found, start = np.empty(len(samples)), 0
     for band in sieve.bands[row]:
         part = slice(start, start + len(band.kept))
@@ -51,9 +53,17 @@ def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, n
         noise = density * (band.high - band.low) + _of_acceleration(sieve, row, band.low, band.high)
         share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
         dry = ((thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant) ** 2 / len(sieve.bands[row])
-        found[part] = np.sqrt(noise + share + dry + (LEAST * _strength(sieve, row)) ** 2)
+        found[part] = np.sqrt(noise + share + dry + _at(sinking, band) + (LEAST * _strength(sieve, row)) ** 2)
     assert len(level) == start
     return found
+
+
+def _sinking(sieve: Sieve, row: int) -> np.ndarray:
+    """What the height of a foot leaves open of the ground's vertical force `(t,)` [N]; 0 elsewhere."""
+    one = sieve.rows[row]
+    if one.balance != "ground" or one.column % 3 != 2:
+        return np.zeros(len(sieve.signals.time))
+    return np.nan_to_num(footings(sieve.signals)[one.column // 3].doubt())
 
 
 def _turning(sieve: Sieve, row: int) -> np.ndarray:

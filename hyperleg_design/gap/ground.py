@@ -17,7 +17,7 @@ foot's acceleration so well; vertical rows of a standing foot are a few per cent
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -34,6 +34,12 @@ if TYPE_CHECKING:
 
 SLIDING = 0.05
 """Speed from which a foot slides [m/s] (assumed: above what creep of a soft contact and noise of encoders make)."""
+HEIGHT = 0.001
+"""Height of a pad is known so well [m]: offsets of a leg's encoders, and of what tells where the base is (assumed)."""
+KEPT = 32
+"""Results of `Footing.pressing` that are kept."""
+HALVINGS = 34
+"""Of the range in which the floor is sought: to a nanometre."""
 LOADED = 10 * TOUCHING_FORCE
 """Force from which a foot is judged [N]; below, directions are noise (assumed)."""
 
@@ -87,6 +93,8 @@ class Footing:
     """Of its pads."""
     judged: np.ndarray
     """Ticks by whose mean force the floor is found `(t,)`."""
+    known: dict[tuple[float, float], np.ndarray] = field(default_factory=dict)
+    """What `pressing` found already; most of what asks differs in friction alone."""
 
     def pressing(self, spring: float, damper: float) -> np.ndarray:
         """Vertical force of a ground at this motion `(t,)` [N], its floor where it bears the mean of the logged forces.
@@ -95,18 +103,39 @@ class Footing:
             spring: scale of k.
             damper: scale of c.
         """
+        key = float(spring), float(damper)
+        found = self.known.get(key)
+        if found is None:
+            found = self._pressing(*key)
+            if len(self.known) < KEPT:
+                self.known[key] = found
+        return found
+
+    def _pressing(self, spring: float, damper: float) -> np.ndarray:
         if not self.judged.any():
             return np.full(len(self.force), np.nan)
+        return self.law.force(self._floor(spring, damper) - self.height, self.sink, spring, damper)
+
+    def _floor(self, spring: float, damper: float) -> float:
+        """Height at which the floor bears the mean of the logged forces [m]."""
         mean, height, sink = float(self.force[self.judged, 2].mean()), self.height[self.judged], self.sink[self.judged]
         low, high = float(height.min()), float(height.max()) + 0.1
-        for _ in range(50):
+        for _ in range(HALVINGS):
             # bisection, as a higher floor bears more
             middle = (low + high) / 2
             if self.law.force(middle - height, sink, spring, damper).mean() < mean:
                 low = middle
             else:
                 high = middle
-        return self.law.force((low + high) / 2 - self.height, self.sink, spring, damper)
+        return (low + high) / 2
+
+    def doubt(self) -> np.ndarray:
+        """Change of the vertical force of a nominal ground with what nobody knows of its pads' height `(t,)` [N]."""
+        if not self.judged.any():
+            return np.zeros(len(self.force))
+        floor = self._floor(1.0, 1.0)
+        above, below = (self.law.force(floor + sign * HEIGHT - self.height, self.sink) for sign in (1, -1))
+        return np.asarray((above - below) / 2)
 
     def ground(self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray) -> np.ndarray:
         """Force of a ground with scaled properties at this motion `(k, t, 3)` [N].

@@ -16,7 +16,7 @@ def machine_of(subject: Subject) -> Machine:
     """Arrays in the order of the subject's joints and motors; gains that nobody knows are 0."""
     gains = np.nan_to_num(subject.gains)
     count = len(subject.motors)
-    power, rated, voltage = np.zeros(count), np.full(count, np.inf), float("nan")
+    power, rated, voltage = np.zeros(count), np.full(count, np.inf), subject.voltage
     if subject.design is not None:
         from hyperleg_design.simulation.machine import machine_of as machine_of_design
 

@@ -43,16 +43,17 @@ LATE, LATE_TICKS = 0.001, 0.15
 GAIN = 0.01
 GYRO, ACCELEROMETER = 0.003, 0.05
 """[rad/s], [m/s^2]"""
-GROUND = 0.1
+GROUND, BEARING = 0.1, 0.5
+"""Of the ground's friction; of how it gives and damps, which no simulator has from a measurement."""
 WIDE = {
     "coulomb_friction": 15.0, "viscous_friction": 15.0, "stribeck_friction": 15.0, "load_dependent_friction": 10.0, "torque_constant": 4.0,
     "encoder_offset": 4.0, "link_mass": 4.0, "link_com": 4.0, "rotor_inertia": 5.0, "joint_spring": 6.0, "command_delay": 6.0,
-    "actuator_bandwidth": 6.0, "controller_gain": 3.0, "imu_bias": 4.0, "ground_friction": 3.0, "ground_compliance": 5.0,
+    "actuator_bandwidth": 6.0, "controller_gain": 3.0, "imu_bias": 4.0, "ground_friction": 3.0, "ground_compliance": 2.0,
 }  # fmt: skip
 DAY = {
     "coulomb_friction": 0.5, "viscous_friction": 0.6, "stribeck_friction": 0.5, "load_dependent_friction": 0.5, "torque_constant": 0.4,
     "encoder_offset": 0.35, "link_mass": 0.1, "link_com": 0.1, "rotor_inertia": 0.1, "joint_spring": 0.6, "command_delay": 0.3,
-    "actuator_bandwidth": 0.3, "controller_gain": 0.3, "imu_bias": 1.0, "ground_friction": 0.7, "ground_compliance": 0.7,
+    "actuator_bandwidth": 0.3, "controller_gain": 0.3, "imu_bias": 1.0, "ground_friction": 0.7, "ground_compliance": 0.3,
 }  # fmt: skip
 TURNOVER = "friction_turnover"
 """Friction of models turns over with speed, as tanh(v / v_s); that of robots at once, or over a way on which bristles bend. By how
@@ -122,8 +123,8 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
     if subject.floating:
         found += [Usual("imu_bias", "imu", i, GYRO if i < 3 else ACCELEROMETER) for i in range(6)]
         for foot in subject.feet:
-            found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, GROUND)]
-            found.append(Usual("ground_compliance", foot, 1, GROUND))
+            found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, BEARING)]
+            found.append(Usual("ground_compliance", foot, 1, BEARING))
     places = {TURNOVER: set(subject.joints)} | {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 

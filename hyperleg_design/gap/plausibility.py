@@ -26,6 +26,8 @@ TOLERANCE = 0.15
 """Of a slope that stands for a unit."""
 FITS, STRANGE = 0.9, 0.6
 """Correlations above which two signals are of one motion, and below which they are not."""
+HALF_TURN = 3.3
+"""Angle beyond which a target that is not followed is taken for degrees [rad]; assumed."""
 LARGEST_ANGLE = 4 * math.pi
 LARGEST_RATE = 40.0
 """Beyond the full scale of usual gyroscopes, 2000 deg/s [rad/s]."""
@@ -104,8 +106,10 @@ def _targets(log: Log) -> list[Finding]:
         elif fit[i] < -FITS and ratio < 10:
             found.append(Finding(ERROR, column, "runs against its position", "flip the sign of one of the two"))
         elif fit[i] > STRANGE and (abs(ratio / DEGREES - 1) < 0.4 or abs(ratio * DEGREES - 1) < 0.4):
-            text = f"moves {ratio:.3g} times as far as its position: one of the two is in degrees"
-            found.append(Finding(ERROR, column, text, "convert both to rad"))
+            # a soft joint may follow its target as little; then neither turns as far as degrees would say
+            severity = ERROR if max(np.nanmax(np.abs(target[:, i])), np.nanmax(np.abs(position[:, i]))) > HALF_TURN else WARNING
+            text = f"moves {ratio:.3g} times as far as its position: one of the two {'is' if severity == ERROR else 'may be'} in degrees"
+            found.append(Finding(severity, column, text, "convert both to rad"))
     return found
 
 

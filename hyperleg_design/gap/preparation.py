@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap import filtering, floor, nuisance
-from hyperleg_design.gap.fit import Base, Design, Fit, Prior, episodes
+from hyperleg_design.gap.episodes import episodes
+from hyperleg_design.gap.fit import Base, Design, Fit, Prior
 from hyperleg_design.gap.samples import Samples, gather
 from hyperleg_design.gap.screen import reach
 
@@ -129,7 +130,7 @@ def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual]) -> Prior:
     """What reference logs tell of another day."""
     weight = 1 / fit.scale
     size = len(errors)
-    normal = (weight @ base.total[0].reshape(len(weight), -1)).reshape(size + 1, size + 1)[:size, :size] + base.prior.precision
+    normal = base.total[0].weighed(weight)[:size, :size] + base.prior.precision
     known = np.linalg.inv(normal)
     mean = fit.errors[0]
     day = nuisance.spreads(errors, nuisance.DAY)

@@ -25,6 +25,10 @@ STOPS = (0.01, 0.05, 0.2)
 """Ways over which a memory builds up [rad]."""
 RIPPLES = (1, 2, 3, 4, 5, 6, 8, 10, 12)
 """Periods a turn of what varies with load and angle."""
+WAVES = (1, 2, 3, 4)
+"""Periods a turn of errors of an encoder."""
+SMALL = 0.01
+"""Offset at which its trace is taken [rad]."""
 RHYTHMS = 3
 """Frequencies of a rhythm: the strongest and its multiples."""
 FASTEST_RHYTHM = 8.0
@@ -91,6 +95,8 @@ def columns(base: Base, nothing: Fit, shape: Shape) -> np.ndarray | None:
             return None
 
         def trace(signals: Signals) -> dict[str, np.ndarray]:
+            if shape.name == "encoder_over_position":
+                return basis.of_encoder(signals)
             values = basis.of(signals)
             if one.balance not in signals.residual:
                 return {}
@@ -152,10 +158,12 @@ class _Basis:
         if name == "memory":
             return np.stack([stop(q, width) for width in STOPS])
         if name == "load_over_position":
-            load = np.nan_to_num(signals.believed[:, self.motor])
+            # of the torque that the motion needs: of the measured one, its own errors would come along
+            needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)[:, self.motor]
             angle = signals.position @ signals.subject.joint_from_motor[:, self.motor]
-            waves = np.concatenate([[np.cos(k * angle), np.sin(k * angle)] for k in RIPPLES] + [self._pieces(q)])
-            return np.asarray(load * waves)
+            pieces = self._pieces(q)
+            waves = np.concatenate([[np.cos(k * angle), np.sin(k * angle)] for k in RIPPLES] + [pieces[1:] - pieces[:-1]])
+            return np.asarray(np.nan_to_num(needed) * waves)
         if name == "other_joints":
             others = [j for j in range(signals.position.shape[1]) if j != self.joint]
             return np.concatenate([signals.position[:, others].T - signals.subject.default[others, None], signals.velocity[:, others].T])
@@ -165,13 +173,16 @@ class _Basis:
             # the phase starts anew in every log
             return np.concatenate([[np.cos(w * time), np.sin(w * time)] for w in 2 * np.pi * self.frequency * np.arange(1, RHYTHMS + 1)])
         if name == "encoder_over_position":
-            from hyperleg_design.gap.effects import EFFECTS
-
-            joint = signals.subject.joints[self.joint]
-            slope = EFFECTS["encoder_offset"].trace(signals, joint, np.array([[0.01]]))["motion"][0, :, self.joint]
-            angle = np.outer([1, 2, 3, 4], q)
-            return np.asarray(slope / 0.01 * np.concatenate([np.cos(angle), np.sin(angle)]))
+            angle = np.outer(WAVES, q)
+            return np.concatenate([np.cos(angle), np.sin(angle)])
         return np.zeros((0, len(time)))
+
+    def of_encoder(self, signals: Signals) -> dict[str, np.ndarray]:
+        """Errors of a position that go with it, as waves, in all balances `(k, t, columns)` each."""
+        from hyperleg_design.gap.effects import EFFECTS
+
+        found = EFFECTS["encoder_offset"].trace(signals, signals.subject.joints[self.joint], np.array([[SMALL]]))
+        return {balance: self.of(signals)[..., None] * (one[0] / SMALL) for balance, one in found.items()}
 
     def _pieces(self, position: np.ndarray) -> np.ndarray:
         """Overlapping bumps over the range of a joint `(PIECES, t)`."""

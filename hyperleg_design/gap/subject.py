@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
     from hyperleg_design.robot.design import Design
 
+FULL = 95.0
+"""Percentile of a battery's voltage that stands for its largest."""
+
 
 @dataclass(frozen=True)
 class Pad:
@@ -105,6 +108,8 @@ class Subject:
     """What was declared of it: gains, torque constants, payload."""
     bare: Subject | None
     """The same before anything was declared."""
+    voltage: float = float("nan")
+    """Of the battery when all is well, where a design or reference logs tell [V]."""
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -177,6 +182,7 @@ def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, o
         bare = of_file(path, base or None, known)
     for log in logs:
         _check_names(log, bare)
+    bare = dataclasses.replace(bare, voltage=_healthy_voltage(logs)) if np.isnan(bare.voltage) else bare
     return bare.declare(metadata[0]) if metadata else dataclasses.replace(bare, bare=bare)
 
 
@@ -190,6 +196,13 @@ def subject_of(design: Design, base: str = "floating") -> Subject:
 
     bare = of_design(design, Path(design.source or f"{design.name}.yaml"), base, None)
     return dataclasses.replace(bare, bare=bare)
+
+
+def _healthy_voltage(logs: Sequence[Log]) -> float:
+    """Largest that reference logs show, but for spikes; NaN where none does."""
+    known = [log.column("battery_voltage") for log in logs if log.metadata.role == "reference"]
+    full = [float(np.nanpercentile(v, FULL)) for v in known if np.isfinite(v).any()]
+    return max(full, default=float("nan"))
 
 
 def _agreed(values: Sequence[str], field: str, logs: Sequence[Log]) -> str:

@@ -31,11 +31,13 @@ class Thresholds:
     required: float
     beyond: float
     beyond_evident: float
+    together: float
     largest_excess: float
     alike: float
     alike_closed: float
     angle: float
     temperature: float
+    unlisted: float
     most_certain: float
     doubt: float
     interval: float

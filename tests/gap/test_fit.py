@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.fit import LIMIT, Design, episodes, predict
+from hyperleg_design.gap.episodes import episodes
+from hyperleg_design.gap.fit import LIMIT, Design, predict
 from hyperleg_design.gap.screen import linearise
 
 

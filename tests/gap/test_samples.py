@@ -35,7 +35,7 @@ def test_sums_of_products_are_those_of_all_samples(ready):
     base = ready.base
     rng = np.random.default_rng(0)
     columns = rng.normal(size=(2, len(base.value)))
-    found = products(base.samples, columns, base.stacked)
+    found = products(base.samples, columns, base.packed)
     assert np.allclose(found.own.sum((0, 1)), columns @ columns.T)
     assert np.allclose(found.cross.sum((0, 1)), columns @ base.stacked.T)
-    assert np.allclose(base.total.sum((0, 1)), base.stacked @ base.stacked.T)
+    assert np.allclose(sum(one.whole().sum(0) for one in base.total), base.stacked @ base.stacked.T)

@@ -21,6 +21,7 @@ from hyperleg_design.gap.effects.placing import (
     motor_strength,
     motor_velocity,
 )
+from hyperleg_design.gap.subject import FULL
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Machine, Tick
 
 if TYPE_CHECKING:
@@ -33,17 +34,16 @@ AT_REST = 0.5
 """Part of `SAG` that is missing without load, as batteries run down (assumed)."""
 REFERENCE_SPEED = 0.5
 """Reference power: the torque that the joints are made for at this speed [rad/s]; assumed."""
-_FULL = 95.0
 
 
 class VoltageSag(Effect):
     """Torque falls with the battery's voltage: its limits, and of drives without current control the torque itself.
 
     What is missing of the voltage, 1 - V / V_nominal, is logged; else 20 % of it at the reference power, half of that at rest. A
-    nominal voltage that nobody gives is the largest that the log shows. `limits` scales how much of it a motor's DC-motor line
-    loses. Of motors whose line nobody knows, it says how near that line is: stall torque at the nominal voltage is the torque
-    that the motor is made for over `limits`, no-load speed is `speed` at the joint that it moves most, and both fall with the
-    voltage. `torque` is how much of what is missing any torque loses. Trace, by the rule of `placing`.
+    nominal voltage that nobody gives is the largest that reference logs show, or the log itself. `limits` scales how much of it
+    a motor's DC-motor line loses. Of motors whose line nobody knows, it says how near that line is: stall torque at the nominal
+    voltage is the torque that the motor is made for over `limits`, no-load speed is `speed` at the joint that it moves most, and
+    both fall with the voltage. `torque` is how much of what is missing any torque loses. Trace, by the rule of `placing`.
     """
 
     identifier: ClassVar[str] = "voltage_sag"
@@ -105,7 +105,7 @@ def missing(signals: Signals) -> np.ndarray:
     subject = signals.subject
     if signals.voltage is not None:
         nominal = machine(subject).voltage
-        return np.asarray(1 - signals.voltage / (nominal if np.isfinite(nominal) else float(np.nanpercentile(signals.voltage, _FULL))))
+        return np.asarray(1 - signals.voltage / (nominal if np.isfinite(nominal) else float(np.nanpercentile(signals.voltage, FULL))))
     speed = np.stack([motor_velocity(signals, motor) for motor in range(len(subject.motors))], -1)
     return modelled(np.nan_to_num(signals.believed), speed, machine(subject), reference_power(subject))
 
