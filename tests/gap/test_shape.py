@@ -35,5 +35,5 @@ def test_columns_are_finite_and_sit_in_their_row(ready):
         if found is None:
             continue
         assert np.isfinite(found).all()
-        if one.row >= 0:
+        if one.row >= 0 and one.name != "encoder_over_position":  # whose error moves the load of other joints too
             assert not found[:, base.samples.row != one.row].any()
