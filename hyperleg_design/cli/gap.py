@@ -93,32 +93,55 @@ class Show:
 
 @dataclass(frozen=True, kw_only=True)
 class Apply:
-    """Write the causes of a diagnosis as an overlay that simulator, training and evaluation accept."""
+    """Write the causes of a diagnosis as an overlay that simulator, training and evaluation accept; say what it changes."""
 
     diagnosis: Annotated[Path, tyro.conf.Positional]
-    """`diagnosis.json`."""
+    """`diagnosis.json`, or an overlay that was written before."""
     out: Path = Path("overlay.yaml")
-    """File to write."""
+    """File to write; with `--logs` or `--policy`, what they tell goes to a JSON file of the same name."""
     robot: str = ""
     """Design, MJCF or URDF on which to check the places; unchecked by default."""
+    logs: tuple[str, ...] = ()
+    """Logs to replay without and with the effect: held-out ones, if possible."""
+    policy: str = ""
+    """ONNX file, or name of a shipped training, to evaluate without and with the effect."""
+    protocol: str = ""
+    """walk, t_test, or a YAML file; what suits the policy's task by default."""
     json: bool = False
     """Print JSON."""
 
     def run(self) -> None:
         """Write it."""
-        from hyperleg_design.gap.overlay import overlay_of_diagnosis, write_overlay
+        from hyperleg_design.gap import added
+        from hyperleg_design.gap.overlay import overlay_of_diagnosis, read_overlay, write_overlay
+        from hyperleg_design.report.gap_text import changed_text, replayed_text
+        from hyperleg_design.writing import write_json
 
-        overlay = overlay_of_diagnosis(self.diagnosis, self.robot)
+        ready = self.diagnosis.suffix in (".yaml", ".yml")
+        overlay = read_overlay(self.diagnosis) if ready else overlay_of_diagnosis(self.diagnosis, self.robot)
+        logs, walk = [], []
         if self.robot:
             from hyperleg_design.gap.subject import load_subject
 
             overlay.alterations(load_subject(self.robot))
+        if self.logs:
+            from hyperleg_design.gap.intake import take_in
+
+            logs = added.replayed(take_in(self.robot, self.logs, ()).tests, overlay)
+        if self.policy:
+            walk = added.walked(self.policy, overlay, self.protocol or None)
         path = write_overlay(self.out, overlay)
+        told = added.mapping(logs, walk)
+        if logs or walk:
+            write_json(path.with_suffix(".json"), told)
         if self.json:
-            emit({"file": str(path), **overlay.mapping()})
-        else:
-            effects = ", ".join(f"{effect} at {location}" for effect, location in overlay.change)
-            print(f"{effects} -> {path}")
+            emit({"file": str(path), **overlay.mapping(), **told})
+            return
+        effects = ", ".join(f"{effect} at {location}" for effect, location in overlay.change)
+        print(f"{effects} -> {path}")
+        for text in (replayed_text(logs), changed_text(walk)):
+            if text:
+                print(text)
 
 
 @dataclass(frozen=True, kw_only=True)

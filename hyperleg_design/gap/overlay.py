@@ -159,10 +159,13 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     change: dict[tuple[str, str], Mapping[str, float]] = {}
     for number, cause in enumerate(content["causes"]):
         try:
-            values = {name: value["value"] for name, value in cause["parameters"].items()}
             key = cause["effect"], cause["location"]
+            own = {p.name for p in effect(str(key[0])).parameters}  # the rest is told for people: a limit for its inverse
+            values = {name: value["value"] for name, value in cause["parameters"].items() if name in own}
         except (TypeError, KeyError, AttributeError):
             raise InputError(where, f"causes.{number}", cause, "expects effect, location and parameters, each with a value") from None
+        if not values:
+            raise InputError(where, f"causes.{number}.parameters", sorted(cause["parameters"]), f"none is a parameter of {key[0]}: {', '.join(own)}")
         change[key] = _checked(where, f"causes.{number}", key[0], values)
     gap = content.get("gap")
     closed = gap.get("closed") if isinstance(gap, dict) else None

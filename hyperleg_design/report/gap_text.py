@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.added import Changed, Replayed
     from hyperleg_design.gap.check import Check
     from hyperleg_design.gap.measure import Gap
     from hyperleg_design.gap.sampling import Column
@@ -101,4 +102,26 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["separating_experiment"]:
         told = "; ".join(f"{key.replace('_', ' ')}: {value}" for key, value in diagnosis["separating_experiment"].items())
         lines.append(f"  to tell them apart: {told}")
+    return "\n".join(lines)
+
+
+def replayed_text(rows: Sequence[Replayed]) -> str:
+    """Errors of replayed logs without and with an effect."""
+    if not rows:
+        return ""
+    wide = max(len(r.joint) for r in rows)
+    lines = [f"replayed over {rows[0].windows} short windows, following each log's {rows[0].follows}; error of position [mrad]:"]
+    lines += [f"  {r.joint:{wide}}  {1e3 * r.before:8.3g} -> {1e3 * r.after:8.3g}" for r in rows]
+    return "\n".join(lines)
+
+
+def changed_text(rows: Sequence[Changed]) -> str:
+    """Measures of a policy's trials without and with an effect."""
+    if not rows:
+        return ""
+    wide = max(len(r.measure) for r in rows)
+    lines = [f"  {'':{wide}}  {'without':>9} {'with':>9}  difference, 95 % interval over trials"]
+    for r in rows:
+        change = f"{r.difference:+.3g} ({r.low:+.3g} .. {r.high:+.3g})" if r.trials > 1 else "-"
+        lines.append(f"  {r.measure:{wide}}  {r.before:9.4g} {r.after:9.4g}  {change}{f' {r.unit}' if r.unit else ''}")
     return "\n".join(lines)

@@ -133,3 +133,16 @@ def test_an_environment_takes_an_overlay_and_an_empty_one_changes_no_bit(design)
     plain = stood(None)
     np.testing.assert_array_equal(stood(Overlay("hyperleg", {}).alterations), plain)
     assert np.abs(stood(Overlay("hyperleg", CHANGE).alterations) - plain).max() > 1e-3
+
+
+def test_what_a_diagnosis_tells_for_people_is_left_out(tmp_path):
+    def cause(**values):
+        parameters = {name: {"value": v, "low": v, "high": v, "unit": ""} for name, v in values.items()}
+        return {"effect": "torque_saturation", "location": "left_knee", "probability": 0.9, "closed": 0.9, "parameters": parameters}
+
+    path = tmp_path / "diagnosis.json"
+    path.write_text(json.dumps({"schema": 1, "verdict": "explained", "gap": {"closed": 0.9}, "causes": [cause(inverse_limit=0.1, limit=10.0)]}))
+    assert overlay_of_diagnosis(path).change == {("torque_saturation", "left_knee"): {"inverse_limit": 0.1}}
+    path.write_text(json.dumps({"schema": 1, "verdict": "explained", "gap": {"closed": 0.9}, "causes": [cause(limit=10.0)]}))
+    with pytest.raises(InputError, match="none is a parameter"):
+        overlay_of_diagnosis(path)
