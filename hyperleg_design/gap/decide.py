@@ -8,180 +8,30 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap import nuisance, screen, shape
-from hyperleg_design.gap.effects.friction import sliding
+from hyperleg_design.gap import screen, shape, shaping
+from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.episodes import together
-from hyperleg_design.gap.fit import Base, Cause, Design, Fit, Held, predict
+from hyperleg_design.gap.fit import Cause, Design, Fit
+from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, plausible
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.thresholds import Thresholds
 
 FINALISTS = 10
 """Candidates that are judged on held-out data."""
 REFINED = 24
 """Candidates that are fitted to the end before that."""
-ROUNDS = 8
 MOST_CAUSES = 3
-EXCESSIVE = 0.25
-"""A row counts for the gap from this share of the largest excess of any row."""
-JUDGED_SHAPES = 5
-"""Shapes that are judged on held-out data."""
-PER_PARAMETER = 0.5
-"""Log prior odds against each parameter, beside what held-out data say."""
-RARE = {"transmission_ratio": -1.0, "voltage_sag": -1.0, "thermal_derating": -0.5}
-"""Log prior odds of effects that look like another and are rarer (assumed: belts and gears have the ratio of their teeth)."""
-LARGEST_ERROR, HEAVIER, OWN_MASS = 0.8, 5.0, 0.1
-"""Error over a link's own mass from which it is rather something that hangs there; log odds for as much again; the usual error."""
-NEGATIVE = 8.0
-"""Log prior odds against a load that weighs less than nothing, beyond what is declared."""
-TURNING = ("coulomb_friction", "stribeck_friction", "load_dependent_friction")
-"""Effects whose trace turns over with the motion; how, nobody knows better than of the model's own friction."""
-GENTLE = 0.05
-"""Least speed over which it may do so [rad/s]."""
-OWN_ROWS = 0.3
-"""Rows are a cause's own where its trace has this share of its largest square over the floor."""
-EXPLAINED = 0.5
-"""Share of the squares in episodes that a model leaves at most, if they are to count."""
 SURE = 3.0
 """Gain of a further cause over the least one, from which episodes count for it."""
 AT_LIMITS = ("torque_saturation", "voltage_sag")
 """Effects of which that is not so: healthy drives reach limits too, which models often do not know."""
-PASSES = 2.0
-"""Gain that is stated, over the least that tells, of a shape that does for several causes."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
 """Gap over floor up to which a shape must be so many times more evident to be told, as no cause was named."""
-SHAPED_ROWS = 4
-"""Rows with the largest excess whose shape is looked at."""
-
-
-@dataclass(frozen=True, eq=False)
-class Model:
-    """Some causes together, and how they predict held-out blocks."""
-
-    causes: tuple[Cause, ...]
-    fit: Fit
-    held: Held
-    gain: float
-    """Log-likelihood of held-out blocks over that of no cause, and how much more plausible the calibration errors are."""
-
-    @property
-    def names(self) -> tuple[tuple[str, str], ...]:
-        """Effects and locations."""
-        return tuple(c.name for c in self.causes)
-
-    def values(self, place: int) -> np.ndarray:
-        """Fitted parameters of one cause."""
-        start = sum(len(c.nulls) for c in self.causes[:place])
-        cause = self.causes[place]
-        return np.clip(cause.nulls + self.fit.phi[start : start + len(cause.nulls)] * cause.usual, cause.low, cause.high)
-
-
-@dataclass(frozen=True, eq=False)
-class Judge:
-    """Everything that models are compared on."""
-
-    base: Base
-    thresholds: Thresholds
-    threads: int
-
-    @cached_property
-    def nothing(self) -> Model:
-        """Calibration errors alone."""
-        design = Design(self.base)
-        fit = design.fit()
-        return Model((), fit, predict(design, fit=fit), 0.0)
-
-    @cached_property
-    def floor(self) -> np.ndarray:
-        """Mean square that is expected of each group `(G,)`, in its unit."""
-        samples = self.base.samples
-        return np.bincount(samples.group, samples.floor**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
-
-    @cached_property
-    def counts(self) -> np.ndarray:
-        """Samples by block and group `(B, G)`."""
-        samples = self.base.samples
-        cell = samples.block * samples.groups + samples.group
-        return np.bincount(cell, minlength=self.base.blocks * samples.groups).reshape(self.base.blocks, samples.groups)
-
-    def rows(self, square: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
-        """Mean square of each row over its floor, then of each row's episodes `(2 rows,)`; of drawn blocks `(k, B)`, `(k, 2 rows)`.
-
-        Args:
-            square: sums by block and group `(B, G)`, as of `fit.Held`.
-            blocks: how often each block is drawn.
-        """
-        count = self.counts
-        if blocks is not None:
-            square, count = blocks @ square, blocks @ count
-        else:
-            square, count = square.sum(0), count.sum(0)
-        mean = square / np.maximum(count, 1)
-        found = np.zeros((*mean.shape[:-1], 2 * len(self.base.samples.rows)))
-        for group, row in enumerate(self.group_row):
-            found[..., row] += mean[..., group]
-        return found / np.maximum(self.row_floor, 1e-300)
-
-    @cached_property
-    def group_row(self) -> np.ndarray:
-        """Row of each group, episodes after all rows `(G,)`."""
-        samples = self.base.samples
-        return samples.group_row + np.where(samples.episodic, len(samples.rows), 0)
-
-    @cached_property
-    def row_floor(self) -> np.ndarray:
-        """Mean square that is expected of each row and of its episodes `(2 rows,)`."""
-        return np.bincount(self.group_row, self.floor, 2 * len(self.base.samples.rows))
-
-    def model(self, causes: Sequence[Cause]) -> Model:
-        """Fit causes together to the end and predict held-out blocks."""
-        design = Design(self.base, causes)
-        fit = design.fit(scale=self.nothing.fit.scale, rounds=ROUNDS)
-        held = predict(design, fit=fit)
-        return Model(tuple(causes), fit, held, self.gain(fit, held))
-
-    def gain(self, fit: Fit, held: Held) -> float:
-        """Log-likelihood of held-out blocks over that of no cause, the cost of the calibration errors taken into account."""
-        return held.total - self.nothing.held.total + self.nothing.fit.implausible - fit.implausible
-
-    def shown(self, model: Model, place: int) -> np.ndarray:
-        """Mean square of one cause's trace in each row, and in its episodes, over the floor `(2 rows,)`."""
-        cause, samples = model.causes[place], self.base.samples
-        phi = (model.values(place) - cause.nulls) / cause.usual
-        trace = phi @ cause.columns + (0.0 if cause.linear else cause.constant)
-        mean = np.bincount(samples.group, trace**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
-        return np.bincount(self.group_row, mean, 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
-
-    def excess_rows(self, model: Model) -> np.ndarray:
-        """Rows that count for the gap `(2 rows,)` of bool: those with much excess when a model's causes are left out.
-
-        Episodes count where the model explains them.
-        """
-        bare, left = self.rows(model.held.bare), self.rows(model.held.square)
-        excess = np.maximum(bare - 1, 0.0)
-        episode = np.arange(len(excess)) >= len(self.base.samples.rows)
-        excess[episode & (left > EXPLAINED * bare)] = 0.0
-        found = excess >= max(EXCESSIVE * float(excess.max(initial=0.0)), 1e-9)
-        for place in range(len(model.causes) if len(model.causes) > 1 else 0):
-            shown = self.shown(model, place)
-            found |= (shown >= OWN_ROWS * shown.max()) & (excess > 0.5)
-        return found if found.any() else ~episode
-
-    def gap(self, square: np.ndarray, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
-        """Root mean square over some rows, each over its floor `()` or `(k,)`; squares as of `fit.Held`."""
-        return np.asarray(np.sqrt(self.rows(square, blocks)[..., rows].mean(-1)))
-
-    def closed(self, held: Held, rows: np.ndarray, before: Held) -> float:
-        """Share of the excess gap of some rows that a model closes; the gap is the one without the causes of `before`."""
-        first, after = float(self.gap(before.bare, rows)), float(self.gap(held.square, rows))
-        lowest = min(1.0, after)
-        return (first - after) / (first - lowest) if first > lowest + 1e-9 else 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,7 +81,7 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
             if len(chosen.causes) == 2:
                 chosen, slots = _swapped(judge, wanted, chosen, slots)
             rows = judge.excess_rows(chosen)
-    shaped = _better_shape(judge, chosen, rows) or _shaped(judge, chosen, rows)
+    shaped = shaping.instead(judge, chosen, rows) or shaping.beside(judge, chosen, rows)
     lost = together(base.samples, chosen.held.left)
     verdict = "unknown" if lost > thresholds.together else _verdict(judge, chosen, rows, shaped)
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, tuple(not_judged))
@@ -259,17 +109,6 @@ def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequen
 def _rank(model: Model) -> float:
     """Held-out likelihood and what is plausible before any log."""
     return model.gain + plausible(model)
-
-
-def plausible(model: Model) -> float:
-    """Log prior of the last cause of a model, over that of any other."""
-    cause = model.causes[-1]
-    found = -PER_PARAMETER * len(cause.nulls) + RARE.get(cause.effect, 0.0)
-    if cause.effect == "link_mass":
-        found -= HEAVIER * max(abs(float(model.values(len(model.causes) - 1)[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0)
-    if cause.effect == "payload" and model.values(len(model.causes) - 1)[0] < -cause.declared:
-        found -= NEGATIVE
-    return found
 
 
 def _named(judge: Judge, model: Model, place: int, before: Model) -> bool:
@@ -324,104 +163,13 @@ def _turned(model: Model) -> Model:
     return replace(model, causes=(model.causes[-1], *model.causes[:-1]), fit=fit)
 
 
-def _shaped(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
-    """Shapes beside the chosen causes, in the rows with most excess left or before."""
-    base = judge.base
-    before = judge.rows(chosen.held.bare)
-    order = np.argsort(-before, kind="stable")
-    looked = np.array(list(dict.fromkeys((order[rows[order]] % len(base.samples.rows)).tolist()))[:SHAPED_ROWS], int)
-
-    beside = _companions(judge, chosen)
-    plain = Design(base, chosen.causes, ridge=beside) if beside is not None else None
-    start, known = chosen.gain, chosen.held
-    if plain is not None:
-        fit = plain.fit(scale=chosen.fit.scale, rounds=ROUNDS)
-        known = predict(plain, fit=fit)
-        start = judge.gain(fit, known)
-
-    def rough(one: shape.Shape) -> tuple[shape.Shape, Design, float] | None:
-        columns = shape.columns(base, judge.nothing.fit, one)
-        if columns is None:
-            return None
-        design = Design(base, chosen.causes, ridge=columns if beside is None else np.concatenate([columns, beside]))
-        return one, design, design.fit(scale=chosen.fit.scale, rounds=1).evidence
-
-    def judged(found: tuple[shape.Shape, Design, float]) -> tuple[shape.Shape, float, float]:
-        one, design, _ = found
-        fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
-        held = predict(design, fit=fit)
-        return one, judge.gain(fit, held) - start, _beyond(judge, known, held, rows)
-
-    first = [t for t in screen.spread(rough, shape.shapes(base.samples, looked), judge.threads) if t is not None]
-    first.sort(key=lambda t: (-t[2], t[0].name, t[0].row))
-    found = screen.spread(judged, first[:JUDGED_SHAPES], judge.threads)
-    return tuple(sorted(found, key=lambda t: (-t[1], t[0].name, t[0].row)))
-
-
-def _companions(judge: Judge, chosen: Model) -> np.ndarray | None:
-    """Ways on which the friction of causes may turn over, as that of the model, weighted `(k, S)`."""
-    samples = judge.base.samples
-    subject = samples.sieves[0].signals.subject
-    found = []
-    for place, cause in enumerate(chosen.causes):
-        if cause.effect not in TURNING:
-            continue
-        joint = subject.joints.index(cause.location)
-        size = float(np.sqrt(judge.shown(chosen, place).max()))
-
-        def trace(signals: Signals, joint: int = joint) -> dict[str, np.ndarray]:
-            rows = np.zeros((len(nuisance.WAYS) + 1, *signals.position.shape))
-            at_once = sliding(signals)[:, joint]
-            rows[:-1, :, joint] = [nuisance.stop(signals.position[:, joint], way) - at_once for way in nuisance.WAYS]
-            rows[-1, :, joint] = np.tanh(signals.velocity[:, joint] / max(float(subject.friction_speed[joint]), GENTLE)) - at_once
-            return {"motion": rows}
-
-        columns = samples.columns(trace, len(nuisance.WAYS) + 1)
-        if columns is not None:
-            level = samples.columns(lambda s, j=joint: {"motion": _only(s, j)}, 1)  # type: ignore[misc]
-            assert level is not None
-            unit = screen.reach(samples, level)
-            found.append(columns * samples.weight * (nuisance.OF_WAY * size / max(unit, 1e-12)))
-    return np.concatenate(found) if found else None
-
-
-def _only(signals: Signals, joint: int) -> np.ndarray:
-    rows = np.zeros((1, *signals.position.shape))
-    rows[0, :, joint] = sliding(signals)[:, joint]
-    return rows
-
-
-def _beyond(judge: Judge, known: Held, held: Held, rows: np.ndarray) -> float:
-    """Share of what the chosen causes leave, in squares over the rows with excess, that something further closes."""
-    after, further = float(judge.gap(known.square, rows)), float(judge.gap(held.square, rows))
-    return 1 - (further / max(after, 1e-12)) ** 2
-
-
-def _better_shape(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
-    """Shapes that predict more than the chosen causes do, without them: then the causes only stood for the shape.
-
-    Several causes must each be worth it beside a shape, as they must beside each other.
-    """
-    if not chosen.causes:
-        return ()
-    rules = judge.thresholds
-    needed = rules.beyond_evident if len(chosen.causes) == 1 else -rules.second_evident * (len(chosen.causes) - 1)
-    alone = _shaped(judge, judge.nothing, rows)
-    return tuple((one, max(gain - chosen.gain, PASSES * rules.beyond_evident), closed) for one, gain, closed in alone if gain - chosen.gain > needed)
-
-
 def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[tuple[shape.Shape, float, float]]) -> str:
     rules = judge.thresholds
     excess = float(judge.gap(judge.nothing.held.square, rows))
     needed = rules.beyond_evident * (QUIET if not chosen.causes and excess < SMALL_EXCESS else 1.0)
-    beyond = tells(rules, chosen, shaped) and shaped[0][1] > needed
+    beyond = shaping.tells(rules, chosen, shaped) and shaped[0][1] > needed
     if not chosen.causes:
         return "unknown" if excess > rules.largest_excess or beyond else "none"
     if beyond or judge.closed(chosen.held, rows, chosen.held) < rules.required:
         return "unknown"
     return "explained"
-
-
-def tells(rules: Thresholds, chosen: Model, shaped: Sequence[tuple[shape.Shape, float, float]]) -> bool:
-    """Whether the best shape speaks against causes, or against none."""
-    return bool(shaped) and shaped[0][1] > rules.beyond_evident and shaped[0][2] > rules.beyond * max(len(chosen.causes), 1)

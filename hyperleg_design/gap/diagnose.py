@@ -14,14 +14,17 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap import experiment, screen
 from hyperleg_design.gap.check import Check, check_log
 from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.decide import Decision, Judge, Model, decide, plausible, tells
-from hyperleg_design.gap.diagnosis import Diagnosis, Named, Place, Shrinkage, Value
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.decide import Decision, decide
+from hyperleg_design.gap.diagnosis import Diagnosis, Named, Place, Shrinkage
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
-from hyperleg_design.gap.fit import Cause, Design, predict
+from hyperleg_design.gap.fit import Design
+from hyperleg_design.gap.held_out import predict
+from hyperleg_design.gap.judge import Judge, Model, plausible
+from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.samples import BLOCKS, LOGS
+from hyperleg_design.gap.shaping import tells
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.gap.thresholds import Thresholds, load_thresholds
 
@@ -35,7 +38,6 @@ MOST_RIVALS, MOST_SHAPES, MOST_ERRORS = 8, 3, 12
 """Listed."""
 LEAST_SHARE = 0.02
 """Of the excess, below which a place is not listed."""
-NORMAL = 1.96
 KIND = {"motion": "joint", "drive": "motor", "control": "motor", "base": "robot", "ground": "foot"}
 UNIT = {"motion": "Nm", "drive": "Nm", "control": "Nm", "base": "N, Nm", "ground": "N"}
 
@@ -114,8 +116,6 @@ def diagnose_signals(
     say("calibration errors and floor")
     ready = prepare(signals, references, rules)
     samples = ready.base.samples
-    if not len(samples.value):
-        raise InputError(signals[0].log.name, "", None, "has too few ticks of which torques and motion are known: log longer")
     say(f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue")
     judge, found = decide(ready.base, rules, screen.places(samples.sieves[0].signals.subject, effects), threads)
     say("intervals, rivals and the next experiment")
@@ -377,37 +377,3 @@ def _regimes(signals: Signals, balance: str, column: int) -> dict[str, np.ndarra
         place = signals.position[:, column]
         found |= {"low posture": place < np.median(place), "high posture": place >= np.median(place)}
     return found
-
-
-def parameters(judge: Judge, model: Model, place: int) -> dict[str, Value]:
-    """Values of one cause with 95 % intervals, calibration errors and coloured noise included."""
-    cause = model.causes[place]
-    start = sum(len(c.nulls) for c in model.causes[:place])
-    values = model.values(place)
-    deviation = np.sqrt(np.maximum(np.diag(model.fit.covariance), 0.0))[start : start + len(values)] * cause.usual
-    found = {}
-    for i, parameter in enumerate(EFFECTS[cause.effect].parameters):
-        reach = judge.thresholds.interval * NORMAL * deviation[i]
-        found[parameter.name] = Value(
-            float(values[i]), float(max(values[i] - reach, cause.low[i])), float(min(values[i] + reach, cause.high[i])), parameter.unit
-        )
-    return found | _derived(judge, cause, values, found)
-
-
-def _derived(judge: Judge, cause: Cause, values: np.ndarray, found: dict[str, Value]) -> dict[str, Value]:
-    """The same in words that people use, with intervals from those of the parameters, each moved alone."""
-    effect, subject = EFFECTS[cause.effect], judge.base.samples.sieves[0].signals.subject
-    middle = effect.derived(cause.location, values, subject)
-    below, above = dict.fromkeys(middle, 0.0), dict.fromkeys(middle, 0.0)
-    for i, parameter in enumerate(effect.parameters):
-        ends = [np.where(np.arange(len(values)) == i, end, values) for end in (found[parameter.name].low, found[parameter.name].high)]
-        tried = [effect.derived(cause.location, end, subject) for end in ends]
-        for name, (value, _) in middle.items():
-            moves = [t[name][0] - value for t in tried if name in t]
-            below[name] = float(np.hypot(below[name], min(*moves, 0.0)))
-            above[name] = float(np.hypot(above[name], max(*moves, 0.0)))
-    told = {name: Value(value, value - below[name], value + above[name], unit) for name, (value, unit) in middle.items()}
-    return {name: one for name, one in told.items() if np.isfinite([one.value, one.low, one.high]).all()}
-
-
-__all__ = ["diagnose", "diagnose_signals", "parameters"]

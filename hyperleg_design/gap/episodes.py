@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.fit import Base
+    from hyperleg_design.gap.base import Base
     from hyperleg_design.gap.samples import Samples
 
 ROBUST_FREEDOM = 4.0

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.decide import Judge, Model
-    from hyperleg_design.gap.fit import Base
+    from hyperleg_design.gap.base import Base
+    from hyperleg_design.gap.judge import Judge, Model
 
 
 def alike(judge: Judge, slot: Sequence[Model], chosen: Model, rows: np.ndarray) -> list[Model]:
@@ -37,7 +37,7 @@ def alike(judge: Judge, slot: Sequence[Model], chosen: Model, rows: np.ndarray) 
 
 
 def _score(model: Model) -> float:
-    from hyperleg_design.gap.decide import plausible
+    from hyperleg_design.gap.judge import plausible
 
     return model.gain + plausible(model)
 

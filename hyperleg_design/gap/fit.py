@@ -8,144 +8,24 @@ work on sums of products, so that one more costs little.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property, reduce
-from operator import add
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from hyperleg_design.gap.base import Base, number_of
 from hyperleg_design.gap.endogenous import Factor
-from hyperleg_design.gap.samples import BLOCKS, Packed, Products, Samples, pack, products
-from hyperleg_design.gap.sums import Layout, Sums, layout_of
+from hyperleg_design.gap.samples import BLOCKS, Products, products
+from hyperleg_design.gap.sums import Sums
 
 WIDTH = 4.0
 """Standard deviation of a cause's parameters over their usual distance from the null (assumed: wide)."""
-LIMIT = 2.5
-"""Calibration errors are small: none goes beyond so many of its standard deviations."""
 ROUNDS = 3
 """Fits between which the noise's scales are set anew."""
 CLAMPS = 4
 """Fits in which calibration errors that would leave their limits are set to them."""
 TRUST = 3.0
 """Standard deviations from the fit to all data within which causes that are not linear are taken as linear on parts of them."""
-FREEDOM = 40.0
-"""Most degrees of freedom of a predictive distribution: the scale of other data is never known better (assumed)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Prior:
-    """Of the calibration errors of a session, in usual sizes."""
-
-    mean: np.ndarray
-    """`(p,)`"""
-    covariance: np.ndarray
-    """`(p, p)`"""
-
-    @cached_property
-    def most(self) -> np.ndarray:
-        """Largest errors, from the mean `(p,)`."""
-        return np.asarray(LIMIT * np.sqrt(np.diag(self.covariance)))
-
-    @cached_property
-    def precision(self) -> np.ndarray:
-        """`(p, p)`"""
-        return np.linalg.inv(self.covariance)
-
-
-@dataclass(frozen=True, eq=False)
-class Base:
-    """Residual and calibration errors of all samples, with their sums of products."""
-
-    samples: Samples
-    errors: np.ndarray
-    """Columns of the p calibration errors, weighted `(p, S)`."""
-    value: np.ndarray
-    """Residual less the prior mean's share, weighted `(S,)`."""
-    prior: Prior
-    freedom: float
-    """nu."""
-
-    @cached_property
-    def stacked(self) -> np.ndarray:
-        """Errors, then value `(p + 1, S)`."""
-        return np.concatenate([self.errors, self.value[None]])
-
-    @cached_property
-    def number(self) -> np.ndarray:
-        """Independent numbers by part and group `(P, G)`."""
-        found = np.zeros((len(self.samples.session), self.samples.groups))
-        np.add.at(found, (self.samples.part, self.samples.group), self.samples.share)
-        return found
-
-    @cached_property
-    def layout(self) -> Layout:
-        """Which columns each row shows."""
-        return layout_of(self.samples, self.stacked)
-
-    @cached_property
-    def packed(self) -> Packed:
-        """`stacked` without what is nothing."""
-        return pack(self.samples, self.stacked, self.layout.shown)
-
-    @cached_property
-    def sums(self) -> list[list[list[Sums]]]:
-        """Products of `stacked` by way of holding out, fold and session."""
-        samples = self.samples
-        found = [[[self.layout.empty() for _ in range(samples.sessions)] for _ in range(samples.folds(way))] for way in range(len(samples.fold))]
-        for piece in samples.pieces:
-            session = samples.session[piece.part]
-            self.layout.add([found[way][fold][session] for way, fold in enumerate(samples.fold[:, piece.part])], self.stacked, piece)
-        return found
-
-    @cached_property
-    def total(self) -> list[Sums]:
-        """Products of all samples by session."""
-        return [reduce(add, own) for own in zip(*self.sums[BLOCKS], strict=True)]
-
-    @cached_property
-    def _parts(self) -> dict[tuple[int, int, int], Sums]:
-        return {}
-
-    def part(self, way: int, fold: int | None, session: int, inside: bool) -> Sums:
-        """Products of a fold, of all but it, or of everything, in one session."""
-        if fold is None:
-            return self.total[session]
-        if inside:
-            return self.sums[way][fold][session]
-        key = way, fold, session
-        if key not in self._parts:
-            self._parts[key] = self.total[session] - self.sums[way][fold][session]
-        return self._parts[key]
-
-    @cached_property
-    def raw(self) -> np.ndarray:
-        """Mean square of the residual by group `(G,)`, over the floor, the floor's own weight included."""
-        samples = self.samples
-        square = np.bincount(samples.group, self.value**2, samples.groups)
-        return np.maximum((self.freedom + square) / (self.freedom + self.number.sum(0)), 1.0)
-
-    @cached_property
-    def _kept(self) -> dict[bytes, tuple[np.ndarray, tuple[np.ndarray, bool], float]]:
-        return {}
-
-    def normal(self, of_base: Sums, weight: np.ndarray, key: bytes | None) -> tuple[np.ndarray, tuple[np.ndarray, bool], float]:
-        """Weighted products of the base, the factor of the errors' normal equations, and its log determinant; kept under a key."""
-        from scipy.linalg import cho_factor
-
-        if key is not None and key in self._kept:
-            return self._kept[key]
-        size = len(self.errors)
-        summed = of_base.weighed(weight)
-        factor = cho_factor(summed[:size, :size] + self.prior.precision, check_finite=False)
-        found = summed, factor, 2 * float(np.log(np.diag(factor[0])).sum())
-        if key is not None and len(self._kept) < 64:
-            self._kept[key] = found
-        return found
-
-    @cached_property
-    def blocks(self) -> int:
-        """Number of blocks of the bootstrap."""
-        return int(self.samples.block.max(initial=-1)) + 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -309,7 +189,7 @@ class Design:
             weighed.append((summed, factor, log, np.tensordot(weight, own, 1), np.tensordot(weight, cross, 1)))
         clamped = np.zeros((len(sums), size)) if start is None else start
         near = np.zeros(k) if near is None else near
-        part = float(_number(base, way, without, False).sum() / base.number.sum()) if self.factors else 1.0
+        part = float(number_of(base, way, without, False).sum() / base.number.sum()) if self.factors else 1.0
         for attempt in range(CLAMPS):
             matrix, right, determinant, kept = np.diag(1 / self.deviation**2), np.zeros(k), 0.0, []
             for at, one in self.factors:
@@ -367,7 +247,7 @@ class Design:
             rounds: of setting the scales.
         """
         base = self.base
-        number = _number(base, way, without, False)
+        number = number_of(base, way, without, False)
         if scale is None:
             # from large noise to small: calibration errors first take what their priors allow, not all that they could
             scale, rounds = base.raw, 2 * rounds
@@ -401,12 +281,6 @@ class Design:
         return np.asarray(found)
 
 
-def _number(base: Base, way: int, fold: int | None, inside: bool) -> np.ndarray:
-    if fold is None:
-        return np.asarray(base.number.sum(0))
-    return np.asarray(base.number[(base.samples.fold[way] == fold) == inside].sum(0))
-
-
 def _bounded(
     matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray, held: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -424,70 +298,3 @@ def _bounded(
             break
         fixed[outside] = np.clip(phi[outside], low[outside], high[outside])
     return phi, np.linalg.inv(matrix) if k else np.zeros((0, 0))
-
-
-@dataclass(frozen=True, eq=False)
-class Held:
-    """How a model predicts data that it was not fitted to."""
-
-    likelihood: np.ndarray
-    """Log-likelihood by block of the bootstrap `(B,)`."""
-    square: np.ndarray
-    """Sum of the squares that are left, by block and group, in the residual's unit `(B, G)`."""
-    left: np.ndarray
-    """What is left of every sample, weighted `(S,)`."""
-    bare: np.ndarray
-    """As `square`, had the causes not been there: the same calibration errors, without the causes' traces `(B, G)`."""
-
-    @property
-    def total(self) -> float:
-        """Log-likelihood of all blocks."""
-        return float(self.likelihood.sum())
-
-
-def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
-    """Fit without each fold and predict it.
-
-    Args:
-        design: columns of the model.
-        way: of holding out.
-        fit: to all data: scales to begin with, and where causes are linearised.
-    """
-    start = None if fit is None else fit.scale
-    if fit is not None:
-        design.trust(fit)
-    base = design.base
-    samples = base.samples
-    left, spread, freedom = np.zeros(len(samples.value)), np.ones(len(samples.value)), np.ones(len(samples.value))
-    bare = np.zeros(len(samples.value))
-    scaled = []
-    fold_of = samples.fold[way][samples.part]
-    for fold in range(samples.folds(way)):
-        found = design.fit(way, fold, start, rounds=ROUNDS if start is None else 2)
-        errors = found.errors
-        scaled.append(design.scaled(found.phi))
-        # a session that was held out whole has no fit of its own: its errors stay at the prior mean
-        here = fold_of == fold
-        rest, trace = design.left(found.phi, errors), design.trace(found.phi)
-        left[here], bare[here] = rest[here], (rest + trace)[here]
-        spread[here] = found.scale[samples.group[here]]
-        freedom[here] = np.minimum(base.freedom + _number(base, way, fold, False), FREEDOM)[samples.group[here]]
-    cell = samples.block * samples.groups + samples.group
-    cells, inverse = np.unique(cell, return_inverse=True)
-    size = np.bincount(inverse, samples.share)
-    square = np.bincount(inverse, left**2)
-    nu, scale = (np.bincount(inverse, v * samples.share) / size for v in (freedom, spread))
-    each = -0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale)
-    likelihood = np.bincount(cells // samples.groups, each, base.blocks)
-    for fold in range(samples.folds(way) if design.factors else 0):
-        share = np.bincount(samples.block, samples.share * (fold_of == fold), base.blocks)
-        likelihood = likelihood + scaled[fold] * share / samples.share.sum()
-    squares, whole = (
-        np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups) for v in (left, bare)
-    )
-    return Held(likelihood, squares, left, whole)
-
-
-def moved(cause: Cause, values: np.ndarray, columns: np.ndarray, constant: np.ndarray) -> Cause:
-    """The same cause linearised elsewhere."""
-    return replace(cause, values=values, columns=columns, constant=constant)

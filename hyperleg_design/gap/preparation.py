@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.gap import filtering, floor, nuisance
+from hyperleg_design.gap.base import Base, Prior
 from hyperleg_design.gap.episodes import episodes
-from hyperleg_design.gap.fit import Base, Design, Fit, Prior
+from hyperleg_design.gap.fit import Design, Fit
 from hyperleg_design.gap.samples import Samples, gather
 from hyperleg_design.gap.screen import reach
 
@@ -49,10 +51,15 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
         signals: conditioned logs under test.
         references: conditioned logs of the healthy robot.
         thresholds: fixed rules.
+
+    Raises:
+        InputError: no log shows a balance.
     """
     subject = signals[0].subject
     usual = nuisance.usual_errors(subject, signals[0].step)
     own = _Columns(signals, usual, thresholds, sessions_of(signals))
+    if not len(own.samples.value):
+        raise InputError(signals[0].log.name, "", None, "has too few ticks of which torques and motion are known: log longer, or more signals")
     kept = np.array([reach(own.samples, row[None]) > nuisance.LEAST for row in own.errors], bool)
     if references:
         healthy = _Columns(references, usual, thresholds, np.zeros(len(references), int))

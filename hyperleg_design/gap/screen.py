@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.endogenous import factor
-from hyperleg_design.gap.fit import Base, Cause, Design, Fit, moved
+from hyperleg_design.gap.fit import Cause, Design, Fit
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Effect
@@ -271,4 +272,4 @@ def _cost(design: Design, weight: np.ndarray, phi: np.ndarray, before: int) -> f
     return rss - paid + float(np.sum((found / design.deviation) ** 2)) + float(np.einsum("sp,pq,sq->", errors, precision, errors))
 
 
-__all__ = ["Candidate", "NotJudged", "descend", "lacking", "linearise", "moved", "places", "reach", "screen", "spread"]
+__all__ = ["Candidate", "NotJudged", "descend", "lacking", "linearise", "places", "reach", "screen", "spread"]

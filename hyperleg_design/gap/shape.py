@@ -15,7 +15,8 @@ from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.nuisance import stop
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.fit import Base, Fit
+    from hyperleg_design.gap.base import Base
+    from hyperleg_design.gap.fit import Fit
     from hyperleg_design.gap.samples import Samples
     from hyperleg_design.gap.signals import Signals
 

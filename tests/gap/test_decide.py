@@ -2,9 +2,10 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.decide import Judge, decide, plausible
+from hyperleg_design.gap.decide import decide
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.equivalence import alike, sine
+from hyperleg_design.gap.judge import Judge, plausible
 from hyperleg_design.gap.screen import linearise, places
 from hyperleg_design.gap.thresholds import load_thresholds
 

@@ -2,9 +2,11 @@ import diagnosed
 import numpy as np
 import pytest
 
+from hyperleg_design.gap.base import LIMIT
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.episodes import episodes
-from hyperleg_design.gap.fit import LIMIT, Design, predict
+from hyperleg_design.gap.fit import Design
+from hyperleg_design.gap.held_out import predict
 from hyperleg_design.gap.screen import linearise
 
 

@@ -2,7 +2,8 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.fit import Design, predict
+from hyperleg_design.gap.fit import Design
+from hyperleg_design.gap.held_out import predict
 from hyperleg_design.gap.shape import KINDS, columns, shapes
 
 

@@ -1,0 +1,76 @@
+"""How models predict data that they were not fitted to: the measure by which causes are named."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hyperleg_design.gap.base import number_of
+from hyperleg_design.gap.fit import ROUNDS, Design, Fit
+from hyperleg_design.gap.samples import BLOCKS
+
+FREEDOM = 40.0
+"""Most degrees of freedom of a predictive distribution: the scale of other data is never known better (assumed)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """How a model predicts data that it was not fitted to."""
+
+    likelihood: np.ndarray
+    """Log-likelihood by block of the bootstrap `(B,)`."""
+    square: np.ndarray
+    """Sum of the squares that are left, by block and group, in the residual's unit `(B, G)`."""
+    left: np.ndarray
+    """What is left of every sample, weighted `(S,)`."""
+    bare: np.ndarray
+    """As `square`, had the causes not been there: the same calibration errors, without the causes' traces `(B, G)`."""
+
+    @property
+    def total(self) -> float:
+        """Log-likelihood of all blocks."""
+        return float(self.likelihood.sum())
+
+
+def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
+    """Fit without each fold and predict it.
+
+    Args:
+        design: columns of the model.
+        way: of holding out.
+        fit: to all data: scales to begin with, and where causes are linearised.
+    """
+    start = None if fit is None else fit.scale
+    if fit is not None:
+        design.trust(fit)
+    base = design.base
+    samples = base.samples
+    left, spread, freedom = np.zeros(len(samples.value)), np.ones(len(samples.value)), np.ones(len(samples.value))
+    bare = np.zeros(len(samples.value))
+    scaled = []
+    fold_of = samples.fold[way][samples.part]
+    for fold in range(samples.folds(way)):
+        found = design.fit(way, fold, start, rounds=ROUNDS if start is None else 2)
+        errors = found.errors
+        scaled.append(design.scaled(found.phi))
+        # a session that was held out whole has no fit of its own: its errors stay at the prior mean
+        here = fold_of == fold
+        rest, trace = design.left(found.phi, errors), design.trace(found.phi)
+        left[here], bare[here] = rest[here], (rest + trace)[here]
+        spread[here] = found.scale[samples.group[here]]
+        freedom[here] = np.minimum(base.freedom + number_of(base, way, fold, False), FREEDOM)[samples.group[here]]
+    cell = samples.block * samples.groups + samples.group
+    cells, inverse = np.unique(cell, return_inverse=True)
+    size = np.bincount(inverse, samples.share)
+    square = np.bincount(inverse, left**2)
+    nu, scale = (np.bincount(inverse, v * samples.share) / size for v in (freedom, spread))
+    each = -0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale)
+    likelihood = np.bincount(cells // samples.groups, each, base.blocks)
+    for fold in range(samples.folds(way) if design.factors else 0):
+        share = np.bincount(samples.block, samples.share * (fold_of == fold), base.blocks)
+        likelihood = likelihood + scaled[fold] * share / samples.share.sum()
+    squares, whole = (
+        np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups) for v in (left, bare)
+    )
+    return Held(likelihood, squares, left, whole)

@@ -1,0 +1,169 @@
+"""Models of some causes, and what they are compared on: held-out likelihood, gap over the floor, prior odds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.base import Base
+from hyperleg_design.gap.fit import Cause, Design, Fit
+from hyperleg_design.gap.held_out import Held, predict
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.thresholds import Thresholds
+
+ROUNDS = 8
+"""Of setting the noise's scales in a fit to the end."""
+EXCESSIVE = 0.25
+"""A row counts for the gap from this share of the largest excess of any row."""
+PER_PARAMETER = 0.5
+"""Log prior odds against each parameter, beside what held-out data say."""
+RARE = {"transmission_ratio": -1.0, "voltage_sag": -1.0, "thermal_derating": -0.5}
+"""Log prior odds of effects that look like another and are rarer (assumed: belts and gears have the ratio of their teeth)."""
+LARGEST_ERROR, HEAVIER, OWN_MASS = 0.8, 5.0, 0.1
+"""Error over a link's own mass from which it is rather something that hangs there; log odds for as much again; the usual error."""
+NEGATIVE = 8.0
+"""Log prior odds against a load that weighs less than nothing, beyond what is declared."""
+OWN_ROWS = 0.3
+"""Rows are a cause's own where its trace has this share of its largest square over the floor."""
+EXPLAINED = 0.5
+"""Share of the squares in episodes that a model leaves at most, if they are to count."""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Some causes together, and how they predict held-out blocks."""
+
+    causes: tuple[Cause, ...]
+    fit: Fit
+    held: Held
+    gain: float
+    """Log-likelihood of held-out blocks over that of no cause, and how much more plausible the calibration errors are."""
+
+    @property
+    def names(self) -> tuple[tuple[str, str], ...]:
+        """Effects and locations."""
+        return tuple(c.name for c in self.causes)
+
+    def values(self, place: int) -> np.ndarray:
+        """Fitted parameters of one cause."""
+        start = sum(len(c.nulls) for c in self.causes[:place])
+        cause = self.causes[place]
+        return np.clip(cause.nulls + self.fit.phi[start : start + len(cause.nulls)] * cause.usual, cause.low, cause.high)
+
+
+@dataclass(frozen=True, eq=False)
+class Judge:
+    """Everything that models are compared on."""
+
+    base: Base
+    thresholds: Thresholds
+    threads: int
+
+    @cached_property
+    def nothing(self) -> Model:
+        """Calibration errors alone."""
+        design = Design(self.base)
+        fit = design.fit()
+        return Model((), fit, predict(design, fit=fit), 0.0)
+
+    @cached_property
+    def floor(self) -> np.ndarray:
+        """Mean square that is expected of each group `(G,)`, in its unit."""
+        samples = self.base.samples
+        return np.bincount(samples.group, samples.floor**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
+
+    @cached_property
+    def counts(self) -> np.ndarray:
+        """Samples by block and group `(B, G)`."""
+        samples = self.base.samples
+        cell = samples.block * samples.groups + samples.group
+        return np.bincount(cell, minlength=self.base.blocks * samples.groups).reshape(self.base.blocks, samples.groups)
+
+    def rows(self, square: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
+        """Mean square of each row over its floor, then of each row's episodes `(2 rows,)`; of drawn blocks `(k, B)`, `(k, 2 rows)`.
+
+        Args:
+            square: sums by block and group `(B, G)`, as of `fit.Held`.
+            blocks: how often each block is drawn.
+        """
+        count = self.counts
+        if blocks is not None:
+            square, count = blocks @ square, blocks @ count
+        else:
+            square, count = square.sum(0), count.sum(0)
+        mean = square / np.maximum(count, 1)
+        found = np.zeros((*mean.shape[:-1], 2 * len(self.base.samples.rows)))
+        for group, row in enumerate(self.group_row):
+            found[..., row] += mean[..., group]
+        return found / np.maximum(self.row_floor, 1e-300)
+
+    @cached_property
+    def group_row(self) -> np.ndarray:
+        """Row of each group, episodes after all rows `(G,)`."""
+        samples = self.base.samples
+        return samples.group_row + np.where(samples.episodic, len(samples.rows), 0)
+
+    @cached_property
+    def row_floor(self) -> np.ndarray:
+        """Mean square that is expected of each row and of its episodes `(2 rows,)`."""
+        return np.bincount(self.group_row, self.floor, 2 * len(self.base.samples.rows))
+
+    def model(self, causes: Sequence[Cause]) -> Model:
+        """Fit causes together to the end and predict held-out blocks."""
+        design = Design(self.base, causes)
+        fit = design.fit(scale=self.nothing.fit.scale, rounds=ROUNDS)
+        held = predict(design, fit=fit)
+        return Model(tuple(causes), fit, held, self.gain(fit, held))
+
+    def gain(self, fit: Fit, held: Held) -> float:
+        """Log-likelihood of held-out blocks over that of no cause, the cost of the calibration errors taken into account."""
+        return held.total - self.nothing.held.total + self.nothing.fit.implausible - fit.implausible
+
+    def shown(self, model: Model, place: int) -> np.ndarray:
+        """Mean square of one cause's trace in each row, and in its episodes, over the floor `(2 rows,)`."""
+        cause, samples = model.causes[place], self.base.samples
+        phi = (model.values(place) - cause.nulls) / cause.usual
+        trace = phi @ cause.columns + (0.0 if cause.linear else cause.constant)
+        mean = np.bincount(samples.group, trace**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
+        return np.bincount(self.group_row, mean, 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
+
+    def excess_rows(self, model: Model) -> np.ndarray:
+        """Rows that count for the gap `(2 rows,)` of bool: those with much excess when a model's causes are left out.
+
+        Episodes count where the model explains them.
+        """
+        bare, left = self.rows(model.held.bare), self.rows(model.held.square)
+        excess = np.maximum(bare - 1, 0.0)
+        episode = np.arange(len(excess)) >= len(self.base.samples.rows)
+        excess[episode & (left > EXPLAINED * bare)] = 0.0
+        found = excess >= max(EXCESSIVE * float(excess.max(initial=0.0)), 1e-9)
+        for place in range(len(model.causes) if len(model.causes) > 1 else 0):
+            shown = self.shown(model, place)
+            found |= (shown >= OWN_ROWS * shown.max()) & (excess > 0.5)
+        return found if found.any() else ~episode
+
+    def gap(self, square: np.ndarray, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
+        """Root mean square over some rows, each over its floor `()` or `(k,)`; squares as of `fit.Held`."""
+        return np.asarray(np.sqrt(self.rows(square, blocks)[..., rows].mean(-1)))
+
+    def closed(self, held: Held, rows: np.ndarray, before: Held) -> float:
+        """Share of the excess gap of some rows that a model closes; the gap is the one without the causes of `before`."""
+        first, after = float(self.gap(before.bare, rows)), float(self.gap(held.square, rows))
+        lowest = min(1.0, after)
+        return (first - after) / (first - lowest) if first > lowest + 1e-9 else 0.0
+
+
+def plausible(model: Model) -> float:
+    """Log prior of the last cause of a model, over that of any other."""
+    cause = model.causes[-1]
+    found = -PER_PARAMETER * len(cause.nulls) + RARE.get(cause.effect, 0.0)
+    if cause.effect == "link_mass":
+        found -= HEAVIER * max(abs(float(model.values(len(model.causes) - 1)[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0)
+    if cause.effect == "payload" and model.values(len(model.causes) - 1)[0] < -cause.declared:
+        found -= NEGATIVE
+    return found

@@ -1,0 +1,120 @@
+"""Shapes beside the named causes, and instead of them: what speaks against the catalogue."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap import nuisance, screen, shape
+from hyperleg_design.gap.effects.friction import sliding
+from hyperleg_design.gap.fit import Design
+from hyperleg_design.gap.held_out import Held, predict
+from hyperleg_design.gap.judge import ROUNDS, Judge, Model
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.thresholds import Thresholds
+
+JUDGED_SHAPES = 5
+"""Shapes that are judged on held-out data."""
+TURNING = ("coulomb_friction", "stribeck_friction", "load_dependent_friction")
+"""Effects whose trace turns over with the motion; how, nobody knows better than of the model's own friction."""
+GENTLE = 0.05
+"""Least speed over which it may do so [rad/s]."""
+PASSES = 2.0
+"""Gain that is stated, over the least that tells, of a shape that does for several causes."""
+SHAPED_ROWS = 4
+"""Rows with the largest excess whose shape is looked at."""
+
+
+def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
+    """Shapes beside the chosen causes, in the rows with most excess left or before."""
+    base = judge.base
+    before = judge.rows(chosen.held.bare)
+    order = np.argsort(-before, kind="stable")
+    looked = np.array(list(dict.fromkeys((order[rows[order]] % len(base.samples.rows)).tolist()))[:SHAPED_ROWS], int)
+
+    companions = _companions(judge, chosen)
+    plain = Design(base, chosen.causes, ridge=companions) if companions is not None else None
+    start, known = chosen.gain, chosen.held
+    if plain is not None:
+        fit = plain.fit(scale=chosen.fit.scale, rounds=ROUNDS)
+        known = predict(plain, fit=fit)
+        start = judge.gain(fit, known)
+
+    def rough(one: shape.Shape) -> tuple[shape.Shape, Design, float] | None:
+        columns = shape.columns(base, judge.nothing.fit, one)
+        if columns is None:
+            return None
+        design = Design(base, chosen.causes, ridge=columns if companions is None else np.concatenate([columns, companions]))
+        return one, design, design.fit(scale=chosen.fit.scale, rounds=1).evidence
+
+    def judged(found: tuple[shape.Shape, Design, float]) -> tuple[shape.Shape, float, float]:
+        one, design, _ = found
+        fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
+        held = predict(design, fit=fit)
+        return one, judge.gain(fit, held) - start, _beyond(judge, known, held, rows)
+
+    first = [t for t in screen.spread(rough, shape.shapes(base.samples, looked), judge.threads) if t is not None]
+    first.sort(key=lambda t: (-t[2], t[0].name, t[0].row))
+    found = screen.spread(judged, first[:JUDGED_SHAPES], judge.threads)
+    return tuple(sorted(found, key=lambda t: (-t[1], t[0].name, t[0].row)))
+
+
+def _companions(judge: Judge, chosen: Model) -> np.ndarray | None:
+    """Ways on which the friction of causes may turn over, as that of the model, weighted `(k, S)`."""
+    samples = judge.base.samples
+    subject = samples.sieves[0].signals.subject
+    found = []
+    for place, cause in enumerate(chosen.causes):
+        if cause.effect not in TURNING:
+            continue
+        joint = subject.joints.index(cause.location)
+        size = float(np.sqrt(judge.shown(chosen, place).max()))
+
+        def trace(signals: Signals, joint: int = joint) -> dict[str, np.ndarray]:
+            rows = np.zeros((len(nuisance.WAYS) + 1, *signals.position.shape))
+            at_once = sliding(signals)[:, joint]
+            rows[:-1, :, joint] = [nuisance.stop(signals.position[:, joint], way) - at_once for way in nuisance.WAYS]
+            rows[-1, :, joint] = np.tanh(signals.velocity[:, joint] / max(float(subject.friction_speed[joint]), GENTLE)) - at_once
+            return {"motion": rows}
+
+        columns = samples.columns(trace, len(nuisance.WAYS) + 1)
+        if columns is not None:
+            level = samples.columns(lambda s, j=joint: {"motion": _only(s, j)}, 1)  # type: ignore[misc]
+            assert level is not None
+            unit = screen.reach(samples, level)
+            found.append(columns * samples.weight * (nuisance.OF_WAY * size / max(unit, 1e-12)))
+    return np.concatenate(found) if found else None
+
+
+def _only(signals: Signals, joint: int) -> np.ndarray:
+    rows = np.zeros((1, *signals.position.shape))
+    rows[0, :, joint] = sliding(signals)[:, joint]
+    return rows
+
+
+def _beyond(judge: Judge, known: Held, held: Held, rows: np.ndarray) -> float:
+    """Share of what the chosen causes leave, in squares over the rows with excess, that something further closes."""
+    after, further = float(judge.gap(known.square, rows)), float(judge.gap(held.square, rows))
+    return 1 - (further / max(after, 1e-12)) ** 2
+
+
+def instead(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
+    """Shapes that predict more than the chosen causes do, without them: then the causes only stood for the shape.
+
+    Several causes must each be worth it beside a shape, as they must beside each other.
+    """
+    if not chosen.causes:
+        return ()
+    rules = judge.thresholds
+    needed = rules.beyond_evident if len(chosen.causes) == 1 else -rules.second_evident * (len(chosen.causes) - 1)
+    alone = beside(judge, judge.nothing, rows)
+    return tuple((one, max(gain - chosen.gain, PASSES * rules.beyond_evident), closed) for one, gain, closed in alone if gain - chosen.gain > needed)
+
+
+def tells(rules: Thresholds, chosen: Model, shaped: Sequence[tuple[shape.Shape, float, float]]) -> bool:
+    """Whether the best shape speaks against causes, or against none."""
+    return bool(shaped) and shaped[0][1] > rules.beyond_evident and shaped[0][2] > rules.beyond * max(len(chosen.causes), 1)
