@@ -16,6 +16,7 @@ from hyperleg_design.gap import contact, rigid
 from hyperleg_design.gap.base_motion import base_motion
 from hyperleg_design.gap.control import control_residual
 from hyperleg_design.gap.ground import balance as ground_balance
+from hyperleg_design.gap.plausibility import frozen
 from hyperleg_design.gap.signals import BaseMotion, Signals
 from hyperleg_design.gap.smoothing import smooth
 
@@ -51,12 +52,16 @@ def condition(log: Log, subject: Subject) -> Signals:
     ticks = log.time[0] + step * np.arange(int(np.floor(log.duration / step + 1e-6)) + 1)
     if len(ticks) < 16:
         raise InputError(log.name, "t", len(ticks), "is too short a log: expects at least 16 ticks")
+    notes = []
     position = log.stack("position", subject.joints)
+    for column, joint in enumerate(subject.joints):
+        if (stuck := frozen(log, joint)) is not None:
+            position[stuck, column] = np.nan
+            notes.append(f"{joint}: position frozen from {log.time[stuck.start]:.4g} s, left out until it moves again")
     motion = smooth(log.time, position, ticks, log.stack("velocity", subject.joints))
     lacking = ~np.isfinite(motion.value).any(0)
     if lacking.all():
         raise InputError(log.name, "position", sorted(log.joints)[:8], f"knows no joint of this robot, {', '.join(subject.joints)}")
-    notes = []
     if lacking.any():
         notes.append(f"joints without positions in this log, taken to stand still: {_names(subject.joints, lacking)}")
         motion.value[:, lacking] = subject.default[lacking]

@@ -195,20 +195,33 @@ def _stuck(log: Log) -> list[Finding]:
             else:
                 found.append(Finding(NOTE, f"position/{joint}", "never changes", "move this joint to learn of it"))
             continue
-        start, stop = _longest_run(values)
-        length = float(log.time[stop - 1] - log.time[start])
-        if length < STUCK:
-            continue
-        turned = float(np.nanmedian(np.abs(speed[start:stop]))) * length if np.isfinite(speed[start:stop]).any() else 0.0
-        during = target[start:stop]
-        asked = float(np.nanmax(during) - np.nanmin(during)) if np.isfinite(during).any() else 0.0
-        steps = np.abs(np.diff(values[known]))
-        jump = abs(float(values[stop] - values[stop - 1])) if stop < len(values) else 0.0
-        # a joint that sticks moves on gently; a sensor that was stuck comes back with a jump
-        if turned > 0.2 or jump > max(JUMP, 5 * float(np.percentile(steps, 99))) or (driven > 0.2 and asked > 0.6 * driven):
-            text = f"is frozen for {length:.2g} s from {log.time[start]:.4g} s while the joint is driven"
-            found.append(Finding(WARNING, f"position/{joint}", text, "a stuck sensor or a blocked joint: cut the log there"))
+        stuck = frozen(log, joint)
+        if stuck is not None:
+            length = float(log.time[stuck.stop - 1] - log.time[stuck.start])
+            text = f"is frozen for {length:.2g} s from {log.time[stuck.start]:.4g} s while the joint is driven"
+            found.append(Finding(WARNING, f"position/{joint}", text, "a stuck sensor or a blocked joint: this stretch is left out"))
     return found
+
+
+def frozen(log: Log, joint: str) -> slice | None:
+    """Rows of the longest stretch in which a position does not change though its joint turns or is driven; None where there is none.
+
+    A joint that sticks moves on gently; a sensor that was stuck comes back with a jump.
+    """
+    values, target, speed = (log.column(f"{kind}/{joint}") for kind in ("position", "position_target", "velocity"))
+    known = np.isfinite(values)
+    if known.sum() < 2 or np.nanmax(values) == np.nanmin(values):
+        return None
+    start, stop = _longest_run(values)
+    length = float(log.time[stop - 1] - log.time[start])
+    if length < STUCK or not known[start]:
+        return None
+    turned = float(np.nanmedian(np.abs(speed[start:stop]))) * length if np.isfinite(speed[start:stop]).any() else 0.0
+    driven, during = (float(np.nanmax(x) - np.nanmin(x)) if np.isfinite(x).any() else 0.0 for x in (target, target[start:stop]))
+    jump = abs(float(values[stop] - values[stop - 1])) if stop < len(values) else 0.0
+    steps = np.abs(np.diff(values[known]))
+    usual = max(JUMP, 5 * float(np.percentile(steps, 99)))
+    return slice(start, stop) if turned > 0.2 or jump > usual or (driven > 0.2 and during > 0.6 * driven) else None
 
 
 def _robot(log: Log, subject: Subject) -> list[Finding]:
