@@ -28,6 +28,10 @@ PROBED = 4
 """Sizes tried at once."""
 ATTEMPTS = 4
 """Places tried until one shows the effect as strongly as planned."""
+WILD = 4.0
+"""Position from which a rig has gone wild [rad]."""
+CALMED, SMALLER = 6, 0.6
+"""Attempts to record a rig that stays whole, each with effects so much smaller."""
 FEWEST_MULTIPLES = 0.8
 """Share of the planned multiple that a place must reach."""
 SIGNED = ("torque_constant", "transmission_ratio", "encoder_offset", "controller_gain", "link_mass", "sensor_drift", "cross_coupling")
@@ -69,12 +73,7 @@ def rig_case(plan: Plan) -> Case:
     wrongs: list[Wrong] = []
     for effect, wanted in zip(plan.effects, plan.multiples, strict=True):
         wrongs.append(_sized(rig, effect, wanted, rng, [w.location for w in wrongs]))
-    moves = rig.motions(3, plan.duration, rng)
-    seeds = [int(s) for s in rng.integers(2**31, size=3)]
-    ways: list[Sequence[Wrong]] = [(), wrongs] if wrongs else [()]
-    if len(wrongs) > 1:
-        ways += [[w] for w in wrongs]
-    runs = rig.run([(w, moves[k], seeds[k]) for w in ways for k in range(3)], rig.recorder)
+    wrongs, runs = _recorded(rig, wrongs, rng)
     clean = [residual(log, robot) for log in runs[:3]]
     logs = runs[3:6] if wrongs else runs[:3]
     alone = [runs[6 + 3 * i : 9 + 3 * i] for i in range(len(wrongs))] if len(wrongs) > 1 else [logs] * len(wrongs)
@@ -89,6 +88,27 @@ def rig_case(plan: Plan) -> Case:
         parameters=tuple(parameters(w, robot, rig.day, rig.reach, belts=1.0 if plan.plant == "rig" else BELT_STIFFNESS) for w in wrongs),
         also=tuple(places(w, robot) for w in wrongs),
     )  # fmt: skip
+
+
+def _recorded(rig: _Rig, wrongs: list[Wrong], rng: np.random.Generator) -> tuple[list[Wrong], list[Log]]:
+    """Three clean logs, three of all effects, and three of each of several; effects that shake the rig to pieces made smaller first."""
+    for _ in range(CALMED):
+        moves = rig.motions(3, rig.plan.duration, rng)
+        seeds = [int(s) for s in rng.integers(2**31, size=3)]
+        ways: list[Sequence[Wrong]] = [(), wrongs] if wrongs else [()]
+        if len(wrongs) > 1:
+            ways += [[w] for w in wrongs]
+        jobs = [(w, moves[k], seeds[k]) for w in ways for k in range(3)]
+        traces = rig.traces(jobs)
+        if all(calm(trace) for trace in traces):
+            break
+        wrongs = [replace(w, size=float(np.sign(w.size) * max(SMALLER * abs(w.size), SIZES[w.effect].smallest))) for w in wrongs]
+    return wrongs, [rig.log(trace, job, rig.recorder, number) for number, (trace, job) in enumerate(zip(traces, jobs, strict=True))]
+
+
+def calm(trace: Trace) -> bool:
+    """Whether a rig held together: nothing turns further than joints can."""
+    return bool(np.isfinite(trace.position).all() and np.abs(trace.position).max() < WILD)
 
 
 @dataclass(eq=False)
@@ -142,9 +162,8 @@ def _sized(rig: _Rig, effect: str, wanted: float, rng: np.random.Generator, take
             sizes = np.maximum(sizes, -0.6)
         jobs = [((replace(draft, size=float(s)),) if s else (), moves[k], seeds[k]) for s in (0.0, *sizes) for k in range(2)]
         traces = rig.traces(jobs)
-        calm = [bool(np.isfinite(t.position).all() and np.abs(t.position).max() < 20) for t in traces]
         quiet = replace(rig.recorder, dropped=0.0)
-        found = [residual(rig.log(t, j, quiet, 0), rig.chain) if c else None for t, j, c in zip(traces, jobs, calm, strict=True)]
+        found = [residual(rig.log(t, j, quiet, 0), rig.chain) if calm(t) else None for t, j in zip(traces, jobs, strict=True)]
         ratios = []
         for row in range(1, PROBED + 1):
             pair = [found[2 * row], found[2 * row + 1]]
