@@ -26,10 +26,10 @@ FINALISTS = 10
 REFINED = 24
 """Candidates that are fitted to the end before that."""
 MOST_CAUSES = 3
-SURE = 3.0
-"""Gain of a further cause over the least one, from which episodes count for it."""
+OWN_WORTH = 0.5
+"""Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
 AT_LIMITS = ("torque_saturation", "voltage_sag")
-"""Effects of which that is not so: healthy drives reach limits too, which models often do not know."""
+"""Effects beside another that are not judged by episodes: healthy drives reach limits too, which models often do not know."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
 """Gap over floor up to which a shape must be so many times more evident to be told, as no cause was named."""
 
@@ -117,9 +117,12 @@ def _named(judge: Judge, model: Model, place: int, before: Model) -> bool:
     gain = model.gain - before.gain
     if gain < rules.evident or float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
         return False
-    if judge.closed(model.held, judge.excess_rows(model), model.held) >= rules.worth:
+    rows = judge.excess_rows(model)
+    if float(judge.gap(model.held.bare, rows)) < rules.least_gap:
+        return False
+    if judge.closed(model.held, rows, model.held) >= rules.worth:
         return True
-    return gain >= SURE * rules.second_evident and _closes_own(judge, model, before, rules.required)
+    return gain >= rules.second_evident and _closes_own(judge, model, before, OWN_WORTH, rules.least_gap)
 
 
 def _further(judge: Judge, model: Model, before: Model) -> bool:
@@ -132,18 +135,27 @@ def _further(judge: Judge, model: Model, before: Model) -> bool:
     return _closes_own(judge, model, before, rules.second_worth)
 
 
-def _closes_own(judge: Judge, model: Model, before: Model, worth: float) -> bool:
-    """Whether the last cause closes a share of the excess squares in the rows where it shows."""
+def _closes_own(judge: Judge, model: Model, before: Model, worth: float, least: float = 0.0) -> bool:
+    """Whether the last cause closes a share of the excess squares in the rows where it shows, with their episodes or without.
+
+    Args:
+        judge: of the models.
+        model: with the cause.
+        before: without it.
+        worth: least share.
+        least: gap over floor that there must be.
+    """
     shown = judge.shown(model, len(model.causes) - 1)
-    calm = np.arange(len(shown)) < len(judge.base.samples.rows)
-    sure = model.gain - before.gain >= SURE * judge.thresholds.second_evident
-    if sure and model.causes[-1].effect not in AT_LIMITS:
-        calm |= ~calm  # episodes alone are too little, unless they speak clearly
-    own = (shown >= OWN_ROWS * shown.max()) & (shown > 0) & calm
-    if not own.any():
-        return False
-    left, less = judge.rows(before.held.square)[own].mean(), judge.rows(model.held.square)[own].mean()
-    return bool(left - less >= worth * max(left - min(1.0, less), 1e-9))
+    own = (shown >= OWN_ROWS * shown.max()) & (shown > 0)
+    calm = own & (np.arange(len(shown)) < len(judge.base.samples.rows))
+    without, with_it = judge.rows(before.held.square), judge.rows(model.held.square)
+    for rows in (calm,) if model.causes[-1].effect in AT_LIMITS else (calm, own):
+        if not rows.any():
+            continue
+        left, less = float(without[rows].mean()), float(with_it[rows].mean())
+        if left >= least**2 and left - less >= worth * max(left - min(1.0, less), 1e-9):
+            return True
+    return False
 
 
 def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots: list[tuple[Model, ...]]) -> tuple[Model, list[tuple[Model, ...]]]:
@@ -170,6 +182,7 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[tup
     beyond = shaping.tells(rules, chosen, shaped) and shaped[0][1] > needed
     if not chosen.causes:
         return "unknown" if excess > rules.largest_excess or beyond else "none"
-    if beyond or judge.closed(chosen.held, rows, chosen.held) < rules.required:
+    much = float(judge.gap(chosen.held.square, rows)) > rules.largest_excess
+    if beyond or (much and judge.closed(chosen.held, rows, chosen.held) < rules.required):
         return "unknown"
     return "explained"

@@ -161,6 +161,8 @@ class _Report:
             if any(sets):
                 verdict = "ambiguous"
         probabilities = self.probabilities(sets)
+        if named and self.doubtful(probabilities[0], sets[0]):
+            verdict, named, sets = "none", (), []
         causes, rivals = self.named(probabilities) if verdict != "none" else ((), self.rivals_of_none())
         if verdict == "unknown":
             rivals, causes = (*causes, *rivals), ()
@@ -174,6 +176,12 @@ class _Report:
             not_judged=tuple({"effect": n.effect, "location": n.location, "reason": n.reason} for n in found.not_judged),
             residual_shape=self.shape(), checks=doubts, nuisance=self.nuisance(), provenance=self.provenance(),
         )  # fmt: skip
+
+    def doubtful(self, table: dict[tuple[tuple[str, str], ...], float], alike_first: Sequence[Model]) -> bool:
+        """Whether the first cause and what is like it are rather not it, with a gap that the floor's own doubt may be."""
+        rules, rows = self.judge.thresholds, self.found.rows
+        likely = sum(table.get(names, 0.0) for names in {self.found.model.names, *(m.names for m in alike_first)})
+        return likely < rules.likely and float(self.judge.gap(self.found.model.held.bare, rows)) < rules.largest_excess
 
     def _differs(self, model: Model) -> int:
         names = self.found.model.names

@@ -52,6 +52,8 @@ class Cause:
     """Payload that the logs declare at its place [kg]."""
     factor: Factor | None = None
     """How it scales the torque that the balance trusts."""
+    unseen: bool = False
+    """Whether no log has the signal that drives it, a voltage or a temperature, so that it is modelled."""
 
     @property
     def name(self) -> tuple[str, str]:

@@ -26,6 +26,8 @@ RARE = {"transmission_ratio": -1.0, "voltage_sag": -1.0, "thermal_derating": -0.
 """Log prior odds of effects that look like another and are rarer (assumed: belts and gears have the ratio of their teeth)."""
 LARGEST_ERROR, HEAVIER, OWN_MASS = 0.8, 5.0, 0.1
 """Error over a link's own mass from which it is rather something that hangs there; log odds for as much again; the usual error."""
+UNSEEN = {"voltage_sag": 6.0, "thermal_derating": 1.0}
+"""Log prior odds against what follows a signal that nobody logged: a model of it fits much."""
 NEGATIVE = 8.0
 """Log prior odds against a load that weighs less than nothing, beyond what is declared."""
 OWN_ROWS = 0.3
@@ -162,6 +164,8 @@ def plausible(model: Model) -> float:
     """Log prior of the last cause of a model, over that of any other."""
     cause = model.causes[-1]
     found = -PER_PARAMETER * len(cause.nulls) + RARE.get(cause.effect, 0.0)
+    if cause.unseen:
+        found -= UNSEEN[cause.effect]
     if cause.effect == "link_mass":
         found -= HEAVIER * max(abs(float(model.values(len(model.causes) - 1)[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0)
     if cause.effect == "payload" and model.values(len(model.causes) - 1)[0] < -cause.declared:

@@ -40,7 +40,7 @@ TORQUE_OFFSET, SPRING = 0.002, 0.002
 """Of the torque that the joint is made for, and that a radian."""
 LATE, LATE_TICKS = 0.001, 0.15
 """[s] and ticks of the log, of all drives; a lag of one of them is half."""
-GAIN = 0.01
+GAIN = 0.015
 GYRO, ACCELEROMETER = 0.003, 0.05
 """[rad/s], [m/s^2]"""
 GROUND, BEARING = 0.1, 0.5
@@ -51,7 +51,7 @@ WIDE = {
     "actuator_bandwidth": 6.0, "controller_gain": 3.0, "imu_bias": 4.0, "ground_friction": 3.0, "ground_compliance": 2.0,
 }  # fmt: skip
 DAY = {
-    "coulomb_friction": 0.5, "viscous_friction": 0.6, "stribeck_friction": 0.5, "load_dependent_friction": 0.5, "torque_constant": 0.4,
+    "coulomb_friction": 0.3, "viscous_friction": 0.4, "stribeck_friction": 0.3, "load_dependent_friction": 0.5, "torque_constant": 0.4,
     "encoder_offset": 0.35, "link_mass": 0.1, "link_com": 0.1, "rotor_inertia": 0.1, "joint_spring": 0.6, "command_delay": 0.3,
     "actuator_bandwidth": 0.3, "controller_gain": 0.3, "imu_bias": 1.0, "ground_friction": 0.7, "ground_compliance": 0.3,
 }  # fmt: skip
@@ -62,7 +62,7 @@ WAYS = (0.0015, 0.006)
 """On which it turns over, half of each [rad]; assumed, beside that of `effects.friction`."""
 AT_ONCE, OF_WAY = 0.5, 0.3
 """Share of the model's friction that turns over at once, and on each of these ways."""
-ABOVE_CALIBRATED = 0.08
+ABOVE_CALIBRATED = 0.05
 """Day-to-day change of friction over what reference logs calibrated."""
 LEAST = 1e-3
 """Trace at its usual size over the floor, below which a nuisance is left out."""

@@ -32,6 +32,9 @@ MOST_DESCENTS, DESCENTS = 16, 2
 PROMISING = 0.1
 """Gain of an effect by its starts' traces, over the best gain of any, from which it is fitted exactly."""
 
+DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
+"""Signals of `Signals` that drive an effect."""
+
 T = TypeVar("T")
 R = TypeVar("R")
 
@@ -101,7 +104,9 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     shape = np.array([p.shape for p in effect.parameters])
     declared = max((float(kg[0]) for place, kg in subject.declared.payload.items() if _same_place(subject, place, location)), default=0.0)
     scaled = factor(samples, effect.identifier, location, usual)
-    return Cause(effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled)
+    driver = DRIVERS.get(effect.identifier)
+    unseen = driver is not None and all(getattr(s.signals, driver) is None for s in samples.sieves)
+    return Cause(effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen)
 
 
 def _same_place(subject: Subject, one: str, other: str) -> bool:

@@ -58,7 +58,12 @@ KINDS = {
     "rhythm": "a torque that repeats in time, whatever the motion",
     "gravity": "gravity from another direction than the model's",
     "encoder_over_position": "a position error that varies with the joint's position",
+    "encoder_over_time": "a position error that drifts with time",
 }
+
+
+OF_ENCODER = ("encoder_over_position", "encoder_over_time")
+"""Shapes of a position error, which moves the load of other joints too."""
 
 
 def shapes(samples: Samples, rows: np.ndarray) -> list[Shape]:
@@ -96,7 +101,7 @@ def columns(base: Base, nothing: Fit, shape: Shape) -> np.ndarray | None:
             return None
 
         def trace(signals: Signals) -> dict[str, np.ndarray]:
-            if shape.name == "encoder_over_position":
+            if shape.name in OF_ENCODER:
                 return basis.of_encoder(signals)
             values = basis.of(signals)
             if one.balance not in signals.residual:
@@ -173,13 +178,16 @@ class _Basis:
                 return np.zeros((0, len(time)))
             # the phase starts anew in every log
             return np.concatenate([[np.cos(w * time), np.sin(w * time)] for w in 2 * np.pi * self.frequency * np.arange(1, RHYTHMS + 1)])
+        if name == "encoder_over_time":
+            x = 2 * time / self.longest - 1
+            return np.stack([x, x**2, x**3])
         if name == "encoder_over_position":
             angle = np.outer(WAVES, q)
             return np.concatenate([np.cos(angle), np.sin(angle)])
         return np.zeros((0, len(time)))
 
     def of_encoder(self, signals: Signals) -> dict[str, np.ndarray]:
-        """Errors of a position that go with it, as waves, in all balances `(k, t, columns)` each."""
+        """Errors of a position that go with it as waves, or with time, in all balances `(k, t, columns)` each."""
         from hyperleg_design.gap.effects import EFFECTS
 
         found = EFFECTS["encoder_offset"].trace(signals, signals.subject.joints[self.joint], np.array([[SMALL]]))

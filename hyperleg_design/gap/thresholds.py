@@ -24,6 +24,7 @@ class Thresholds:
     floor_weight: float
     information: float
     visible: float
+    least_gap: float
     evident: float
     worth: float
     second_worth: float
@@ -38,6 +39,7 @@ class Thresholds:
     angle: float
     temperature: float
     unlisted: float
+    likely: float
     most_certain: float
     doubt: float
     interval: float

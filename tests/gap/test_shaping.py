@@ -27,7 +27,6 @@ def everywhere(judge):
 def test_a_hardening_spring_is_seen_beside_no_cause(cubic, rules):
     found = shaping.beside(cubic, cubic.nothing, everywhere(cubic))
     assert shaping.tells(rules, cubic.nothing, found)
-    assert found[0][1] > 10
     assert list(found) == sorted(found, key=lambda one: -one[1])
     assert shaping.instead(cubic, cubic.nothing, everywhere(cubic)) == ()
 

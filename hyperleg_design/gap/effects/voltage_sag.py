@@ -97,7 +97,9 @@ class VoltageSag(Effect):
         """Limits alone, torques alone."""
         if np.isfinite(signals.subject.stall_torque).all():
             return np.array([[1.0, 0.0, 10.0], [3.0, 0.0, 10.0], [0.0, 1.0, 10.0]])
-        return np.array([[1.0, 0.0, 5.0], [2.0, 0.0, 10.0], [4.0, 0.0, 20.0], [0.0, 1.0, 10.0]])
+        return np.array(
+            [[1.0, 0.0, 10.0], [1.0, 0.0, 20.0], [1.0, 0.0, 40.0], [0.5, 0.0, 20.0], [2.0, 0.0, 20.0], [4.0, 0.0, 20.0], [0.0, 1.0, 10.0]]
+        )
 
 
 def missing(signals: Signals) -> np.ndarray:
