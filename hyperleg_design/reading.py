@@ -1,7 +1,8 @@
-"""YAML files as users write them, read strictly."""
+"""YAML and JSON files as users write them, read strictly."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,24 @@ def read_yaml(path: Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise InputError(short_name(path), "", data, "expects a mapping of sections")
     return data
+
+
+def read_json(path: Path, where: str = "") -> Any:
+    """What a JSON file holds.
+
+    Args:
+        path: of the file.
+        where: what errors call it; its short name by default.
+
+    Raises:
+        InputError: unreadable, or no JSON.
+    """
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(where or short_name(path), "", None, f"cannot be read ({error.strerror})") from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(where or short_name(path), "", None, f"is not JSON ({' '.join(str(error).split())[:80]})") from None
 
 
 def parse_yaml(text: str) -> Any:

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap import screen, shape, shaping
+from hyperleg_design.gap import screen, shaping
 from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Cause, Design, Fit
-from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, plausible
+from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.thresholds import Thresholds
@@ -46,8 +46,8 @@ class Decision:
     """Best first: each cause alone, or, with several causes, each beside the others."""
     slots: tuple[tuple[Model, ...], ...]
     """For each named cause its rivals in its place, itself among them."""
-    shaped: tuple[tuple[shape.Shape, float, float], ...]
-    """Shapes with their gain over the model and the further share of the excess gap that they close, best first."""
+    shaped: tuple[shaping.Told, ...]
+    """Best first."""
     together: float
     """Share of the time in which most drives at once do not do what they were told, beside the causes."""
     not_judged: tuple[screen.NotJudged, ...]
@@ -68,7 +68,7 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     rows = judge.excess_rows(singles[0] if singles else nothing)
     chosen = nothing
     slots: list[tuple[Model, ...]] = []
-    best = next((m for m in singles if _named(judge, m, 0, nothing)), None)
+    best = next((m for m in singles if _named(judge, m)), None)
     if best is not None:
         chosen, slots = best, [tuple(singles)]
         rows = judge.excess_rows(best)
@@ -98,7 +98,7 @@ def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence
     refined = screen.spread(lambda c: (_refined(base, c, start, beside), c), candidates[:REFINED], judge.threads)
     refined.sort(key=lambda pair: (-pair[0], pair[1].name))
     models = screen.spread(lambda pair: judge.model([*beside, pair[1].cause]), refined[:FINALISTS], judge.threads)
-    models.sort(key=lambda m: (-_rank(m), m.names))
+    models.sort(key=lambda m: (-rank(m), m.names))
     return models, [c for c in found if isinstance(c, screen.NotJudged)]
 
 
@@ -106,33 +106,30 @@ def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequen
     return Design(base, [*beside, candidate.cause]).fit(scale=start.scale, rounds=ROUNDS).evidence
 
 
-def _rank(model: Model) -> float:
-    """Held-out likelihood and what is plausible before any log."""
-    return model.gain + plausible(model)
-
-
-def _named(judge: Judge, model: Model, place: int, before: Model) -> bool:
+def _named(judge: Judge, model: Model) -> bool:
     """Whether the first cause is worth its name: by all rows with excess or, where it is beyond doubt, by those where it shows."""
     rules = judge.thresholds
-    gain = model.gain - before.gain
-    if gain < rules.evident or float(np.sqrt(judge.shown(model, place).max())) < rules.visible:
+    if model.gain < rules.evident or not _visible(judge, model):
         return False
     rows = judge.excess_rows(model)
     if float(judge.gap(model.held.bare, rows)) < rules.least_gap:
         return False
     if judge.closed(model.held, rows, model.held) >= rules.worth:
         return True
-    return gain >= rules.second_evident and _closes_own(judge, model, before, OWN_WORTH, rules.least_gap)
+    return model.gain >= rules.second_evident and _closes_own(judge, model, judge.nothing, OWN_WORTH, rules.least_gap)
 
 
 def _further(judge: Judge, model: Model, before: Model) -> bool:
     """Whether one more cause is worth its name beside those before it: in the rows where it shows, over what they leave."""
     rules = judge.thresholds
-    if model.gain - before.gain < rules.second_evident * len(before.causes):
-        return False
-    if float(np.sqrt(judge.shown(model, len(model.causes) - 1).max())) < rules.visible:
+    if model.gain - before.gain < rules.second_evident * len(before.causes) or not _visible(judge, model):
         return False
     return _closes_own(judge, model, before, rules.second_worth)
+
+
+def _visible(judge: Judge, model: Model) -> bool:
+    """Whether the last cause shows over the floor."""
+    return float(np.sqrt(judge.shown(model, len(model.causes) - 1).max())) >= judge.thresholds.visible
 
 
 def _closes_own(judge: Judge, model: Model, before: Model, worth: float, least: float = 0.0) -> bool:
@@ -175,11 +172,11 @@ def _turned(model: Model) -> Model:
     return replace(model, causes=(model.causes[-1], *model.causes[:-1]), fit=fit)
 
 
-def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[tuple[shape.Shape, float, float]]) -> str:
+def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[shaping.Told]) -> str:
     rules = judge.thresholds
     excess = float(judge.gap(judge.nothing.held.square, rows))
     needed = rules.beyond_evident * (QUIET if not chosen.causes and excess < SMALL_EXCESS else 1.0)
-    beyond = shaping.tells(rules, chosen, shaped) and shaped[0][1] > needed
+    beyond = shaping.tells(rules, chosen, shaped) and shaped[0].gain > needed
     if not chosen.causes:
         return "unknown" if excess > rules.largest_excess or beyond else "none"
     much = float(judge.gap(chosen.held.square, rows)) > rules.largest_excess

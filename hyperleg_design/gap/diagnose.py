@@ -19,8 +19,8 @@ from hyperleg_design.gap.diagnosis import Diagnosis, Named, Place, Shrinkage
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
 from hyperleg_design.gap.fit import Design
-from hyperleg_design.gap.held_out import predict
-from hyperleg_design.gap.judge import Judge, Model, plausible
+from hyperleg_design.gap.held_out import Held, predict
+from hyperleg_design.gap.judge import Judge, Model, rank
 from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.samples import BLOCKS, LOGS
@@ -134,16 +134,15 @@ class _Report:
         shared = samples.sessions < len(signals)
         # a session that is held out whole cannot be calibrated: then blocks are held out, not logs
         self.way = LOGS if shared and samples.folds(LOGS) > 1 else BLOCKS
-        self.kept: dict[int, Any] = {}
+        self.kept: dict[int, tuple[Model, Held]] = {}
 
-    def held(self, model: Model) -> Any:
+    def held(self, model: Model) -> Held:
         """Prediction of the data held out for the gap."""
         if self.way == BLOCKS:
             return model.held
-        key = id(model)
-        if key not in self.kept:
-            self.kept[key] = predict(Design(self.judge.base, model.causes), self.way, fit=model.fit)
-        return self.kept[key]
+        if id(model) not in self.kept:  # the model is kept too: another must not be given its identity
+            self.kept[id(model)] = model, predict(Design(self.judge.base, model.causes), self.way, fit=model.fit)
+        return self.kept[id(model)][1]
 
     def closed(self, model: Model) -> float:
         """Share of the excess gap that a model closes."""
@@ -243,7 +242,7 @@ class _Report:
         best: tuple[float, str, float] | None = None
         total: dict[str, float] = {}
         ticks: dict[str, float] = {}
-        for place, row in enumerate(samples.rows):
+        for row in samples.rows:
             if row.name != name or KIND.get(row.balance) != kind:
                 continue
             for one, sieve in enumerate(samples.sieves):
@@ -257,7 +256,6 @@ class _Report:
                     total[regime] = total.get(regime, 0.0) + float((left[part][chosen] ** 2).sum())
                     ticks[regime] = ticks.get(regime, 0.0) + float(samples.share[part][chosen].sum())
                     total["all"] = total.get("all", 0.0) + (float((left[part] ** 2).sum()) if regime == "forward" else 0.0)
-            del place
         for regime, value in total.items():
             if regime != "all" and ticks[regime] > 0 and total["all"] > 0 and value / total["all"] >= 0.2:
                 density = value / ticks[regime]
@@ -268,14 +266,14 @@ class _Report:
     def probabilities(self, sets: Sequence[Sequence[Model]]) -> list[dict[tuple[tuple[str, str], ...], float]]:
         """Of every model in each slot: tempered held-out likelihoods of the rivals, of none and of unknown, made one."""
         rules, found = self.judge.thresholds, self.found
-        shaped = found.shaped[0][1] if tells(rules, found.model, found.shaped) else 0.0
+        shaped = found.shaped[0].gain if tells(rules, found.model, found.shaped) else 0.0
         slots: Sequence[Sequence[Model]] = found.slots or (found.singles,)
         tables = []
         for place, slot in enumerate(slots):
             models = list({m.names: m for m in [*slot, *([found.model] if found.slots else [])]}.values())
             other = found.model.gain if place == len(slots) - 1 and found.slots else max((m.gain for m in models), default=0.0)
             none = 0.0 if place == 0 else _without(found, place)
-            scores = np.array([*(m.gain + plausible(m) for m in models), none, other + shaped - rules.unlisted])
+            scores = np.array([*(rank(m) for m in models), none, other + shaped - rules.unlisted])
             weights = np.exp(rules.temperature * (scores - scores.max()))
             weights /= weights.sum()
             certain = np.minimum(weights, rules.most_certain)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import short_name
+from hyperleg_design.reading import read_json, short_name
 from hyperleg_design.writing import write_json
 
 SCHEMA = 1
@@ -134,12 +133,7 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
     """
     path = Path(path)
     where = short_name(path)
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(where, "", None, f"cannot be read ({error.strerror})") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(where, "", None, f"is not JSON ({' '.join(str(error).split())[:80]})") from None
+    content = read_json(path)
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         found = content.get("schema") if isinstance(content, dict) else None
         raise InputError(where, "schema", found, f"expects {SCHEMA}: this is no diagnosis, or one of another version")

@@ -50,7 +50,7 @@ def episodes(base: Base) -> np.ndarray:
                 left[mine] = base.value[mine] - solved[columns] @ some
         plain = np.abs(left) / np.sqrt(samples.share)
         for group in range(samples.groups):
-            scale[group] = max(float(np.median(plain[samples.group == group])) / 0.6745, 0.5) ** 2
+            scale[group] = _spread(plain[samples.group == group]) ** 2
         weight = (ROBUST_FREEDOM + 1) / (ROBUST_FREEDOM + plain**2 / scale[samples.group])
     found = np.zeros(len(left), bool)
     large = (plain > EPISODE * np.sqrt(scale[samples.group])) & (samples.group_band[samples.group] > 0)
@@ -67,6 +67,11 @@ def episodes(base: Base) -> np.ndarray:
         if mine.any() and found[mine].mean() > MOST_EPISODES:
             found[mine] = False
     return found
+
+
+def _spread(values: np.ndarray) -> float:
+    """Standard deviation of what is usual among absolute values, half the floor's at least."""
+    return max(float(np.median(values)) / 0.6745, 0.5)
 
 
 BIN = 0.05
@@ -86,18 +91,14 @@ def together(samples: Samples, left: np.ndarray) -> float:
     if len(drives) < 2:
         return 0.0
     plain = np.abs(left) / np.sqrt(samples.share)
-    log = samples.log[samples.part]
+    log, band = samples.log[samples.part], samples.group_band[samples.group]
     place = (samples.time / BIN).astype(int) + log * (int(samples.time.max() / BIN) + 1)
     count, seen = np.zeros(int(place.max()) + 1), np.zeros(int(place.max()) + 1, bool)
     for row in drives:
-        wild = np.zeros(len(count), bool)
-        for group in np.flatnonzero(samples.group_row == row).tolist():
-            calm = samples.row == row
-            mine = samples.group == group
-            same = calm & (samples.group_band[samples.group] == samples.group_band[group])
-            scale = max(float(np.median(plain[same])) / 0.6745, 0.5)
-            seen[place[mine]] = True
-            if samples.group_band[group] > 0:
-                wild[place[mine & (plain > EPISODE * scale)]] = True
+        own, wild = samples.row == row, np.zeros(len(count), bool)
+        seen[place[own]] = True
+        for number in set(band[own].tolist()) - {0}:
+            mine = own & (band == number)
+            wild[place[mine & (plain > EPISODE * _spread(plain[mine]))]] = True
         count += wild
     return float((count[seen] >= max(len(drives) / 2, 2)).mean())

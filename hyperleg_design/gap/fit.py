@@ -162,7 +162,6 @@ class Design:
         way: int = BLOCKS,
         without: int | None = None,
         held: np.ndarray | None = None,
-        start: np.ndarray | None = None,
         near: np.ndarray | None = None,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """One fit at given weights of the groups `(G,)`.
@@ -172,7 +171,6 @@ class Design:
             way: of holding out.
             without: fold held out.
             held: values of phi that are fixed, NaN where free `(k,)`.
-            start: calibration errors known to be at their limits, 0 where not `(sessions, p)`.
             near: phi at which what scales torques is linearised `(k,)`; 0 by default.
 
         Returns:
@@ -189,7 +187,7 @@ class Design:
             key = weight.tobytes() + bytes([session]) if without is None else None
             summed, factor, log = base.normal(of_base, weight, key)
             weighed.append((summed, factor, log, np.tensordot(weight, own, 1), np.tensordot(weight, cross, 1)))
-        clamped = np.zeros((len(sums), size)) if start is None else start
+        clamped = np.zeros((len(sums), size))
         near = np.zeros(k) if near is None else near
         part = float(number_of(base, way, without, False).sum() / base.number.sum()) if self.factors else 1.0
         for attempt in range(CLAMPS):

@@ -76,8 +76,12 @@ class Judge:
     @cached_property
     def floor(self) -> np.ndarray:
         """Mean square that is expected of each group `(G,)`, in its unit."""
+        return self._means(self.base.samples.floor**2)
+
+    def _means(self, values: np.ndarray) -> np.ndarray:
+        """Of samples `(S,)`, by group `(G,)`."""
         samples = self.base.samples
-        return np.bincount(samples.group, samples.floor**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
+        return np.asarray(np.bincount(samples.group, values, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1))
 
     @cached_property
     def counts(self) -> np.ndarray:
@@ -90,7 +94,7 @@ class Judge:
         """Mean square of each row over its floor, then of each row's episodes `(2 rows,)`; of drawn blocks `(k, B)`, `(k, 2 rows)`.
 
         Args:
-            square: sums by block and group `(B, G)`, as of `fit.Held`.
+            square: sums by block and group `(B, G)`, as of `held_out.Held`.
             blocks: how often each block is drawn.
         """
         count = self.counts
@@ -131,8 +135,7 @@ class Judge:
         cause, samples = model.causes[place], self.base.samples
         phi = (model.values(place) - cause.nulls) / cause.usual
         trace = phi @ cause.columns + (0.0 if cause.linear else cause.constant)
-        mean = np.bincount(samples.group, trace**2, samples.groups) / np.maximum(np.bincount(samples.group, minlength=samples.groups), 1)
-        return np.bincount(self.group_row, mean, 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
+        return np.bincount(self.group_row, self._means(trace**2), 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
 
     def excess_rows(self, model: Model) -> np.ndarray:
         """Rows that count for the gap `(2 rows,)` of bool: those with much excess when a model's causes are left out.
@@ -150,7 +153,7 @@ class Judge:
         return found if found.any() else ~episode
 
     def gap(self, square: np.ndarray, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
-        """Root mean square over some rows, each over its floor `()` or `(k,)`; squares as of `fit.Held`."""
+        """Root mean square over some rows, each over its floor `()` or `(k,)`; squares as of `held_out.Held`."""
         return np.asarray(np.sqrt(self.rows(square, blocks)[..., rows].mean(-1)))
 
     def closed(self, held: Held, rows: np.ndarray, before: Held) -> float:
@@ -158,6 +161,11 @@ class Judge:
         first, after = float(self.gap(before.bare, rows)), float(self.gap(held.square, rows))
         lowest = min(1.0, after)
         return (first - after) / (first - lowest) if first > lowest + 1e-9 else 0.0
+
+
+def rank(model: Model) -> float:
+    """Held-out likelihood and what is plausible before any log."""
+    return model.gain + plausible(model)
 
 
 def plausible(model: Model) -> float:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_json
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
 """Where nothing else is said; the value MuJoCo uses [m/s^2]."""
@@ -119,13 +120,7 @@ def read_metadata_mapping(path: Path) -> dict[str, Any]:
     Raises:
         InputError: unreadable, no JSON, or no mapping.
     """
-    where = path.name
-    try:
-        return _mapping(json.loads(path.read_text(encoding="utf-8")), where, "")
-    except OSError as error:
-        raise InputError(where, "", None, f"cannot be read ({error.strerror})") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(where, "", None, f"is not JSON ({' '.join(str(error).split())[:80]})") from None
+    return _mapping(read_json(path, path.name), path.name, "")
 
 
 def _mapping(value: Any, where: str, name: str) -> dict[str, Any]:

@@ -12,7 +12,6 @@ Parameters that are not given stay at their nulls. `source` says where the effec
 from __future__ import annotations
 
 import difflib
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -24,7 +23,7 @@ import yaml
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import read_json, read_yaml, short_name
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
@@ -145,12 +144,7 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     """
     path = Path(path)
     where = short_name(path)
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(where, "", None, f"cannot be read ({error.strerror})") from None
-    except ValueError as error:
-        raise InputError(where, "", None, f"is not JSON ({error})") from None
+    content = read_json(path)
     if not isinstance(content, dict) or content.get("schema") != 1 or not isinstance(content.get("causes"), list):
         raise InputError(where, "", None, "is not a diagnosis: expects schema 1 and a list of causes")
     verdict = content.get("verdict")

@@ -57,12 +57,12 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
     """
     subject = signals[0].subject
     usual = nuisance.usual_errors(subject, signals[0].step)
-    own = _Columns(signals, usual, thresholds, sessions_of(signals))
+    own = _columns(signals, usual, thresholds, sessions_of(signals))
     if not len(own.samples.value):
         raise InputError(signals[0].log.name, "", None, "has too few ticks of which torques and motion are known: log longer, or more signals")
     kept = np.array([reach(own.samples, row[None]) > nuisance.LEAST for row in own.errors], bool)
     if references:
-        healthy = _Columns(references, usual, thresholds, np.zeros(len(references), int))
+        healthy = _columns(references, usual, thresholds, np.zeros(len(references), int))
         kept |= np.array([reach(healthy.samples, row[None]) > nuisance.LEAST for row in healthy.errors], bool)
         errors = [one for one, k in zip(usual, kept, strict=True) if k]
         wide = np.diag(nuisance.spreads(errors, nuisance.WIDE) ** 2)
@@ -84,25 +84,18 @@ def sessions_of(signals: Sequence[Signals]) -> np.ndarray:
     return np.array([order.index(name) % MOST_SESSIONS for name in names])
 
 
+@dataclass(frozen=True, eq=False)
 class _Columns:
     """Samples of some logs with the columns of all calibration errors."""
 
-    def __init__(
-        self, signals: Sequence[Signals], usual: Sequence[nuisance.Usual], thresholds: Thresholds, sessions: np.ndarray,
-        kept: tuple[list[Sieve], list[list[np.ndarray]], np.ndarray] | None = None,
-    ) -> None:  # fmt: skip
-        self.sessions, self.thresholds = sessions, thresholds
-        if kept is None:
-            self.sieves = [filtering.sieve(s, filtering.sticking(s)) for s in signals]
-            self.floors = [floor.expected(one, thresholds) for one in self.sieves]
-            self.samples = gather(self.sieves, self.floors, sessions.tolist(), thresholds.information)
-            self.errors = np.zeros((len(usual), len(self.samples.value)))
-            for one, places in zip(self.sieves, self.samples.where, strict=True):
-                for row, columns in nuisance.columns(one, usual).items():
-                    self.errors[:, places[row]] = columns
-        else:
-            self.sieves, self.floors, self.errors = kept
-            self.samples = gather(self.sieves, self.floors, sessions.tolist(), thresholds.information)
+    sieves: list[Sieve]
+    floors: list[list[np.ndarray]]
+    """Of each log, of each of its rows `(samples,)`."""
+    samples: Samples
+    errors: np.ndarray
+    """`(errors, S)`"""
+    sessions: np.ndarray
+    thresholds: Thresholds
 
     def scaled(self, scales: dict[tuple[str, int, int], float]) -> _Columns:
         """With the floor of each row and band scaled in variance."""
@@ -116,7 +109,11 @@ class _Columns:
                 factor = np.array([scales.get((row.balance, row.column, int(b)), usual) for b in range(int(band.max(initial=-1)) + 1)])
                 changed.append(values * SPARE * np.sqrt(factor[band]) if len(band) else values)
             floors.append(changed)
-        return _Columns([], (), self.thresholds, self.sessions, (self.sieves, floors, self.errors))
+        return replace(self, floors=floors, samples=self.gathered(floors))
+
+    def gathered(self, floors: list[list[np.ndarray]], apart: np.ndarray | None = None) -> Samples:
+        """The samples anew, over other floors, or with episodes apart `(S,)`."""
+        return gather(self.sieves, floors, self.sessions.tolist(), self.thresholds.information, apart)
 
     def base(self, kept: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
         """Base without the errors that show nowhere, its episodes apart."""
@@ -124,8 +121,18 @@ class _Columns:
         apart = episodes(found)
         if not apart.any():
             return found
-        samples = gather(self.sieves, self.floors, self.sessions.tolist(), thresholds.information, apart)
-        return _base(samples, self.errors[kept], prior, thresholds)
+        return _base(self.gathered(self.floors, apart), self.errors[kept], prior, thresholds)
+
+
+def _columns(signals: Sequence[Signals], usual: Sequence[nuisance.Usual], thresholds: Thresholds, sessions: np.ndarray) -> _Columns:
+    sieves = [filtering.sieve(s, filtering.sticking(s)) for s in signals]
+    floors = [floor.expected(one, thresholds) for one in sieves]
+    samples = gather(sieves, floors, sessions.tolist(), thresholds.information)
+    errors = np.zeros((len(usual), len(samples.value)))
+    for one, places in zip(sieves, samples.where, strict=True):
+        for row, columns in nuisance.columns(one, usual).items():
+            errors[:, places[row]] = columns
+    return _Columns(sieves, floors, samples, errors, sessions, thresholds)
 
 
 def _base(samples: Samples, errors: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
@@ -156,6 +163,3 @@ def _scales(base: Base, fit: Fit) -> dict[tuple[str, int, int], float]:
         scale = (base.freedom + fit.rss[group]) / (base.freedom + number[group])
         found[row.balance, row.column, int(samples.group_band[group])] = float(np.clip(scale, LEAST_SCALE, MOST_SCALE))
     return found
-
-
-__all__ = ["Prepared", "prepare", "replace", "sessions_of"]

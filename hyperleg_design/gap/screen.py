@@ -275,6 +275,3 @@ def _cost(design: Design, weight: np.ndarray, phi: np.ndarray, before: int) -> f
     rss = float(weight @ design.rss(found, errors))
     precision = design.base.prior.precision
     return rss - paid + float(np.sum((found / design.deviation) ** 2)) + float(np.einsum("sp,pq,sq->", errors, precision, errors))
-
-
-__all__ = ["Candidate", "NotJudged", "descend", "lacking", "linearise", "places", "reach", "screen", "spread"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -29,7 +29,17 @@ SHAPED_ROWS = 4
 """Rows with the largest excess whose shape is looked at."""
 
 
-def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
+class Told(NamedTuple):
+    """A shape and what it is worth."""
+
+    shape: shape.Shape
+    gain: float
+    """Held-out log-likelihood over what it is compared with."""
+    closed: float
+    """Share of the squares left over that it closes."""
+
+
+def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
     """Shapes beside the chosen causes, in the rows with most excess left or before."""
     base = judge.base
     before = judge.rows(chosen.held.bare)
@@ -51,16 +61,16 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.S
         design = Design(base, chosen.causes, ridge=columns if companions is None else np.concatenate([columns, companions]))
         return one, design, design.fit(scale=chosen.fit.scale, rounds=1).evidence
 
-    def judged(found: tuple[shape.Shape, Design, float]) -> tuple[shape.Shape, float, float]:
+    def judged(found: tuple[shape.Shape, Design, float]) -> Told:
         one, design, _ = found
         fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
         held = predict(design, fit=fit)
-        return one, judge.gain(fit, held) - start, _beyond(judge, known, held, rows)
+        return Told(one, judge.gain(fit, held) - start, _beyond(judge, known, held, rows))
 
     first = [t for t in screen.spread(rough, shape.shapes(base.samples, looked), judge.threads) if t is not None]
     first.sort(key=lambda t: (-t[2], t[0].name, t[0].row))
     found = screen.spread(judged, first[:JUDGED_SHAPES], judge.threads)
-    return tuple(sorted(found, key=lambda t: (-t[1], t[0].name, t[0].row)))
+    return tuple(sorted(found, key=lambda t: (-t.gain, t.shape.name, t.shape.row)))
 
 
 def _companions(judge: Judge, chosen: Model) -> np.ndarray | None:
@@ -102,7 +112,7 @@ def _beyond(judge: Judge, known: Held, held: Held, rows: np.ndarray) -> float:
     return 1 - (further / max(after, 1e-12)) ** 2
 
 
-def instead(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.Shape, float, float], ...]:
+def instead(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
     """Shapes that predict more than the chosen causes do, without them: then the causes only stood for the shape.
 
     Several causes must each be worth it beside a shape, as they must beside each other.
@@ -112,9 +122,9 @@ def instead(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[tuple[shape.
     rules = judge.thresholds
     needed = rules.beyond_evident if len(chosen.causes) == 1 else -rules.second_evident * (len(chosen.causes) - 1)
     alone = beside(judge, judge.nothing, rows)
-    return tuple((one, max(gain - chosen.gain, PASSES * rules.beyond_evident), closed) for one, gain, closed in alone if gain - chosen.gain > needed)
+    return tuple(t._replace(gain=max(t.gain - chosen.gain, PASSES * rules.beyond_evident)) for t in alone if t.gain - chosen.gain > needed)
 
 
-def tells(rules: Thresholds, chosen: Model, shaped: Sequence[tuple[shape.Shape, float, float]]) -> bool:
+def tells(rules: Thresholds, chosen: Model, shaped: Sequence[Told]) -> bool:
     """Whether the best shape speaks against causes, or against none."""
-    return bool(shaped) and shaped[0][1] > rules.beyond_evident and shaped[0][2] > rules.beyond * max(len(chosen.causes), 1)
+    return bool(shaped) and shaped[0].gain > rules.beyond_evident and shaped[0].closed > rules.beyond * max(len(chosen.causes), 1)

@@ -36,7 +36,6 @@ class Thresholds:
     largest_excess: float
     alike: float
     alike_closed: float
-    angle: float
     temperature: float
     unlisted: float
     likely: float

@@ -44,3 +44,22 @@ def biped_runs():
     import robots
 
     return {"standing": robots.biped_run(), "thrown": robots.biped_run(height=4.0)}
+
+
+@pytest.fixture(scope="session")
+def viscous_ready(robot_files):
+    """What causes are fitted on, of two logs of a coupled rig with viscous friction at its knee."""
+    import diagnosed
+
+    return diagnosed.prepared(robot_files["coupled"], diagnosed.run("viscous", 0), diagnosed.run("viscous", 1))
+
+
+@pytest.fixture(scope="session")
+def knee_friction(viscous_ready):
+    """The true cause of these logs."""
+    import numpy as np
+
+    from hyperleg_design.gap.effects import EFFECTS
+    from hyperleg_design.gap.screen import linearise
+
+    return linearise(viscous_ready.base.samples, EFFECTS["viscous_friction"], "knee", np.zeros(1))

@@ -1,4 +1,3 @@
-import diagnosed
 import numpy as np
 import pytest
 
@@ -10,38 +9,28 @@ from hyperleg_design.gap.samples import BLOCKS, LOGS
 from hyperleg_design.gap.screen import linearise
 
 
-@pytest.fixture(scope="module")
-def ready(robot_files):
-    return diagnosed.prepared(robot_files["coupled"], diagnosed.run("viscous", 0), diagnosed.run("viscous", 1))
-
-
-@pytest.fixture(scope="module")
-def cause(ready):
-    return linearise(ready.base.samples, EFFECTS["viscous_friction"], "knee", np.zeros(1))
-
-
 @pytest.mark.parametrize("way", [BLOCKS, LOGS])
-def test_data_that_were_held_out_are_better_predicted_with_the_true_cause(ready, cause, way):
-    nothing = predict(Design(ready.base), way)
-    held = predict(Design(ready.base, [cause]), way)
+def test_data_that_were_held_out_are_better_predicted_with_the_true_cause(viscous_ready, knee_friction, way):
+    nothing = predict(Design(viscous_ready.base), way)
+    held = predict(Design(viscous_ready.base, [knee_friction]), way)
     assert held.total > nothing.total + 20
     assert held.square.sum() < 0.3 * nothing.square.sum()
-    assert held.bare.shape == held.square.shape == (ready.base.blocks, ready.base.samples.groups)
+    assert held.bare.shape == held.square.shape == (viscous_ready.base.blocks, viscous_ready.base.samples.groups)
 
 
-def test_without_causes_nothing_is_left_out(ready):
-    held = predict(Design(ready.base))
+def test_without_causes_nothing_is_left_out(viscous_ready):
+    held = predict(Design(viscous_ready.base))
     assert np.array_equal(held.bare, held.square)
     assert held.total == pytest.approx(held.likelihood.sum())
 
 
-def test_a_pointless_cause_gains_nothing(ready):
-    other = linearise(ready.base.samples, EFFECTS["joint_spring"], "hip", np.zeros(2))
-    assert predict(Design(ready.base, [other])).total < predict(Design(ready.base)).total + 8
+def test_a_pointless_cause_gains_nothing(viscous_ready):
+    other = linearise(viscous_ready.base.samples, EFFECTS["joint_spring"], "hip", np.zeros(2))
+    assert predict(Design(viscous_ready.base, [other])).total < predict(Design(viscous_ready.base)).total + 8
 
 
-def test_a_fold_and_all_but_it_are_everything(ready):
-    base = ready.base
+def test_a_fold_and_all_but_it_are_everything(viscous_ready):
+    base = viscous_ready.base
     whole = number_of(base, BLOCKS, None, True)
     assert np.allclose(number_of(base, BLOCKS, 2, True) + number_of(base, BLOCKS, 2, False), whole)
     assert whole.sum() == pytest.approx(base.samples.share.sum())
