@@ -28,8 +28,8 @@ PROBED = 4
 """Sizes tried at once."""
 ATTEMPTS = 4
 """Places tried until one shows the effect as strongly as planned."""
-WILD = 4.0
-"""Position from which a rig has gone wild [rad]."""
+WILD, WILD_SPEED = 4.0, 40.0
+"""Position [rad] and speed [rad/s] from which a rig has gone wild."""
 CALMED, SMALLER = 6, 0.6
 """Attempts to record a rig that stays whole, each with effects so much smaller."""
 FEWEST_MULTIPLES = 0.8
@@ -107,8 +107,9 @@ def _recorded(rig: _Rig, wrongs: list[Wrong], rng: np.random.Generator) -> tuple
 
 
 def calm(trace: Trace) -> bool:
-    """Whether a rig held together: nothing turns further than joints can."""
-    return bool(np.isfinite(trace.position).all() and np.abs(trace.position).max() < WILD)
+    """Whether a rig held together: nothing turns further or faster than joints can."""
+    found = ((trace.position, WILD), (trace.velocity, WILD_SPEED))
+    return all(bool(np.isfinite(values).all() and np.abs(values).max() < most) for values, most in found)
 
 
 @dataclass(eq=False)

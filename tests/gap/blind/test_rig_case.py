@@ -1,10 +1,12 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from hyperleg_design.gap.blind.chain import ROBOTS, chain
 from hyperleg_design.gap.blind.nuisance import of_day, of_robot, perfect
 from hyperleg_design.gap.blind.rig_build import Reach, build_rig
-from hyperleg_design.gap.blind.rig_case import draw, size_at
+from hyperleg_design.gap.blind.rig_case import calm, draw, size_at
 from hyperleg_design.gap.blind.truth import parameters, places
 from hyperleg_design.gap.blind.wrong import SIZES, Wrong
 
@@ -23,6 +25,15 @@ def test_size_below_and_above_the_tried_ones():
 def test_wild_rigs_are_not_taken():
     assert size_at(np.array([0.1, 1.0, 10.0]), np.array([0.5, 1.0, np.inf]), 3.0, 0.1) == (1.0, 1.0)
     assert size_at(np.array([0.1, 1.0]), np.array([np.inf, np.inf]), 3.0, 0.1)[1] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("signal", "value", "whole"), [("position", 3.0, True), ("position", -5.0, False), ("velocity", -200.0, False), ("velocity", np.nan, False)]
+)
+def test_a_rig_that_turns_too_far_or_too_fast_has_gone_to_pieces(signal, value, whole):
+    trace = SimpleNamespace(position=np.zeros((5, 2)), velocity=np.zeros((5, 2)))
+    getattr(trace, signal)[3, 1] = value
+    assert calm(trace) is whole
 
 
 @pytest.mark.parametrize("name", ROBOTS)
