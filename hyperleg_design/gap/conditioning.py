@@ -14,6 +14,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import contact, rigid
 from hyperleg_design.gap.base_motion import base_motion
+from hyperleg_design.gap.chatter import chatter
 from hyperleg_design.gap.control import control_residual
 from hyperleg_design.gap.ground import balance as ground_balance
 from hyperleg_design.gap.plausibility import frozen
@@ -78,7 +79,9 @@ def condition(log: Log, subject: Subject) -> Signals:
     own = None if base is None else rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
     ground = contact.contacts(log, subject, ticks, motion.value, base, None if own is None else own[:, :3])
     needed = rigid.inverse_dynamics(subject, motion.value, motion.first, motion.second, base)
-    needed = needed + rigid.friction_torque(subject, motion.value, motion.first)
+    speed = resampled(log.time, log.stack("velocity", subject.joints), ticks)
+    shaken = chatter(resampled(log.time, position, ticks), speed, motion, step)
+    needed = needed + rigid.friction_torque(subject, motion.value, motion.first, None if shaken is None else shaken.speed)
     residual: dict[str, np.ndarray] = {}
     if ground.pad_force is not None:
         pushed, wrench = rigid.contact_torque(subject, motion.value, None if base is None else base.rotation, np.nan_to_num(ground.pad_force))
@@ -100,7 +103,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         target=target, command=command, measured=measured, believed=believed, rigid=needed,
         temperature=resampled_or_none(log.time, of_motors(log, "motor_temperature", subject), ticks),
         voltage=_voltage(log, ticks), contact=ground.foot_force, valid=valid, residual=residual, pad_force=ground.pad_force,
-        touching=ground.touching, bandwidth=motion.crossover / (2 * np.pi), noise=motion.level, notes=tuple(notes),
+        touching=ground.touching, bandwidth=motion.crossover / (2 * np.pi), noise=motion.level, chatter=shaken, notes=tuple(notes),
     )  # fmt: skip
     ground_residual = ground_balance(signals)
     if ground_residual is not None:

@@ -19,6 +19,7 @@ from hyperleg_design.gap.fit import Cause, Design, Fit
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.samples import Samples
     from hyperleg_design.gap.thresholds import Thresholds
 
 FINALISTS = 10
@@ -30,6 +31,8 @@ OWN_WORTH = 0.5
 """Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
 AT_LIMITS = ("torque_saturation", "voltage_sag")
 """Effects beside another that are not judged by episodes: healthy drives reach limits too, which models often do not know."""
+CHATTERING = 0.5
+"""Share of the evidence that what can make loops unstable needs where one chatters."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
 """Gap over floor up to which a shape must be so many times more evident to be told, as no cause was named."""
 
@@ -50,6 +53,8 @@ class Decision:
     """Best first."""
     together: float
     """Share of the time in which most drives at once do not do what they were told, beside the causes."""
+    chatter: tuple[str, ...]
+    """Joints that chatter though none of the causes can make them."""
     not_judged: tuple[screen.NotJudged, ...]
 
 
@@ -83,8 +88,9 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
             rows = judge.excess_rows(chosen)
     shaped = shaping.instead(judge, chosen, rows) or shaping.beside(judge, chosen, rows)
     lost = together(base.samples, chosen.held.left)
-    verdict = "unknown" if lost > thresholds.together else _verdict(judge, chosen, rows, shaped)
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, tuple(not_judged))
+    shaken = () if any(c.unsettling for c in chosen.causes) else unsettled(base.samples)
+    verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, tuple(not_judged))
 
 
 def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence[Cause]) -> tuple[list[Model], list[screen.NotJudged]]:
@@ -102,6 +108,13 @@ def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence
     return models, [c for c in found if isinstance(c, screen.NotJudged)]
 
 
+def unsettled(samples: Samples) -> tuple[str, ...]:
+    """Joints that chatter in any log, and did not in reference logs."""
+    shaken = [s.signals.chatter.joints for s in samples.sieves if s.signals.chatter is not None]
+    joints = samples.sieves[0].signals.subject.joints
+    return tuple(joint for joint, any_log in zip(joints, np.any(shaken, 0), strict=True) if any_log) if shaken else ()
+
+
 def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequence[Cause]) -> float:
     return Design(base, [*beside, candidate.cause]).fit(scale=start.scale, rounds=ROUNDS).evidence
 
@@ -109,7 +122,7 @@ def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequen
 def _named(judge: Judge, model: Model) -> bool:
     """Whether the first cause is worth its name: by all rows with excess or, where it is beyond doubt, by those where it shows."""
     rules = judge.thresholds
-    if model.gain < rules.evident or not _visible(judge, model):
+    if model.gain < rules.evident * (CHATTERING if model.causes[-1].unsettling else 1.0) or not _visible(judge, model):
         return False
     rows = judge.excess_rows(model)
     if float(judge.gap(model.held.bare, rows)) < rules.least_gap:

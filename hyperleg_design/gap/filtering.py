@@ -224,9 +224,9 @@ def sticking(signals: Signals) -> np.ndarray:
     """Ticks at which a joint may stick, so that its friction is whatever the other torques ask for `(t, n)` of bool."""
     from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-    from hyperleg_design.gap.effects.friction import presliding
+    from hyperleg_design.gap.effects.friction import presliding, shaken
 
     span = max(round(STILL / signals.step), 2)
     moved = maximum_filter1d(signals.position, span, axis=0) - minimum_filter1d(signals.position, span, axis=0)
-    still = moved < 2 * presliding(signals)
+    still = (moved < 2 * presliding(signals)) & ~shaken(signals)
     return np.asarray(maximum_filter1d(still.astype(np.uint8), 2 * round(AROUND / signals.step) + 1, axis=0) > 0)

@@ -54,6 +54,8 @@ class Cause:
     """How it scales the torque that the balance trusts."""
     unseen: bool = False
     """Whether no log has the signal that drives it, a voltage or a temperature, so that it is modelled."""
+    unsettling: bool = False
+    """Whether it can make control loops unstable, and a joint that it acts on chatters."""
 
     @property
     def name(self) -> tuple[str, str]:

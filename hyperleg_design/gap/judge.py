@@ -30,6 +30,8 @@ UNSEEN = {"voltage_sag": 6.0, "thermal_derating": 1.0}
 """Log prior odds against what follows a signal that nobody logged: a model of it fits much."""
 NEGATIVE = 8.0
 """Log prior odds against a load that weighs less than nothing, beyond what is declared."""
+CHATTERS = 12.0
+"""Log odds for what can make control loops unstable, where one chatters that was damped (assumed: healthy loops are)."""
 OWN_ROWS = 0.3
 """Rows are a cause's own where its trace has this share of its largest square over the floor."""
 EXPLAINED = 0.5
@@ -172,6 +174,8 @@ def plausible(model: Model) -> float:
     """Log prior of the last cause of a model, over that of any other."""
     cause = model.causes[-1]
     found = -PER_PARAMETER * len(cause.nulls) + RARE.get(cause.effect, 0.0)
+    if cause.unsettling:
+        found += CHATTERS
     if cause.unseen:
         found -= UNSEEN[cause.effect]
     if cause.effect == "link_mass":

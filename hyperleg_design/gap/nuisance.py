@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
@@ -158,7 +159,8 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
     subject, rows = signals.subject, np.zeros_like(signals.position)
     j = subject.joints.index(joint)
     at_once = sliding(signals)[:, j]
-    turned = np.tanh(signals.velocity[:, j] / subject.friction_speed[j])
+    swing = None if signals.chatter is None else signals.chatter.speed[:, j]
+    turned = rigid.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
     shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
     rows[:, j] = subject.coulomb[j] * shape
     return {"motion": rows}

@@ -15,6 +15,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import filtering, floor, nuisance
 from hyperleg_design.gap.base import Base, Prior
+from hyperleg_design.gap.chatter import newly
 from hyperleg_design.gap.episodes import episodes
 from hyperleg_design.gap.fit import Design, Fit
 from hyperleg_design.gap.samples import Samples, gather
@@ -55,6 +56,7 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
     Raises:
         InputError: no log shows a balance.
     """
+    signals = newly(signals, references)
     subject = signals[0].subject
     usual = nuisance.usual_errors(subject, signals[0].step)
     own = _columns(signals, usual, thresholds, sessions_of(signals))

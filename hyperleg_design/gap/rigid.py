@@ -16,6 +16,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap.chatter import sliding_share
 from hyperleg_design.gap.mechanism import BASE
 
 if TYPE_CHECKING:
@@ -358,7 +359,15 @@ def pad_points(subject: Subject, position: np.ndarray, rotation: np.ndarray) -> 
     return centre - np.array([p.radius for p in subject.pads])[:, None] * rotation[:, None, 2, :]
 
 
-def friction_torque(subject: Subject, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Nominal friction and springs that a drive has to overcome `(..., n)` [Nm]."""
-    dry = subject.coulomb * np.tanh(velocity / subject.friction_speed)
+def friction_torque(subject: Subject, position: np.ndarray, velocity: np.ndarray, swing: np.ndarray | None = None) -> np.ndarray:
+    """Nominal friction and springs that a drive has to overcome `(..., n)` [Nm]; `swing` of `chatter.Chatter.speed`."""
+    dry = subject.coulomb * turned(velocity, subject.friction_speed, swing)
     return np.asarray(dry + subject.viscous * velocity + subject.spring * (position - subject.spring_rest))
+
+
+def turned(velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray | None = None) -> np.ndarray:
+    """Share of the nominal Coulomb friction at some velocities, from -1 to 1, chatter averaged."""
+    share = np.tanh(velocity / width)
+    if swing is not None and swing.any():
+        share = np.where(swing > 0, sliding_share(velocity, width, swing), share)
+    return np.asarray(share)

@@ -32,6 +32,8 @@ MOST_DESCENTS, DESCENTS = 16, 2
 PROMISING = 0.1
 """Gain of an effect by its starts' traces, over the best gain of any, from which it is fitted exactly."""
 
+UNSETTLING = ("command_delay", "actuator_bandwidth", "controller_gain", "transmission_elasticity", "backlash")
+"""Effects that can bring a control loop to the edge of its stability."""
 DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
 """Signals of `Signals` that drive an effect."""
 
@@ -106,7 +108,24 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     scaled = factor(samples, effect.identifier, location, usual)
     driver = DRIVERS.get(effect.identifier)
     unseen = driver is not None and all(getattr(s.signals, driver) is None for s in samples.sieves)
-    return Cause(effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen)
+    shakes = _unsettling(samples, effect, location)
+    return Cause(
+        effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen, shakes
+    )
+
+
+def _unsettling(samples: Samples, effect: Effect, location: str) -> bool:
+    """Whether a joint chatters that an effect could have made unstable, in any log."""
+    chatters = [s.signals.chatter.joints for s in samples.sieves if s.signals.chatter is not None]
+    if effect.identifier not in UNSETTLING or not chatters:
+        return False
+    subject = samples.sieves[0].signals.subject
+    acts = np.ones(len(subject.joints), bool)
+    if location in subject.motors and effect.kind == "motor":
+        acts = subject.joint_from_motor[:, subject.motors.index(location)] != 0
+    elif location in subject.joints:
+        acts = np.array([joint == location for joint in subject.joints])
+    return bool((np.any(chatters, 0) & acts).any())
 
 
 def _same_place(subject: Subject, one: str, other: str) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.chatter import Chatter
     from hyperleg_design.gap.log import Log
     from hyperleg_design.gap.subject import Subject
 
@@ -83,5 +84,7 @@ class Signals:
     """Frequency above which smoothing takes motion for noise `(n,)` [Hz]; NaN for joints that this log lacks."""
     noise: np.ndarray | None = None
     """Standard deviation of the noise of a position sample, as the log itself tells `(n,)` [rad]."""
+    chatter: Chatter | None = None
+    """Of joints that swing to and fro above all that was commanded; None where none does."""
     notes: tuple[str, ...] = ()
     """What this log lacked and what was assumed in its place."""

@@ -30,6 +30,7 @@ class Backlash(Effect):
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("angle", "rad", 0.0, 0.0, 0.1, 0.006, "0.1-1 deg at the joint (engineering estimate)"),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "0: positions are the joints' own, 1: the rotors'", shape=True),
+        Parameter("coasting", "", 1.0, 0.0, 1.0, 1.0, "1: crosses by itself, 0: carried over by the load, as rotors that rub", shape=True),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -39,8 +40,8 @@ class Backlash(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
-        angle, side = np.atleast_2d(np.asarray(values, float)).T
-        return belt.trace(signals, motor, belt.slack(signals, motor, angle * _ratio(signals.subject, motor), side), side)
+        angle, side, coasting = np.atleast_2d(np.asarray(values, float)).T
+        return belt.trace(signals, motor, belt.slack(signals, motor, angle * _ratio(signals.subject, motor), side, coasting), side)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`; its ends are as hard as simulations resolve, and damped to bounce as in the trace."""
@@ -51,8 +52,10 @@ class Backlash(Effect):
         return Belt(location, play=values[..., 0] * _ratio(subject, motor), damping=float(damping), side=values[..., 1])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A small and a large angle, with encoders on either side."""
-        return np.array([[angle, side] for side in (0.0, 1.0) for angle in (0.003, 0.015)])
+        """Small and large angles, with encoders on either side, or carried over; where ends are met depends on the angle."""
+        rotors = [[angle, 0.0, 1.0] for angle in (0.003, 0.01, 0.03)]
+        joints = [[angle, 1.0, 1.0] for angle in (0.003, 0.005, 0.008, 0.013, 0.02, 0.032, 0.05)]
+        return np.array([*rotors, *joints, [0.01, 0.0, 0.0], [0.04, 0.0, 0.0]])
 
 
 def _ratio(subject: Subject, motor: int) -> float:

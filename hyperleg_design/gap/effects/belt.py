@@ -10,7 +10,9 @@ filtered by the belt's damping. In a dead zone of width w nothing is transmitted
     side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque
     side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need
 
-until it meets +-w/2, where it bounces a little (`RESTITUTION`) and stays while pushed. Both are limited to the band that a log resolves.
+until it meets +-w/2, where it bounces a little (`RESTITUTION`) and stays while pushed. Both are limited to the band that a log
+resolves. A rotor that rubs, or whose torque is not known well, does not coast like that: then it lies at the end that the load
+pushes it to, and crosses over as the load turns round, s = w / 2 tanh(u / (c rms u)); `coasting` mixes the two.
 """
 
 from __future__ import annotations
@@ -34,6 +36,8 @@ BAND = 0.2
 """Of the transmitted torque that stretches a belt, over the log's rate: 40 Hz at 200 Hz."""
 RESTITUTION = 0.3
 """Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords under load hardly bounce."""
+CROSSING, CROSSING_BAND = 0.8, 0.15
+"""c, the load below which a rotor that does not coast is on its way across; band of its crossing, over the log's rate (assumed)."""
 
 _LOADS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 
@@ -67,7 +71,7 @@ def stretch(signals: Signals, motor: int, compliance: np.ndarray, damping_ratio:
     return np.asarray(compliance[:, None] * lagged(load(signals, motor), late, signals.step))
 
 
-def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray) -> np.ndarray:
+def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coasting: np.ndarray) -> np.ndarray:
     """Where a rotor is in its dead zone, from -play / 2 to play / 2, on its side of M `(k, t)` [rad].
 
     Args:
@@ -75,6 +79,7 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray) -> n
         motor: place of the motor.
         play: whole width `(k,)` [rad].
         side: on which the positions were logged `(k,)`.
+        coasting: from 0, carried over by the load, to 1, moving by itself `(k,)`; a joint, on side 1, always does.
     """
     found = np.zeros((len(play), len(signals.time)))
     kicks: dict[bool, list[float]] = {}
@@ -82,11 +87,22 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray) -> n
         if width <= 0:
             continue
         at_rotor = bool(side[row] >= 0.5)
-        if at_rotor not in kicks:
-            push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
-            kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
-        found[row] = _bounced(kicks[at_rotor], signals.step, float(width) / 2)
+        free = 1.0 if at_rotor else float(coasting[row])
+        if free > 0:
+            if at_rotor not in kicks:
+                push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
+                kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
+            found[row] = free * np.array(_bounced(kicks[at_rotor], signals.step, float(width) / 2))
+        if free < 1:
+            found[row] += (1 - free) * float(width) / 2 * _pushed(signals, motor)
     return found
+
+
+def _pushed(signals: Signals, motor: int) -> np.ndarray:
+    """To which end of its dead zone the load pushes a rotor, from -1 to 1 `(t,)`."""
+    through = load(signals, motor)
+    usual = float(np.sqrt(np.nanmean(through**2)))
+    return band_limited(np.tanh(through / max(CROSSING * usual, 1e-12)), signals.step, CROSSING_BAND / signals.step)
 
 
 def _bounced(kicks: list[float], step: float, half: float) -> list[float]:

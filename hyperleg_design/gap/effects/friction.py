@@ -19,13 +19,12 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap.chatter import PRESLIDING, sliding_share
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
 
-PRESLIDING = 3e-4
-"""z: half the way over which friction turns over [rad]; assumed: bristles of gears bend by 0.1-1 mrad before they slide."""
 NOISES = 8.0
 """Least z over the noise of the smoothed position."""
 WIDTH = 0.01
@@ -52,6 +51,9 @@ def sliding(signals: Signals) -> np.ndarray:
             np.minimum(state, 1.0, out=state)
             np.maximum(state, -1.0, out=state)
         np.clip(2 * out, -1.0, 1.0, out=out)
+        if signals.chatter is not None:
+            swings = shaken(signals)
+            out[swings] = sliding_share(signals.velocity[swings], WIDTH, signals.chatter.speed[swings])
         out.setflags(write=False)
         _SLIDING[signals] = out
     return _SLIDING[signals]
@@ -63,7 +65,8 @@ def presliding(signals: Signals) -> np.ndarray:
     if signals.noise is None or signals.bandwidth is None:
         return np.full(count, PRESLIDING)
     passed = np.sqrt(np.clip(2 * np.nan_to_num(signals.bandwidth) * signals.step, 0.0, 1.0))
-    return np.maximum(PRESLIDING, NOISES * np.nan_to_num(signals.noise) * passed)
+    plain = 1.0 if signals.chatter is None else np.sqrt(1 - signals.chatter.share)
+    return np.asarray(np.maximum(PRESLIDING, NOISES * np.nan_to_num(signals.noise) * plain * passed))
 
 
 def resting(signals: Signals) -> np.ndarray:
@@ -72,7 +75,12 @@ def resting(signals: Signals) -> np.ndarray:
 
     span = max(round(REST / signals.step), 1)
     moved = maximum_filter1d(signals.position, span, axis=0) - minimum_filter1d(signals.position, span, axis=0)
-    return np.asarray(moved < 2 * presliding(signals))
+    return np.asarray(moved < 2 * presliding(signals)) & ~shaken(signals)
+
+
+def shaken(signals: Signals) -> np.ndarray:
+    """Where chatter keeps a joint from sticking `(t, n)` of bool."""
+    return np.zeros(signals.position.shape, bool) if signals.chatter is None else np.asarray(signals.chatter.speed > 0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,7 @@ def test_stretch_is_compliance_times_load_and_play_is_bounded(pendulum):
     compliance = np.array([0.0, 0.01, 0.02])
     found = belt.stretch(signals, 0, compliance, np.zeros(3))
     np.testing.assert_allclose(found, compliance[:, None] * belt.load(signals, 0))
-    slack = belt.slack(signals, 0, np.array([0.0, 0.02]), np.zeros(2))
+    slack = belt.slack(signals, 0, np.array([0.0, 0.02]), np.zeros(2), np.ones(2))
     assert np.abs(slack[0]).max() == 0
     assert np.abs(slack[1]).max() == 0.01
     assert np.mean(np.abs(slack[1]) > 0.0099) > 0.5
@@ -31,3 +31,14 @@ def test_side_one_is_another_posture(pendulum):
     expected = MASS * 9.81 * LENGTH * (np.sin(signals.position[:, 0] - 0.02) - np.sin(signals.position[:, 0]))
     np.testing.assert_allclose(found, expected, atol=1e-6)
     assert np.abs(belt.trace(signals, 0, moved, np.zeros(1))["motion"]).max() < 1e-9
+
+
+def test_a_rotor_that_does_not_coast_lies_where_the_load_pushes_it(pendulum):
+    signals = pendulum(Wrong())
+    pushed, half = (belt.slack(signals, 0, np.full(1, 0.02), np.zeros(1), np.full(1, c))[0] for c in (0.0, 0.5))
+    load = belt.load(signals, 0)
+    heavy = np.abs(load) > 1.5 * np.sqrt(np.mean(load**2))
+    assert heavy.any()
+    np.testing.assert_allclose(pushed[heavy], 0.01 * np.sign(load[heavy]), atol=0.002)
+    coasts = belt.slack(signals, 0, np.full(1, 0.02), np.zeros(1), np.ones(1))[0]
+    np.testing.assert_allclose(half, (pushed + coasts) / 2, atol=1e-12)

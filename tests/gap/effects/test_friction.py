@@ -17,7 +17,14 @@ class Shown:
 
 def shown(position, noise=0.0, bandwidth=100.0):
     position = np.asarray(position, float)[:, None]
-    return Shown(position=position, step=0.005, noise=np.array([noise]), bandwidth=np.array([bandwidth]), subject=SimpleNamespace(joints=("swing",)))
+    return Shown(
+        position=position,
+        chatter=None,
+        step=0.005,
+        noise=np.array([noise]),
+        bandwidth=np.array([bandwidth]),
+        subject=SimpleNamespace(joints=("swing",)),
+    )
 
 
 def test_sliding_is_the_sign_of_the_velocity_once_a_joint_has_moved():
