@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.samples import Samples
     from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.smoothing import Smooth
 
@@ -94,6 +95,13 @@ def newly(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Sig
         return list(signals)
     known = np.any(before, 0)
     return [s if s.chatter is None else replace(s, chatter=replace(s.chatter, joints=s.chatter.joints & ~known)) for s in signals]
+
+
+def unsettled(samples: Samples) -> tuple[str, ...]:
+    """Joints that chatter in any log, and did not in reference logs."""
+    shaken = [s.signals.chatter.joints for s in samples.sieves if s.signals.chatter is not None]
+    joints = samples.sieves[0].signals.subject.joints
+    return tuple(joint for joint, any_log in zip(joints, np.any(shaken, 0), strict=True) if any_log) if shaken else ()
 
 
 def _filled(values: np.ndarray) -> np.ndarray | None:

@@ -14,12 +14,12 @@ import numpy as np
 
 from hyperleg_design.gap import screen, shaping
 from hyperleg_design.gap.base import Base
+from hyperleg_design.gap.chatter import unsettled
 from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Cause, Design, Fit
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.samples import Samples
     from hyperleg_design.gap.thresholds import Thresholds
 
 FINALISTS = 10
@@ -31,6 +31,8 @@ OWN_WORTH = 0.5
 """Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
 AT_LIMITS = ("torque_saturation", "voltage_sag")
 """Effects beside another that are not judged by episodes: healthy drives reach limits too, which models often do not know."""
+RUBBING = ("coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction")
+"""Effects that a joint that chatters does not show as they are."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
@@ -69,6 +71,11 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     """
     judge = Judge(base, thresholds, threads)
     nothing = judge.nothing
+    swinging = unsettled(base.samples)
+    averaged = [
+        screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in wanted if name[0] in RUBBING and name[1] in swinging
+    ]
+    wanted = [name for name in wanted if name[0] not in RUBBING or name[1] not in swinging]
     singles, not_judged = _finalists(judge, wanted, ())
     rows = judge.excess_rows(singles[0] if singles else nothing)
     chosen = nothing
@@ -88,9 +95,9 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
             rows = judge.excess_rows(chosen)
     shaped = shaping.instead(judge, chosen, rows) or shaping.beside(judge, chosen, rows)
     lost = together(base.samples, chosen.held.left)
-    shaken = () if any(c.unsettling for c in chosen.causes) else unsettled(base.samples)
+    shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, tuple(not_judged))
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *averaged))
 
 
 def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence[Cause]) -> tuple[list[Model], list[screen.NotJudged]]:
@@ -106,13 +113,6 @@ def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence
     models = screen.spread(lambda pair: judge.model([*beside, pair[1].cause]), refined[:FINALISTS], judge.threads)
     models.sort(key=lambda m: (-rank(m), m.names))
     return models, [c for c in found if isinstance(c, screen.NotJudged)]
-
-
-def unsettled(samples: Samples) -> tuple[str, ...]:
-    """Joints that chatter in any log, and did not in reference logs."""
-    shaken = [s.signals.chatter.joints for s in samples.sieves if s.signals.chatter is not None]
-    joints = samples.sieves[0].signals.subject.joints
-    return tuple(joint for joint, any_log in zip(joints, np.any(shaken, 0), strict=True) if any_log) if shaken else ()
 
 
 def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequence[Cause]) -> float:

@@ -56,11 +56,13 @@ DAY = {
     "encoder_offset": 0.35, "link_mass": 0.1, "link_com": 0.1, "rotor_inertia": 0.1, "joint_spring": 0.6, "command_delay": 0.3,
     "actuator_bandwidth": 0.3, "controller_gain": 0.3, "imu_bias": 1.0, "ground_friction": 0.7, "ground_compliance": 0.3,
 }  # fmt: skip
-TURNOVER = "friction_turnover"
+TURNOVER, SWUNG = "friction_turnover", "friction_in_chatter"
 """Friction of models turns over with speed, as tanh(v / v_s); that of robots at once, or over a way on which bristles bend. By how
 much of these differences, nobody knows: no effect of the catalogue, and no calibration error that is small."""
 WAYS = (0.0015, 0.006)
 """On which it turns over, half of each [rad]; assumed, beside that of `effects.friction`."""
+SWINGS, OF_SWING = (0.5, 2.0), 0.7
+"""Other amplitudes of chatter over those that a log shows at its rate; share of the difference in friction (assumed)."""
 AT_ONCE, OF_WAY = 0.5, 0.3
 """Share of the model's friction that turns over at once, and on each of these ways."""
 ABOVE_CALIBRATED = 0.05
@@ -82,7 +84,7 @@ class Usual:
     @property
     def name(self) -> str:
         """For people."""
-        parameter = "share" if self.effect == TURNOVER else EFFECTS[self.effect].parameters[self.parameter].name
+        parameter = "share" if self.effect in (TURNOVER, SWUNG) else EFFECTS[self.effect].parameters[self.parameter].name
         return f"{self.effect} at {self.location}: {parameter}"
 
 
@@ -93,6 +95,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
     for j, joint in enumerate(subject.joints):
         if subject.coulomb[j] > 0:
             found += [Usual(TURNOVER, joint, i, OF_WAY if i else AT_ONCE) for i in range(1 + len(WAYS))]
+            found += [Usual(SWUNG, joint, i, OF_SWING) for i in range(len(SWINGS))]
         coulomb = COULOMB * subject.coulomb[j] + COULOMB_LEAST * strength[j]
         found += [
             Usual("coulomb_friction", joint, 0, coulomb),
@@ -126,7 +129,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
         for foot in subject.feet:
             found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, BEARING)]
             found.append(Usual("ground_compliance", foot, 1, BEARING))
-    places = {TURNOVER: set(subject.joints)} | {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
+    places = {TURNOVER: set(subject.joints), SWUNG: set(subject.joints)} | {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 
 
@@ -140,8 +143,9 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
     modelled = replace(signals, believed=np.where(np.isfinite(needed), needed, signals.believed))
     found = []
     for one in errors:
-        if one.effect == TURNOVER:
-            found.append({b: v * one.spread for b, v in _turnover(signals, one.location, one.parameter).items()})
+        if one.effect in (TURNOVER, SWUNG):
+            trace = (_turnover if one.effect == TURNOVER else _swung)(signals, one.location, one.parameter)
+            found.append({b: v * one.spread for b, v in trace.items()})
             continue
         effect = EFFECTS[one.effect]
         values = effect.nulls
@@ -163,6 +167,18 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
     turned = rigid.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
     shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
     rows[:, j] = subject.coulomb[j] * shape
+    return {"motion": rows}
+
+
+def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
+    """Friction of the model of a joint that chatters by another amplitude, less that by the one that the log shows."""
+    subject = signals.subject
+    j = subject.joints.index(joint)
+    if signals.chatter is None or not signals.chatter.speed[:, j].any():
+        return {}
+    rows, speed, width = np.zeros_like(signals.position), signals.velocity[:, j], subject.friction_speed[j]
+    swing = signals.chatter.speed[:, j]
+    rows[:, j] = subject.coulomb[j] * (rigid.turned(speed, width, SWINGS[place] * swing) - rigid.turned(speed, width, swing))
     return {"motion": rows}
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from hyperleg_design.gap import nuisance, screen, shape
+from hyperleg_design.gap.chatter import unsettled
 from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.fit import Design
 from hyperleg_design.gap.held_out import Held, predict
@@ -43,7 +44,9 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
     """Shapes beside the chosen causes, in the rows with most excess left or before."""
     base = judge.base
     before = judge.rows(chosen.held.bare)
+    shaken = unsettled(base.samples)  # friction that is averaged over a swing of doubtful size has shapes of its own
     order = np.argsort(-before, kind="stable")
+    order = order[[base.samples.rows[row % len(base.samples.rows)].name not in shaken for row in order]]
     looked = np.array(list(dict.fromkeys((order[rows[order]] % len(base.samples.rows)).tolist()))[:SHAPED_ROWS], int)
 
     companions = _companions(judge, chosen)
