@@ -32,7 +32,7 @@ ABOVE = 1.3
 """Lowest frequency of a line over that of the smoother."""
 WINDOW = 0.2
 """Time over which the chatter's size is averaged [s]."""
-PHASES = 16
+PHASES = 48
 """Of a swing over which friction is averaged."""
 UNSETTLED = 0.2
 """Share of a log in which a joint must chatter to count as unsettled."""

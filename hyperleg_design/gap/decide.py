@@ -93,7 +93,7 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
             if len(chosen.causes) == 2:
                 chosen, slots = _swapped(judge, wanted, chosen, slots)
             rows = judge.excess_rows(chosen)
-    shaped = shaping.instead(judge, chosen, rows) or shaping.beside(judge, chosen, rows)
+    shaped = shaping.instead(judge, chosen, rows, max((m.gain for m in singles), default=0.0)) or shaping.beside(judge, chosen, rows)
     lost = together(base.samples, chosen.held.left)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
@@ -133,11 +133,19 @@ def _named(judge: Judge, model: Model) -> bool:
 
 
 def _further(judge: Judge, model: Model, before: Model) -> bool:
-    """Whether one more cause is worth its name beside those before it: in the rows where it shows, over what they leave."""
-    rules = judge.thresholds
-    if model.gain - before.gain < rules.second_evident * len(before.causes) or not _visible(judge, model):
+    """Whether one more cause is worth its name beside those before it: in the rows where it shows, over what they leave.
+
+    Or instead of calibration errors that are much larger than usual.
+    """
+    rules, already = judge.thresholds, len(before.causes)
+    gain = model.gain - before.gain
+    if not _visible(judge, model):
         return False
-    return _closes_own(judge, model, before, rules.second_worth)
+    if gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth):
+        return True
+    # Large calibration errors may hide what it leaves; then it must show clearly, away from episodes, and be likelier than they are.
+    calm = judge.shown(model, already)[: len(judge.base.samples.rows)]
+    return gain >= rules.second_instead * already and model.causes[-1].effect not in AT_LIMITS and float(np.sqrt(calm.max())) >= rules.second_visible
 
 
 def _visible(judge: Judge, model: Model) -> bool:

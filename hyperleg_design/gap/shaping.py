@@ -115,17 +115,23 @@ def _beyond(judge: Judge, known: Held, held: Held, rows: np.ndarray) -> float:
     return 1 - (further / max(after, 1e-12)) ** 2
 
 
-def instead(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
+def instead(judge: Judge, chosen: Model, rows: np.ndarray, single: float) -> tuple[Told, ...]:
     """Shapes that predict more than the chosen causes do, without them: then the causes only stood for the shape.
 
-    Several causes must each be worth it beside a shape, as they must beside each other.
+    Several causes must each be worth it beside a shape, as they must beside each other; a shape must be worth more than one cause.
+
+    Args:
+        judge: of the models.
+        chosen: causes.
+        rows: that count for the gap.
+        single: gain of the best cause alone.
     """
     if not chosen.causes:
         return ()
     rules = judge.thresholds
-    needed = rules.beyond_evident if len(chosen.causes) == 1 else -rules.second_evident * (len(chosen.causes) - 1)
+    needed = max(chosen.gain - rules.second_evident * (len(chosen.causes) - 1), single + rules.beyond_evident)
     alone = beside(judge, judge.nothing, rows)
-    return tuple(t._replace(gain=max(t.gain - chosen.gain, PASSES * rules.beyond_evident)) for t in alone if t.gain - chosen.gain > needed)
+    return tuple(t._replace(gain=max(t.gain - chosen.gain, PASSES * rules.beyond_evident)) for t in alone if t.gain > needed)
 
 
 def tells(rules: Thresholds, chosen: Model, shaped: Sequence[Told]) -> bool:

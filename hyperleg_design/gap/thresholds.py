@@ -29,6 +29,8 @@ class Thresholds:
     worth: float
     second_worth: float
     second_evident: float
+    second_instead: float
+    second_visible: float
     required: float
     beyond: float
     beyond_evident: float

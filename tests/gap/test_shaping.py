@@ -28,14 +28,14 @@ def test_a_hardening_spring_is_seen_beside_no_cause(cubic, rules):
     found = shaping.beside(cubic, cubic.nothing, everywhere(cubic))
     assert shaping.tells(rules, cubic.nothing, found)
     assert list(found) == sorted(found, key=lambda one: -one[1])
-    assert shaping.instead(cubic, cubic.nothing, everywhere(cubic)) == ()
+    assert shaping.instead(cubic, cubic.nothing, everywhere(cubic), 0.0) == ()
 
 
 def test_a_shape_that_predicts_more_replaces_a_cause_that_stood_for_it(cubic):
     spring = linearise(cubic.base.samples, EFFECTS["joint_spring"], "hip", np.zeros(2))
     model = cubic.model([spring])
     assert model.gain > 0
-    found = shaping.instead(cubic, model, everywhere(cubic))
+    found = shaping.instead(cubic, model, everywhere(cubic), model.gain)
     assert found
     assert all(gain >= shaping.PASSES * cubic.thresholds.beyond_evident for _, gain, _ in found)
 
@@ -45,5 +45,5 @@ def test_no_shape_replaces_the_true_cause(robot_files, rules):
     subject = ready.base.samples.sieves[0].signals.subject
     judge, found = decide(ready.base, rules, places(subject, ("viscous_friction", "coulomb_friction")))
     assert found.model.names == (("viscous_friction", "knee"),)
-    assert shaping.instead(judge, found.model, found.rows) == ()
+    assert shaping.instead(judge, found.model, found.rows, found.model.gain) == ()
     assert not shaping.tells(rules, found.model, shaping.beside(judge, found.model, found.rows))
