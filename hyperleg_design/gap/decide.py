@@ -82,14 +82,14 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     slots: list[tuple[Model, ...]] = []
     best = next((m for m in singles if _named(judge, m)), None)
     if best is not None:
-        chosen, slots = best, [tuple(singles)]
+        chosen, slots = best, [_from(singles, best)]
         rows = judge.excess_rows(best)
         while len(chosen.causes) < MOST_CAUSES:
             more, _ = _finalists(judge, wanted, chosen.causes)
             further = next((m for m in more if _further(judge, m, chosen)), None)
             if further is None:
                 break
-            chosen, slots = further, [*slots, tuple(more)]
+            chosen, slots = further, [*slots, _from(more, further)]
             if len(chosen.causes) == 2:
                 chosen, slots = _swapped(judge, wanted, chosen, slots)
             rows = judge.excess_rows(chosen)
@@ -98,6 +98,11 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *averaged))
+
+
+def _from(models: Sequence[Model], named: Model) -> tuple[Model, ...]:
+    """The named model and those after it: those before it were not worth their name, and are no rivals."""
+    return tuple(models[models.index(named) :])
 
 
 def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence[Cause]) -> tuple[list[Model], list[screen.NotJudged]]:
