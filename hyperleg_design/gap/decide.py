@@ -30,7 +30,8 @@ MOST_CAUSES = 3
 OWN_WORTH = 0.5
 """Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
 AT_LIMITS = ("torque_saturation", "voltage_sag")
-"""Effects beside another that are not judged by episodes: healthy drives reach limits too, which models often do not know."""
+AT_LIMITS_WORTH = 0.95
+"""Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 RUBBING = ("coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction")
 """Effects that a joint that chatters does not show as they are."""
 CHATTERING = 0.5
@@ -70,34 +71,42 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
         threads: that share the work.
     """
     judge = Judge(base, thresholds, threads)
-    nothing = judge.nothing
     swinging = unsettled(base.samples)
     averaged = [
         screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in wanted if name[0] in RUBBING and name[1] in swinging
     ]
     wanted = [name for name in wanted if name[0] not in RUBBING or name[1] not in swinging]
     singles, not_judged = _finalists(judge, wanted, ())
-    rows = judge.excess_rows(singles[0] if singles else nothing)
-    chosen = nothing
-    slots: list[tuple[Model, ...]] = []
-    best = next((m for m in singles if _named(judge, m)), None)
-    if best is not None:
-        chosen, slots = best, [_from(singles, best)]
-        rows = judge.excess_rows(best)
-        while len(chosen.causes) < MOST_CAUSES:
-            more, _ = _finalists(judge, wanted, chosen.causes)
-            further = next((m for m in more if _further(judge, m, chosen)), None)
-            if further is None:
-                break
-            chosen, slots = further, [*slots, _from(more, further)]
-            if len(chosen.causes) == 2:
-                chosen, slots = _swapped(judge, wanted, chosen, slots)
-            rows = judge.excess_rows(chosen)
+    chosen, slots = _chosen(judge, wanted, singles)
+    rows = judge.excess_rows(chosen if chosen.causes or not singles else singles[0])
     shaped = shaping.instead(judge, chosen, rows, max((m.gain for m in singles), default=0.0)) or shaping.beside(judge, chosen, rows)
     lost = together(base.samples, chosen.held.left)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *averaged))
+
+
+def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> Model:
+    """Causes that reference logs of a healthy robot name; arguments as of `decide`."""
+    judge = Judge(base, thresholds, threads)
+    return _chosen(judge, wanted, _finalists(judge, wanted, ())[0])[0]
+
+
+def _chosen(judge: Judge, wanted: Sequence[tuple[str, str]], singles: list[Model]) -> tuple[Model, list[tuple[Model, ...]]]:
+    """The causes that are worth their names, one after the other, and the rivals of each."""
+    best = next((m for m in singles if _named(judge, m)), None)
+    if best is None:
+        return judge.nothing, []
+    chosen, slots = best, [_from(singles, best)]
+    while len(chosen.causes) < MOST_CAUSES:
+        more, _ = _finalists(judge, wanted, chosen.causes)
+        further = next((m for m in more if _further(judge, m, chosen)), None)
+        if further is None:
+            break
+        chosen, slots = further, [*slots, _from(more, further)]
+        if len(chosen.causes) == 2:
+            chosen, slots = _swapped(judge, wanted, chosen, slots)
+    return chosen, slots
 
 
 def _from(models: Sequence[Model], named: Model) -> tuple[Model, ...]:
@@ -172,11 +181,12 @@ def _closes_own(judge: Judge, model: Model, before: Model, worth: float, least: 
     own = (shown >= OWN_ROWS * shown.max()) & (shown > 0)
     calm = own & (np.arange(len(shown)) < len(judge.base.samples.rows))
     without, with_it = judge.rows(before.held.square), judge.rows(model.held.square)
-    for rows in (calm,) if model.causes[-1].effect in AT_LIMITS else (calm, own):
+    in_episodes = max(worth, AT_LIMITS_WORTH) if model.causes[-1].effect in AT_LIMITS else worth
+    for rows, share in ((calm, worth), (own, in_episodes)):
         if not rows.any():
             continue
         left, less = float(without[rows].mean()), float(with_it[rows].mean())
-        if left >= least**2 and left - less >= worth * max(left - min(1.0, less), 1e-9):
+        if left >= least**2 and left - less >= share * max(left - min(1.0, less), 1e-9):
             return True
     return False
 

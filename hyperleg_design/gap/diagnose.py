@@ -115,7 +115,7 @@ def diagnose_signals(
     if not signals:
         raise InputError("diagnose", "logs", None, "are missing: give at least one log")
     say("calibration errors and floor")
-    ready = prepare(signals, references, rules)
+    ready = prepare(signals, references, rules, threads)
     samples = ready.base.samples
     say(f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue")
     judge, found = decide(ready.base, rules, screen.places(samples.sieves[0].signals.subject, effects), threads)
@@ -357,6 +357,7 @@ class _Report:
             ]
         for s in (*self.signals, *self.references):
             found += [f"{s.log.name}: {note}" for note in s.notes]
+        found += self.ready.learned
         if not self.ready.calibrated:
             found.append("no reference logs: the floor is that of a robot known as well as robots usually are")
         samples = self.ready.base.samples

@@ -13,16 +13,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap import filtering, floor, nuisance
+from hyperleg_design.gap import filtering, floor, nuisance, screen
 from hyperleg_design.gap.base import Base, Prior
 from hyperleg_design.gap.chatter import newly
+from hyperleg_design.gap.decide import AT_LIMITS, shown_already
 from hyperleg_design.gap.episodes import episodes
 from hyperleg_design.gap.fit import Design, Fit
-from hyperleg_design.gap.samples import Samples, gather
+from hyperleg_design.gap.held_out import predict
+from hyperleg_design.gap.learned import Learned, learned
+from hyperleg_design.gap.samples import LOGS, Samples, gather
 from hyperleg_design.gap.screen import reach
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.filtering import Sieve
+    from hyperleg_design.gap.judge import Model
     from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.thresholds import Thresholds
 
@@ -43,15 +47,18 @@ class Prepared:
     """Of the base's columns."""
     calibrated: bool
     """Whether reference logs were at hand."""
+    learned: tuple[str, ...] = ()
+    """What these show of effects of the catalogue, for people."""
 
 
-def prepare(signals: Sequence[Signals], references: Sequence[Signals], thresholds: Thresholds) -> Prepared:
+def prepare(signals: Sequence[Signals], references: Sequence[Signals], thresholds: Thresholds, threads: int = 1) -> Prepared:
     """Samples, calibration errors and their priors.
 
     Args:
         signals: conditioned logs under test.
         references: conditioned logs of the healthy robot.
         thresholds: fixed rules.
+        threads: that share the work.
 
     Raises:
         InputError: no log shows a balance.
@@ -62,21 +69,49 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
     own = _columns(signals, usual, thresholds, sessions_of(signals))
     if not len(own.samples.value):
         raise InputError(signals[0].log.name, "", None, "has too few ticks of which torques and motion are known: log longer, or more signals")
-    kept = np.array([reach(own.samples, row[None]) > nuisance.LEAST for row in own.errors], bool)
+    kept = _showing(own)
     if references:
         healthy = _columns(references, usual, thresholds, np.zeros(len(references), int))
-        kept |= np.array([reach(healthy.samples, row[None]) > nuisance.LEAST for row in healthy.errors], bool)
+        kept |= _showing(healthy)
         errors = [one for one, k in zip(usual, kept, strict=True) if k]
-        wide = np.diag(nuisance.spreads(errors, nuisance.WIDE) ** 2)
-        base = healthy.base(kept, Prior(np.zeros(len(errors)), wide), thresholds)
-        fit = Design(base).fit()
-        prior = _after(base, fit, errors)
-        scales = _scales(base, fit)
-        own = own.scaled(scales)
-    else:
-        errors = [one for one, k in zip(usual, kept, strict=True) if k]
-        prior = Prior(np.zeros(len(errors)), np.eye(len(errors)))
-    return Prepared(own.base(kept, prior, thresholds), tuple(errors), bool(references))
+        base = healthy.base(kept, _wide(errors), thresholds)
+        seen = [name for name in AT_LIMITS if name != "voltage_sag" or any(s.voltage is not None for s in references)]
+        before = shown_already(base, thresholds, screen.places(subject, seen), threads)
+        prior = _after(base, before.fit, errors)
+        own = own.scaled(_scales(base, before))
+        return _with_learned(own, kept, prior, errors, learned(before), thresholds)
+    errors = [one for one, k in zip(usual, kept, strict=True) if k]
+    prior = Prior(np.zeros(len(errors)), np.eye(len(errors)))
+    return Prepared(own.base(kept, prior, thresholds), tuple(errors), False)
+
+
+def _with_learned(
+    own: _Columns, kept: np.ndarray, prior: Prior, errors: list[nuisance.Usual], known: Sequence[Learned], thresholds: Thresholds
+) -> Prepared:
+    """Logs under test without what the healthy robot shows already, which stays open as far as its logs leave it open."""
+    shown = [(one, columns) for one in known if (columns := one.columns(own.samples)) is not None]
+    if not shown:
+        return Prepared(own.base(kept, prior, thresholds), tuple(errors), True)
+    trace = np.sum([t for _, (t, _) in shown], 0)
+    more = np.concatenate([c for _, (_, c) in shown])
+    open_errors = [error for one, _ in shown for error in one.errors()]
+    size, added = len(errors), len(open_errors)
+    covariance = np.eye(size + added)
+    covariance[:size, :size] = prior.covariance
+    wider = Prior(np.concatenate([prior.mean, np.zeros(added)]), covariance)
+    whole = replace(own, errors=np.concatenate([own.errors, more]), known=trace)
+    base = whole.base(np.concatenate([kept, np.ones(added, bool)]), wider, thresholds)
+    return Prepared(base, (*errors, *open_errors), True, tuple(one.says for one, _ in shown))
+
+
+def _showing(columns: _Columns) -> np.ndarray:
+    """Which calibration errors show at all `(errors,)` of bool."""
+    return np.array([reach(columns.samples, row[None]) > nuisance.LEAST for row in columns.errors], bool)
+
+
+def _wide(errors: Sequence[nuisance.Usual]) -> Prior:
+    """Of errors for life."""
+    return Prior(np.zeros(len(errors)), np.diag(nuisance.spreads(errors, nuisance.WIDE) ** 2))
 
 
 def sessions_of(signals: Sequence[Signals]) -> np.ndarray:
@@ -98,6 +133,8 @@ class _Columns:
     """`(errors, S)`"""
     sessions: np.ndarray
     thresholds: Thresholds
+    known: np.ndarray | None = None
+    """Traces of what the healthy robot shows already `(S,)`; left out of the residual."""
 
     def scaled(self, scales: dict[tuple[str, int, int], float]) -> _Columns:
         """With the floor of each row and band scaled in variance."""
@@ -119,11 +156,11 @@ class _Columns:
 
     def base(self, kept: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
         """Base without the errors that show nowhere, its episodes apart."""
-        found = _base(self.samples, self.errors[kept], prior, thresholds)
+        found = _base(self.samples, self.errors[kept], prior, thresholds, self.known)
         apart = episodes(found)
         if not apart.any():
             return found
-        return _base(self.gathered(self.floors, apart), self.errors[kept], prior, thresholds)
+        return _base(self.gathered(self.floors, apart), self.errors[kept], prior, thresholds, self.known)
 
 
 def _columns(signals: Sequence[Signals], usual: Sequence[nuisance.Usual], thresholds: Thresholds, sessions: np.ndarray) -> _Columns:
@@ -137,9 +174,10 @@ def _columns(signals: Sequence[Signals], usual: Sequence[nuisance.Usual], thresh
     return _Columns(sieves, floors, samples, errors, sessions, thresholds)
 
 
-def _base(samples: Samples, errors: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
+def _base(samples: Samples, errors: np.ndarray, prior: Prior, thresholds: Thresholds, known: np.ndarray | None = None) -> Base:
     weight = samples.weight
-    return Base(samples, errors * weight, (samples.value - prior.mean @ errors) * weight, prior, thresholds.floor_weight)
+    value = samples.value if known is None else samples.value - known
+    return Base(samples, errors * weight, (value - prior.mean @ errors) * weight, prior, thresholds.floor_weight)
 
 
 def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual]) -> Prior:
@@ -155,13 +193,17 @@ def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual]) -> Prior:
     return Prior(mean, known + np.diag(day**2))
 
 
-def _scales(base: Base, fit: Fit) -> dict[tuple[str, int, int], float]:
-    """Variance over the floor by balance, column and band."""
-    samples = base.samples
+def _scales(base: Base, model: Model) -> dict[tuple[str, int, int], float]:
+    """Variance over the floor by balance, column and band: of reference logs, and of each that the others predict, if that is larger."""
+    samples, fit = base.samples, model.fit
     number = base.number.sum(0)
+    elsewhere = np.zeros(samples.groups)
+    if samples.folds(LOGS) > 1:
+        square = predict(Design(base, model.causes), LOGS, fit).square.sum(0)
+        elsewhere = square / np.maximum(np.bincount(samples.group, samples.floor**2, samples.groups), 1e-300)
     found = {}
     for group in np.flatnonzero(~samples.episodic).tolist():
         row = samples.rows[samples.group_row[group]]
-        scale = (base.freedom + fit.rss[group]) / (base.freedom + number[group])
+        scale = max((base.freedom + fit.rss[group]) / (base.freedom + number[group]), float(elsewhere[group]))
         found[row.balance, row.column, int(samples.group_band[group])] = float(np.clip(scale, LEAST_SCALE, MOST_SCALE))
     return found

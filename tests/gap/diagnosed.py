@@ -19,6 +19,7 @@ CHANGES = {
         ('name="hip" axis="0 1 0" damping="0.05"', 'name="hip" axis="0 1 0" damping="0.05" frictionloss="0.8"'),
     ],
     "cubic": [],
+    "limited": [('name="m_front" tendon="front" ctrlrange="-4 4"', 'name="m_front" tendon="front" ctrlrange="-0.5 0.5"')],
 }  # fmt: skip
 
 
@@ -28,7 +29,8 @@ def run(kind: str, seed: int, **metadata):
     for old, new in CHANGES[kind]:
         assert old in text
         text = text.replace(old, new)
-    log = robots.servo_run(text, robots.waves(2, [1.5, 1.5], seed=seed), 12.0, **metadata)
+    target = robots.waves(2, [1.5, 1.5], seed=seed)
+    log = robots.servo_run(text, target, 12.0, **metadata)
     rng = np.random.default_rng([7, seed])
     noise = {"position": 5e-5, "velocity": 5e-3, "motor_torque": 5e-3}
     signals = {c: v + rng.normal(0, noise[c.partition("/")[0]], len(v)) for c, v in log.signals.items()}
@@ -36,6 +38,9 @@ def run(kind: str, seed: int, **metadata):
         q = log.column("position/hip")
         signals["motor_torque/m_front"] = signals["motor_torque/m_front"] + 4.0 * (q - 0.0) ** 3 / 12
         signals["motor_torque/m_back"] = signals["motor_torque/m_back"] + 4.0 * (q - 0.0) ** 3 / 12
+    if kind == "limited":
+        asked = np.array([target(t) for t in log.time])
+        signals |= {f"motor_torque_command/{motor}": asked[:, i] for i, motor in enumerate(("m_front", "m_back"))}
     return log.changed(signals=signals, name=f"{kind}_{seed}")
 
 

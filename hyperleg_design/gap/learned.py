@@ -1,0 +1,73 @@
+"""What a healthy robot shows already: effects named on reference logs, which are then part of the model and no news.
+
+Drives of servos and small arms reach limits in ordinary use, follow their voltage, or have other gains than their sheets say. Left
+out, the first log that moves otherwise than the references looks like a fault. So reference logs are diagnosed first, by the same
+rules, and what is named there is held to be true of the robot for life, as well as those logs tell it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.nuisance import Usual
+from hyperleg_design.gap.screen import linearise
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.judge import Model
+    from hyperleg_design.gap.samples import Samples
+
+ANOTHER_DAY = 0.05
+"""Of a learned parameter, its change from one day to the next (assumed)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """An effect that the healthy robot has."""
+
+    effect: str
+    location: str
+    values: np.ndarray
+    usual: np.ndarray
+    """`(k,)`"""
+    deviation: np.ndarray
+    """Of the values, as the reference logs tell it, and from day to day `(k,)`."""
+
+    @property
+    def says(self) -> str:
+        """For people."""
+        found = ", ".join(f"{p.name} {v:.3g} {p.unit}".strip() for p, v in zip(EFFECTS[self.effect].parameters, self.values, strict=True))
+        return f"reference logs show {self.effect} at {self.location} ({found}); taken for the robot's own"
+
+    def errors(self) -> list[Usual]:
+        """What is left open of it, as calibration errors."""
+        return [
+            Usual(self.effect, self.location, i, float(max(d, 1e-9 * u))) for i, (d, u) in enumerate(zip(self.deviation, self.usual, strict=True))
+        ]
+
+    def columns(self, samples: Samples) -> tuple[np.ndarray, np.ndarray] | None:
+        """Its trace `(S,)`, and that of its errors at their deviation `(k, S)`, in other logs; None where these do not show it."""
+        cause = linearise(samples, EFFECTS[self.effect], self.location, self.values)
+        if cause is None:
+            return None
+        trace = cause.phi @ cause.columns + (0.0 if cause.linear else cause.constant)
+        return np.asarray(trace), cause.columns * (self.deviation / self.usual)[:, None]
+
+
+def learned(model: Model) -> tuple[Learned, ...]:
+    """The causes that were named on reference logs.
+
+    Args:
+        model: of them.
+    """
+    found, start = [], 0
+    for place, cause in enumerate(model.causes):
+        part = slice(start, start + len(cause.nulls))
+        values = model.values(place)
+        told = np.sqrt(np.maximum(np.diag(model.fit.covariance)[part], 0.0)) * cause.usual
+        found.append(Learned(cause.effect, cause.location, values, cause.usual, np.hypot(told, ANOTHER_DAY * np.abs(values - cause.nulls))))
+        start = part.stop
+    return tuple(found)
