@@ -30,6 +30,8 @@ MOST_CAUSES = 3
 OWN_WORTH = 0.5
 """Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
 AT_LIMITS = ("torque_saturation", "voltage_sag")
+SHARED = 0.5
+"""Change of a cause's trace, over its size, from which a further cause has taken part of it."""
 AT_LIMITS_WORTH = 0.95
 """Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 RUBBING = ("coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction")
@@ -159,7 +161,21 @@ def _further(judge: Judge, model: Model, before: Model) -> bool:
         return True
     # Large calibration errors may hide what it leaves; then it must show clearly, away from episodes, and be likelier than they are.
     calm = judge.shown(model, already)[: len(judge.base.samples.rows)]
-    return gain >= rules.second_instead * already and model.causes[-1].effect not in AT_LIMITS and float(np.sqrt(calm.max())) >= rules.second_visible
+    if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or float(np.sqrt(calm.max())) < rules.second_visible:
+        return False
+    return _kept(model, before)
+
+
+def _kept(model: Model, before: Model) -> bool:
+    """Whether the causes before the last leave about the traces that they left without it: else two share what one of them does."""
+    start = 0
+    for cause in before.causes:
+        part = slice(start, start + len(cause.nulls))
+        own, moved = before.fit.phi[part] @ cause.columns, (model.fit.phi[part] - before.fit.phi[part]) @ cause.columns
+        if float(moved @ moved) > SHARED**2 * float(own @ own):
+            return False
+        start = part.stop
+    return True
 
 
 def _visible(judge: Judge, model: Model) -> bool:

@@ -105,6 +105,7 @@ class Design:
         self.count = sum(len(p) for p in parts)
         free = 0 if ridge is None else len(ridge)
         self.deviation = np.concatenate([*(np.where(c.shape, 1.0, WIDTH) for c in causes), np.ones(free)])
+        self.sizes = np.concatenate([*(~c.shape for c in causes), np.zeros(free, bool)])
         self.low = np.concatenate([*((c.low - c.nulls) / c.usual for c in causes), np.full(free, -np.inf)])
         self.high = np.concatenate([*((c.high - c.nulls) / c.usual for c in causes), np.full(free, np.inf)])
         starts = np.cumsum([0, *(len(c.nulls) for c in causes)])
@@ -127,6 +128,10 @@ class Design:
     def products(self) -> Products:
         """Of its columns, by part."""
         return products(self.base.samples, self.columns, self.base.packed)
+
+    def widened(self, phi: np.ndarray) -> np.ndarray:
+        """Prior deviation of phi near some values `(k,)`: an effect far larger than usual is unlikely, and not to be shrunk for it."""
+        return np.asarray(np.where(self.sizes, np.maximum(self.deviation, np.abs(phi)), self.deviation)) if self.count else self.deviation
 
     def trust(self, fit: Fit) -> None:
         """Keep causes that are not linear where their linearisation holds: near a fit, within a few standard deviations."""
@@ -173,7 +178,7 @@ class Design:
             way: of holding out.
             without: fold held out.
             held: values of phi that are fixed, NaN where free `(k,)`.
-            near: phi at which what scales torques is linearised `(k,)`; 0 by default.
+            near: phi at which what scales torques is linearised, and the prior widened `(k,)`; 0 by default.
 
         Returns:
             phi `(k,)`, its covariance, errors `(sessions, p)`, and the log determinant that evidence needs.
@@ -191,9 +196,10 @@ class Design:
             weighed.append((summed, factor, log, np.tensordot(weight, own, 1), np.tensordot(weight, cross, 1)))
         clamped = np.zeros((len(sums), size))
         near = np.zeros(k) if near is None else near
+        deviation = self.widened(near)
         part = float(number_of(base, way, without, False).sum() / base.number.sum()) if self.factors else 1.0
         for attempt in range(CLAMPS):
-            matrix, right, determinant, kept = np.diag(1 / self.deviation**2), np.zeros(k), 0.0, []
+            matrix, right, determinant, kept = np.diag(1 / deviation**2), np.zeros(k), 0.0, []
             for at, one in self.factors:
                 first, second = one.slopes(float(near[at]))
                 matrix[at, at] += part * second
@@ -224,7 +230,7 @@ class Design:
             clamped = np.where(beyond, np.clip(errors, -most, most), clamped)
         errors = np.clip(errors, -most, most)
         if k:
-            determinant += float(np.linalg.slogdet(matrix)[1]) + 2 * float(np.log(self.deviation).sum())
+            determinant += float(np.linalg.slogdet(matrix)[1]) + 2 * float(np.log(deviation).sum())
         return phi, covariance, errors, np.array(determinant)
 
     def rss(self, phi: np.ndarray, errors: np.ndarray, way: int = BLOCKS, fold: int | None = None, inside: bool = True) -> np.ndarray:
@@ -260,7 +266,7 @@ class Design:
             if rounds:
                 scale = (base.freedom + rss) / (base.freedom + number)
         cost = float(np.einsum("sp,pq,sq->", errors, base.prior.precision, errors))
-        penalty = cost + (float(np.sum((phi / self.deviation) ** 2)) if self.count else 0.0)
+        penalty = cost + (float(np.sum((phi / self.widened(phi)) ** 2)) if self.count else 0.0)
         evidence = -0.5 * float(np.sum((base.freedom + number) * np.log(scale))) - 0.5 * penalty - 0.5 * float(determinant)
         evidence += self.scaled(phi) * float(number.sum() / base.number.sum())
         return Fit(phi, covariance, errors, scale, evidence, rss, 0.5 * cost)

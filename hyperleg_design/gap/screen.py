@@ -293,4 +293,6 @@ def _cost(design: Design, weight: np.ndarray, phi: np.ndarray, before: int) -> f
     paid = 2 * design.scaled(np.concatenate([found[:before], phi]))
     rss = float(weight @ design.rss(found, errors))
     precision = design.base.prior.precision
-    return rss - paid + float(np.sum((found / design.deviation) ** 2)) + float(np.einsum("sp,pq,sq->", errors, precision, errors))
+    deviation = design.widened(found)
+    unlikely = float(np.sum((found / deviation) ** 2 + 2 * np.log(deviation / design.deviation)))
+    return rss - paid + unlikely + float(np.einsum("sp,pq,sq->", errors, precision, errors))

@@ -40,6 +40,15 @@ def test_a_known_friction_is_found_with_an_honest_interval(viscous_ready, knee_f
     assert reach < 0.15
 
 
+def test_an_effect_far_larger_than_usual_is_not_shrunk(viscous_ready, knee_friction):
+    from dataclasses import replace
+
+    smaller = 0.05
+    tiny = replace(knee_friction, usual=knee_friction.usual * smaller, columns=knee_friction.columns * smaller)
+    usual, found = (Design(viscous_ready.base, [c]).fit().phi[0] * c.usual[0] for c in (knee_friction, tiny))
+    assert found == pytest.approx(usual, rel=0.01)
+
+
 def test_errors_never_leave_their_limits(viscous_ready):
     fit = Design(viscous_ready.base).fit()
     assert np.abs(fit.errors).max() <= LIMIT * (1 + 1e-9)
