@@ -20,7 +20,7 @@ from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
 from hyperleg_design.gap.fit import Design
 from hyperleg_design.gap.held_out import Held, predict
-from hyperleg_design.gap.judge import Judge, Model, rank
+from hyperleg_design.gap.judge import CHATTERS, Judge, Model, rank
 from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.samples import BLOCKS, LOGS
@@ -274,7 +274,8 @@ class _Report:
             models = list({m.names: m for m in [*slot, *([found.model] if found.slots else [])]}.values())
             other = found.model.gain if place == len(slots) - 1 and found.slots else max((m.gain for m in models), default=0.0)
             none = 0.0 if place == 0 else _without(found, place)
-            scores = np.array([*(rank(m) for m in models), none, other + shaped - rules.unlisted])
+            unlisted = other + (CHATTERS if found.chatter else shaped - rules.unlisted)
+            scores = np.array([*(rank(m) for m in models), none, unlisted])
             weights = np.exp(rules.temperature * (scores - scores.max()))
             weights /= weights.sum()
             certain = np.minimum(weights, rules.most_certain)

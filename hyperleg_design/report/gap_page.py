@@ -46,12 +46,22 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     verdict = str(diagnosis["verdict"])
     page = Page(
         title=f"Gap diagnosis of {signals[0].subject.name}" if signals else "Gap diagnosis",
-        lead=f"Verdict: {verdict}. {VERDICTS[verdict]} {_sentence(causes)}",
+        lead=f"Verdict: {verdict}. {VERDICTS[verdict]} {_sentence(causes)}{_chatter(diagnosis)}",
         sections=[section for section in sections if section.content],
         facts=_facts(gap, causes),
         provenance={**dict(diagnosis.get("provenance", {})), "page made by commit": provenance.git_commit()},
     )
     return write_text(folder / "index.html", render(page))
+
+
+def _chatter(diagnosis: Mapping[str, Any]) -> str:
+    """Joints that swing to and fro, if that is what is left."""
+    joints = [one["location"] for one in diagnosis.get("residual_shape", ()) if one["shape"] == "chatter"]
+    return (
+        f"What is left first of all: {', '.join(joints)} chatter{'s' if len(joints) == 1 else ''}, as of a loop that is hardly stable."
+        if joints
+        else ""
+    )
 
 
 def cause_text(cause: Mapping[str, Any]) -> str:

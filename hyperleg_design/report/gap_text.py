@@ -99,6 +99,8 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     places = [f"{w['location']} {100 * w['share']:.0f} %" for w in diagnosis["where"] if w["regime"] == "all"][:5]
     if places:
         lines.append(f"  where: {', '.join(places)}")
+    if diagnosis["verdict"] == "unknown":
+        lines += [f"  left: {one['shape']} at {one['location']}: {one['says']}" for one in diagnosis.get("residual_shape", ())[:3]]
     if diagnosis["separating_experiment"]:
         told = "; ".join(f"{key.replace('_', ' ')}: {value}" for key, value in diagnosis["separating_experiment"].items())
         lines.append(f"  to tell them apart: {told}")

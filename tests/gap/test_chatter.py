@@ -82,3 +82,21 @@ def test_joints_of_all_logs_are_told():
 
     assert unsettled(SimpleNamespace(sieves=[sieve(), sieve(0, 1)])) == ("knee",)
     assert unsettled(SimpleNamespace(sieves=[sieve()])) == ()
+
+
+def test_a_joint_that_chatters_makes_the_answer_unknown_and_is_told(robot_files):
+    import diagnosed
+
+    from hyperleg_design.gap.diagnose import diagnose
+
+    def shaken(log, joint="knee", swing=0.01, fast=2 * np.pi * 70):
+        signals = dict(log.signals)
+        signals[f"position/{joint}"] = signals[f"position/{joint}"] + swing * np.sin(fast * log.time)
+        signals[f"velocity/{joint}"] = signals[f"velocity/{joint}"] + swing * fast * np.cos(fast * log.time)
+        return log.changed(signals=signals)
+
+    found = diagnose(robot_files["coupled"], [shaken(diagnosed.run("viscous", s, session="a")) for s in (0, 1)], threads=1)
+    assert found.verdict == "unknown"
+    assert {"shape": "chatter", "location": "knee"}.items() <= found.residual_shape[0].items()
+    assert {("viscous_friction", "knee"), ("coulomb_friction", "knee")} <= {(one["effect"], one["location"]) for one in found.not_judged}
+    assert all(one.probability < 0.2 for one in found.rivals)

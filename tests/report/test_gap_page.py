@@ -10,6 +10,7 @@ from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.metadata import Metadata
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.report.gap_page import cause_text, write_gap_page
+from hyperleg_design.report.gap_text import diagnosis_text
 
 PENDULUM = """
 <mujoco><worldbody><body name="arm"><joint name="swing" axis="0 1 0"/>
@@ -66,6 +67,13 @@ def test_without_a_cause_nothing_is_claimed(verdict: str, tmp_path: Path, signal
     text = write_gap_page(tmp_path, diagnosis(verdict, where=[]), signals).read_text()
     assert f"Verdict: {verdict}" in text
     assert "waterfall" not in text
+
+
+def test_joints_that_chatter_come_first(tmp_path: Path, signals) -> None:
+    shape = {"shape": "chatter", "location": "swing", "says": "swings to and fro by 2 rad/s at 60 Hz", "closed_beyond": 0.0, "gain": 0.0}
+    told = diagnosis("unknown", residual_shape=[shape])
+    assert "What is left first of all: swing chatters" in write_gap_page(tmp_path, told, signals).read_text()
+    assert "  left: chatter at swing: swings to and fro by 2 rad/s at 60 Hz" in diagnosis_text(told).splitlines()
 
 
 def test_causes_read_as_a_sentence() -> None:
