@@ -33,6 +33,6 @@ def _facts(found: Evaluated) -> tuple[tuple[str, str], ...]:
     for kind, word in ((WALK, "walks"), (T_TEST, "T-tests")):
         trials = [e for group in found.groups(kind) for design in found.designs(group) for e in found.of(group, design)]
         if trials:
-            fell = sum(int(e.values("fell").sum()) for e in trials)
-            facts.append((f"{fell} / {sum(len(e.outcomes) for e in trials)}", f"falls in {word} of {len(trials)} policies"))
+            fell, arrived = (sum(int(e.values(ending).sum()) for e in trials) for ending in ("fell", "arrived"))
+            facts.append((f"{arrived} / {sum(len(e.outcomes) for e in trials)}", f"{word} of {len(trials)} policies that arrived; {fell} fell"))
     return tuple(facts)

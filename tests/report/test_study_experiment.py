@@ -11,5 +11,7 @@ def test_without_a_policy_one_sentence_says_so(hyperleg, tmp_path):
     assert made.facts == ()
 
 
-def test_falls_are_a_headline(found):
-    assert study_experiment._facts(found) == (("1 / 18", "falls in walks of 6 policies"), ("0 / 3", "falls in T-tests of 1 policies"))
+def test_arrivals_and_falls_are_headlines(found):
+    walks, courses = study_experiment._facts(found)
+    assert walks == ("17 / 18", "walks of 6 policies that arrived; 1 fell")
+    assert courses == ("3 / 3", "T-tests of 1 policies that arrived; 0 fell")
