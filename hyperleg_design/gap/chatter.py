@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.smoothing import bridged
+
 if TYPE_CHECKING:
     from hyperleg_design.gap.samples import Samples
     from hyperleg_design.gap.signals import Signals
@@ -36,6 +38,8 @@ PHASES = 48
 """Of a swing over which friction is averaged."""
 UNSETTLED = 0.2
 """Share of a log in which a joint must chatter to count as unsettled."""
+UNSETTLING = ("command_delay", "actuator_bandwidth", "controller_gain", "transmission_elasticity", "backlash")
+"""Effects that can bring a control loop to the edge of its stability."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,12 +108,19 @@ def unsettled(samples: Samples) -> tuple[str, ...]:
     return tuple(joint for joint, any_log in zip(joints, np.any(shaken, 0), strict=True) if any_log) if shaken else ()
 
 
+def swings(signals: Sequence[Signals], joint: str) -> str:
+    """How a joint chatters, in the log where it does most; for people."""
+    place = signals[0].subject.joints.index(joint)
+    shaken = [s.chatter for s in signals if s.chatter is not None and np.isfinite(s.chatter.frequency[place])]
+    size, frequency = max((float(np.sqrt(np.mean(c.speed[:, place] ** 2))), float(c.frequency[place])) for c in shaken)
+    return (
+        f"swings to and fro by {size:.2g} rad/s at {frequency:.0f} Hz (or a frequency that this log's rate folds there), which nothing commands: "
+        f"its control loop is on the edge of stability, as of {', '.join(UNSETTLING)}"
+    )
+
+
 def _filled(values: np.ndarray) -> np.ndarray | None:
-    known = np.isfinite(values)
-    if known.sum() < SEGMENT:
-        return None
-    ticks = np.arange(len(values))
-    return values if known.all() else np.interp(ticks, ticks[known], values[known])
+    return bridged(values) if np.isfinite(values).sum() >= SEGMENT else None
 
 
 def _line(values: np.ndarray, step: float, lowest: float) -> tuple[float, float]:

@@ -59,7 +59,8 @@ def condition(log: Log, subject: Subject) -> Signals:
         if (stuck := frozen(log, joint)) is not None:
             position[stuck, column] = np.nan
             notes.append(f"{joint}: position frozen from {log.time[stuck.start]:.4g} s, left out until it moves again")
-    motion = smooth(log.time, position, ticks, log.stack("velocity", subject.joints))
+    velocity = log.stack("velocity", subject.joints)
+    motion = smooth(log.time, position, ticks, velocity)
     lacking = ~np.isfinite(motion.value).any(0)
     if lacking.all():
         raise InputError(log.name, "position", sorted(log.joints)[:8], f"knows no joint of this robot, {', '.join(subject.joints)}")
@@ -79,8 +80,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     own = None if base is None else rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
     ground = contact.contacts(log, subject, ticks, motion.value, base, None if own is None else own[:, :3])
     needed = rigid.inverse_dynamics(subject, motion.value, motion.first, motion.second, base)
-    speed = resampled(log.time, log.stack("velocity", subject.joints), ticks)
-    shaken = chatter(resampled(log.time, position, ticks), speed, motion, step)
+    shaken = chatter(resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step)
     needed = needed + rigid.friction_torque(subject, motion.value, motion.first, None if shaken is None else shaken.speed)
     residual: dict[str, np.ndarray] = {}
     if ground.pad_force is not None:

@@ -15,8 +15,9 @@ import numpy as np
 from hyperleg_design.gap import screen, shaping
 from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.chatter import unsettled
+from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import together
-from hyperleg_design.gap.fit import Cause, Design, Fit
+from hyperleg_design.gap.fit import Cause, Design, Fit, parts
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
 
 if TYPE_CHECKING:
@@ -29,13 +30,10 @@ REFINED = 24
 MOST_CAUSES = 3
 OWN_WORTH = 0.5
 """Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
-AT_LIMITS = ("torque_saturation", "voltage_sag")
+AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", "voltage_sag"), 0.95
+"""Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
-AT_LIMITS_WORTH = 0.95
-"""Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
-RUBBING = ("coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction")
-"""Effects that a joint that chatters does not show as they are."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
@@ -74,18 +72,17 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     """
     judge = Judge(base, thresholds, threads)
     swinging = unsettled(base.samples)
-    averaged = [
-        screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in wanted if name[0] in RUBBING and name[1] in swinging
-    ]
-    wanted = [name for name in wanted if name[0] not in RUBBING or name[1] not in swinging]
+    averaged = [name for name in wanted if name[0] in FRICTION and name[1] in swinging]
+    wanted = [name for name in wanted if name not in averaged]
     singles, not_judged = _finalists(judge, wanted, ())
     chosen, slots = _chosen(judge, wanted, singles)
     rows = judge.excess_rows(chosen if chosen.causes or not singles else singles[0])
     shaped = shaping.instead(judge, chosen, rows, max((m.gain for m in singles), default=0.0)) or shaping.beside(judge, chosen, rows)
     lost = together(base.samples, chosen.held.left)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
+    swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *averaged))
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *swung))
 
 
 def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> Model:
@@ -168,13 +165,10 @@ def _further(judge: Judge, model: Model, before: Model) -> bool:
 
 def _kept(model: Model, before: Model) -> bool:
     """Whether the causes before the last leave about the traces that they left without it: else two share what one of them does."""
-    start = 0
-    for cause in before.causes:
-        part = slice(start, start + len(cause.nulls))
+    for part, cause in zip(parts(before.causes), before.causes, strict=True):
         own, moved = before.fit.phi[part] @ cause.columns, (model.fit.phi[part] - before.fit.phi[part]) @ cause.columns
         if float(moved @ moved) > SHARED**2 * float(own @ own):
             return False
-        start = part.stop
     return True
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from hyperleg_design import provenance
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import experiment, screen
+from hyperleg_design.gap.chatter import swings
 from hyperleg_design.gap.check import Check, check_log
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.decide import Decision, decide
@@ -24,7 +25,6 @@ from hyperleg_design.gap.judge import CHATTERS, Judge, Model, rank
 from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.samples import BLOCKS, LOGS
-from hyperleg_design.gap.screen import UNSETTLING
 from hyperleg_design.gap.shaping import tells
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.gap.thresholds import Thresholds, load_thresholds
@@ -320,23 +320,12 @@ class _Report:
             says = f"for {100 * self.found.together:.1f} % of the time most drives at once do not follow their commands: these get lost or come late"
             found.append({"shape": "lost_commands", "location": "robot", "says": says, "closed_beyond": 0.0, "gain": 0.0})
         for joint in self.found.chatter:
-            found.append({"shape": "chatter", "location": joint, "says": self.chatters(joint), "closed_beyond": 0.0, "gain": 0.0})
+            found.append({"shape": "chatter", "location": joint, "says": swings(self.signals, joint), "closed_beyond": 0.0, "gain": 0.0})
         for one, gain, closed in self.found.shaped[:MOST_SHAPES]:
             if gain > 0 and closed > 0:
                 place = "robot" if one.row < 0 else samples.rows[one.row].name
                 found.append({"shape": one.name, "location": place, "says": one.says, "closed_beyond": closed, "gain": gain})
         return tuple(found)
-
-    def chatters(self, joint: str) -> str:
-        """How a joint chatters, where most."""
-        place = self.signals[0].subject.joints.index(joint)
-        shaken = [s.chatter for s in self.signals if s.chatter is not None and np.isfinite(s.chatter.frequency[place])]
-        most = max(shaken, key=lambda c: float(np.sqrt(np.mean(c.speed[:, place] ** 2))))
-        size, frequency = float(np.sqrt(np.mean(most.speed[:, place] ** 2))), float(most.frequency[place])
-        return (
-            f"swings to and fro by {size:.2g} rad/s at {frequency:.0f} Hz (or a frequency that this log's rate folds there), which nothing commands: "
-            f"its control loop is on the edge of stability, as of {', '.join(UNSETTLING)}"
-        )
 
     def nuisance(self) -> tuple[dict[str, Any], ...]:
         """Largest calibration errors, in usual sizes."""

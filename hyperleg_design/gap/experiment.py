@@ -10,12 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from hyperleg_design.gap.effects.friction import FRICTION
+
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
 
 Cause = tuple[str, str]
 """Effect and location."""
-FRICTION = frozenset({"coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction"})
 INERTIAL = frozenset({"payload", "link_mass", "link_com"})
 LATE = frozenset({"command_delay", "actuator_bandwidth"})
 SCALING = frozenset({"torque_constant", "transmission_ratio", "thermal_derating", "controller_gain", "voltage_sag"})

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -67,6 +68,16 @@ class Cause:
         """`values` in usual sizes from the nulls."""
         return np.asarray((self.values - self.nulls) / self.usual)
 
+    def trace(self, phi: np.ndarray) -> np.ndarray:
+        """Its trace at some phi `(k,)`, in the residual's unit `(S,)`."""
+        return np.asarray(phi @ self.columns + (0.0 if self.linear else self.constant))
+
+
+def parts(causes: Sequence[Cause]) -> list[slice]:
+    """Where each cause's parameters stand in the phi of all."""
+    ends = np.cumsum([0, *(len(c.nulls) for c in causes)]).tolist()
+    return [slice(start, stop) for start, stop in pairwise(ends)]
+
 
 @dataclass(frozen=True, eq=False)
 class Fit:
@@ -101,22 +112,22 @@ class Design:
         self.base, self.causes = base, tuple(causes)
         self._kept: dict[tuple[int, int, int, bool], tuple[np.ndarray, np.ndarray]] = {}
         weight = base.samples.weight
-        parts = [c.columns * weight for c in causes] + ([] if ridge is None else [ridge])
-        self.count = sum(len(p) for p in parts)
+        weighed = [c.columns * weight for c in causes] + ([] if ridge is None else [ridge])
+        self.count = sum(len(w) for w in weighed)
         free = 0 if ridge is None else len(ridge)
         self.deviation = np.concatenate([*(np.where(c.shape, 1.0, WIDTH) for c in causes), np.ones(free)])
         self.sizes = np.concatenate([*(~c.shape for c in causes), np.zeros(free, bool)])
         self.low = np.concatenate([*((c.low - c.nulls) / c.usual for c in causes), np.full(free, -np.inf)])
         self.high = np.concatenate([*((c.high - c.nulls) / c.usual for c in causes), np.full(free, np.inf)])
-        starts = np.cumsum([0, *(len(c.nulls) for c in causes)])
-        self.factors = [(int(at) + c.factor.parameter, c.factor) for at, c in zip(starts[:-1], causes, strict=True) if c.factor is not None]
+        own = zip(parts(self.causes), self.causes, strict=True)
+        self.factors = [(part.start + c.factor.parameter, c.factor) for part, c in own if c.factor is not None]
         constant = np.zeros(len(weight))
         for c in causes:
             if not c.linear:
                 constant = constant + c.constant
         self.constant = constant * weight
         self.shifted = bool(self.constant.any())
-        self.columns = np.concatenate([*parts, self.constant[None]]) if parts else np.zeros((1, len(weight)))
+        self.columns = np.concatenate([*weighed, self.constant[None]]) if weighed else np.zeros((1, len(weight)))
         self.empty = not (self.count or self.shifted)
 
     @cached_property
@@ -135,10 +146,7 @@ class Design:
 
     def trust(self, fit: Fit) -> None:
         """Keep causes that are not linear where their linearisation holds: near a fit, within a few standard deviations."""
-        start = 0
-        for cause in self.causes:
-            part = slice(start, start + len(cause.nulls))
-            start = part.stop
+        for part, cause in zip(parts(self.causes), self.causes, strict=True):
             if not cause.linear:
                 reach = TRUST * np.sqrt(np.maximum(np.diag(fit.covariance)[part], 0.0))
                 self.low[part] = np.maximum(self.low[part], fit.phi[part] - reach)
@@ -159,8 +167,8 @@ class Design:
             return of_base, self.whole.own[session], self.whole.cross[session]
         key = way, fold, session, inside
         if key not in self._kept:
-            parts = (base.samples.session == session) & ((base.samples.fold[way] == fold) == inside)
-            self._kept[key] = self.products.own[parts].sum(0), self.products.cross[parts].sum(0)
+            chosen = (base.samples.session == session) & ((base.samples.fold[way] == fold) == inside)
+            self._kept[key] = self.products.own[chosen].sum(0), self.products.cross[chosen].sum(0)
         return of_base, *self._kept[key]
 
     def solve(

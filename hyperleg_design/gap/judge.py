@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.base import Base
-from hyperleg_design.gap.fit import Cause, Design, Fit
+from hyperleg_design.gap.fit import Cause, Design, Fit, parts
 from hyperleg_design.gap.held_out import Held, predict
 
 if TYPE_CHECKING:
@@ -55,9 +55,13 @@ class Model:
 
     def values(self, place: int) -> np.ndarray:
         """Fitted parameters of one cause."""
-        start = sum(len(c.nulls) for c in self.causes[:place])
         cause = self.causes[place]
-        return np.clip(cause.nulls + self.fit.phi[start : start + len(cause.nulls)] * cause.usual, cause.low, cause.high)
+        return np.clip(cause.nulls + self.fit.phi[parts(self.causes)[place]] * cause.usual, cause.low, cause.high)
+
+    def deviation(self, place: int) -> np.ndarray:
+        """Standard deviation of one cause's fitted parameters."""
+        variance = np.diag(self.fit.covariance)[parts(self.causes)[place]]
+        return np.asarray(np.sqrt(np.maximum(variance, 0.0)) * self.causes[place].usual)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,8 +139,7 @@ class Judge:
     def shown(self, model: Model, place: int) -> np.ndarray:
         """Mean square of one cause's trace in each row, and in its episodes, over the floor `(2 rows,)`."""
         cause, samples = model.causes[place], self.base.samples
-        phi = (model.values(place) - cause.nulls) / cause.usual
-        trace = phi @ cause.columns + (0.0 if cause.linear else cause.constant)
+        trace = cause.trace((model.values(place) - cause.nulls) / cause.usual)
         return np.bincount(self.group_row, self._means(trace**2), 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
 
     def excess_rows(self, model: Model) -> np.ndarray:

@@ -53,8 +53,7 @@ class Learned:
         cause = linearise(samples, EFFECTS[self.effect], self.location, self.values)
         if cause is None:
             return None
-        trace = cause.phi @ cause.columns + (0.0 if cause.linear else cause.constant)
-        return np.asarray(trace), cause.columns * (self.deviation / self.usual)[:, None]
+        return cause.trace(cause.phi), cause.columns * (self.deviation / self.usual)[:, None]
 
 
 def learned(model: Model) -> tuple[Learned, ...]:
@@ -63,11 +62,9 @@ def learned(model: Model) -> tuple[Learned, ...]:
     Args:
         model: of them.
     """
-    found, start = [], 0
+    found = []
     for place, cause in enumerate(model.causes):
-        part = slice(start, start + len(cause.nulls))
         values = model.values(place)
-        told = np.sqrt(np.maximum(np.diag(model.fit.covariance)[part], 0.0)) * cause.usual
-        found.append(Learned(cause.effect, cause.location, values, cause.usual, np.hypot(told, ANOTHER_DAY * np.abs(values - cause.nulls))))
-        start = part.stop
+        deviation = np.hypot(model.deviation(place), ANOTHER_DAY * np.abs(values - cause.nulls))
+        found.append(Learned(cause.effect, cause.location, values, cause.usual, deviation))
     return tuple(found)

@@ -20,9 +20,7 @@ NORMAL = 1.96
 def parameters(judge: Judge, model: Model, place: int) -> dict[str, Value]:
     """Values of one cause with 95 % intervals, calibration errors and coloured noise included."""
     cause = model.causes[place]
-    start = sum(len(c.nulls) for c in model.causes[:place])
-    values = model.values(place)
-    deviation = np.sqrt(np.maximum(np.diag(model.fit.covariance), 0.0))[start : start + len(values)] * cause.usual
+    values, deviation = model.values(place), model.deviation(place)
     found = {}
     for i, parameter in enumerate(EFFECTS[cause.effect].parameters):
         reach = judge.thresholds.interval * NORMAL * deviation[i]

@@ -17,6 +17,7 @@ from hyperleg_design.gap import filtering, floor, nuisance, screen
 from hyperleg_design.gap.base import Base, Prior
 from hyperleg_design.gap.chatter import newly
 from hyperleg_design.gap.decide import AT_LIMITS, shown_already
+from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import episodes
 from hyperleg_design.gap.fit import Design, Fit
 from hyperleg_design.gap.held_out import predict
@@ -188,7 +189,7 @@ def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual]) -> Prior:
     known = np.linalg.inv(normal)
     mean = fit.errors[0]
     day = nuisance.spreads(errors, nuisance.DAY)
-    friction = np.array([one.effect.endswith("_friction") and not one.effect.startswith("ground") for one in errors])
+    friction = np.array([one.effect in FRICTION for one in errors])
     day = np.hypot(day, np.where(friction, nuisance.ABOVE_CALIBRATED * np.abs(mean), 0.0))
     return Prior(mean, known + np.diag(day**2))
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from hyperleg_design.gap.base import Base
+from hyperleg_design.gap.chatter import UNSETTLING, unsettled
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.endogenous import factor
 from hyperleg_design.gap.fit import Cause, Design, Fit
@@ -32,8 +33,6 @@ MOST_DESCENTS, DESCENTS = 16, 2
 PROMISING = 0.1
 """Gain of an effect by its starts' traces, over the best gain of any, from which it is fitted exactly."""
 
-UNSETTLING = ("command_delay", "actuator_bandwidth", "controller_gain", "transmission_elasticity", "backlash")
-"""Effects that can bring a control loop to the edge of its stability."""
 DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
 """Signals of `Signals` that drive an effect."""
 
@@ -116,16 +115,12 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
 
 def _unsettling(samples: Samples, effect: Effect, location: str) -> bool:
     """Whether a joint chatters that an effect could have made unstable, in any log."""
-    chatters = [s.signals.chatter.joints for s in samples.sieves if s.signals.chatter is not None]
-    if effect.identifier not in UNSETTLING or not chatters:
-        return False
+    shaken = set(unsettled(samples)) if effect.identifier in UNSETTLING else set()
     subject = samples.sieves[0].signals.subject
-    acts = np.ones(len(subject.joints), bool)
     if location in subject.motors and effect.kind == "motor":
-        acts = subject.joint_from_motor[:, subject.motors.index(location)] != 0
-    elif location in subject.joints:
-        acts = np.array([joint == location for joint in subject.joints])
-    return bool((np.any(chatters, 0) & acts).any())
+        moves = subject.joint_from_motor[:, subject.motors.index(location)] != 0
+        return any(joint in shaken for joint, moved in zip(subject.joints, moves, strict=True) if moved)
+    return location in shaken if location in subject.joints else bool(shaken)
 
 
 def _same_place(subject: Subject, one: str, other: str) -> bool:

@@ -125,6 +125,13 @@ def _joint_crossover(jerk: float, density: float, weight: float, most: float) ->
     return float(low)
 
 
+def bridged(values: np.ndarray) -> np.ndarray:
+    """A signal `(t,)` whose unknown ticks are bridged by straight lines; one tick at least must be known."""
+    known = np.isfinite(values)
+    ticks = np.arange(len(values))
+    return values if known.all() else np.interp(ticks, ticks[known], values[known])
+
+
 def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: int) -> Noise:
     """Noise and crossover of largest Whittle likelihood.
 

@@ -57,11 +57,9 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
 def _chatter(diagnosis: Mapping[str, Any]) -> str:
     """Joints that swing to and fro, if that is what is left."""
     joints = [one["location"] for one in diagnosis.get("residual_shape", ()) if one["shape"] == "chatter"]
-    return (
-        f"What is left first of all: {', '.join(joints)} chatter{'s' if len(joints) == 1 else ''}, as of a loop that is hardly stable."
-        if joints
-        else ""
-    )
+    if not joints:
+        return ""
+    return f"What is left first of all: {', '.join(joints)} chatter{'s' if len(joints) == 1 else ''}, as of a loop that is hardly stable."
 
 
 def cause_text(cause: Mapping[str, Any]) -> str:

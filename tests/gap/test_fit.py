@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.base import LIMIT
-from hyperleg_design.gap.fit import Design
+from hyperleg_design.gap.fit import Design, parts
 
 
 def test_products_give_the_same_as_samples(viscous_ready, knee_friction):
@@ -11,6 +11,16 @@ def test_products_give_the_same_as_samples(viscous_ready, knee_friction):
     left = design.left(fit.phi, fit.errors)
     samples = viscous_ready.base.samples
     assert np.allclose(np.bincount(samples.group, left**2, samples.groups), fit.rss, rtol=1e-6, atol=1e-6)
+
+
+def test_parts_cut_the_parameters_of_all_causes_without_gap(viscous_ready, knee_friction):
+    design = Design(viscous_ready.base, [knee_friction, knee_friction])
+    phi = design.fit().phi
+    first, second = parts(design.causes)
+    assert (first, second) == (slice(0, 1), slice(1, 2))
+    weight = viscous_ready.base.samples.weight
+    assert np.allclose(design.trace(phi), sum(knee_friction.trace(phi[part]) for part in (first, second)) * weight)
+    assert parts(()) == []
 
 
 def test_a_fit_is_the_minimum_of_its_cost(viscous_ready, knee_friction):

@@ -5,6 +5,7 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.fit import Cause
+from hyperleg_design.gap.judge import Model
 from hyperleg_design.gap.parameters import parameters
 
 SUBJECT = SimpleNamespace(joints=("swing",), default=np.zeros(1))
@@ -17,8 +18,8 @@ def model_of(effect, values, deviation):
     low, high = (np.array([getattr(p, end) for p in one.parameters]) for end in ("low", "high"))
     none = np.zeros((count, 0))
     cause = Cause(effect, "swing", np.array(values), one.nulls, np.ones(count), low, high, np.zeros(count, bool), none, none, True)
-    fit = SimpleNamespace(covariance=np.diag(np.square(deviation)))
-    return SimpleNamespace(causes=(cause,), fit=fit, values=lambda place: np.array(values))
+    fit = SimpleNamespace(phi=cause.phi, covariance=np.diag(np.square(deviation)))
+    return Model((cause,), fit, None, 0.0)
 
 
 def judge(interval=1.0):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.smoothing import estimate_noise, smooth
+from hyperleg_design.gap.smoothing import bridged, estimate_noise, smooth
 
 
 def chirp(time):
@@ -73,3 +73,9 @@ def test_a_constant_channel_has_no_velocity():
     found = smooth(time, np.full((500, 1), 0.7), time)
     np.testing.assert_allclose(found.first, 0, atol=1e-9)
     np.testing.assert_allclose(found.value, 0.7, atol=1e-9)
+
+
+def test_unknown_ticks_are_bridged_and_ends_held():
+    assert bridged(np.array([np.nan, 1.0, np.nan, 3.0, np.nan])).tolist() == [1.0, 1.0, 2.0, 3.0, 3.0]
+    whole = np.arange(4.0)
+    assert bridged(whole) is whole

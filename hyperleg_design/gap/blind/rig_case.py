@@ -82,7 +82,8 @@ def rig_case(plan: Plan) -> Case:
     if plan.references:
         healthy = replace(rig, day=of_day(robot, life, rng), session="before", role="reference")
         moves = healthy.motions(2, plan.duration, rng)
-        references = healthy.run([((), moves[k], int(rng.integers(2**31))) for k in range(2)], rig.recorder)
+        jobs = [((), moves[k], int(rng.integers(2**31))) for k in range(2)]
+        references = healthy.logs(healthy.traces(jobs), jobs)
     return Case(
         plan=plan, robot=robot.robot, mjcf=robot.mjcf, logs=tuple(logs), references=tuple(references), wrongs=tuple(wrongs), multiples=reached,
         parameters=tuple(parameters(w, robot, rig.day, rig.reach, belts=1.0 if plan.plant == "rig" else BELT_STIFFNESS) for w in wrongs),
@@ -103,7 +104,7 @@ def _recorded(rig: _Rig, wrongs: list[Wrong], rng: np.random.Generator) -> tuple
         if all(calm(trace) for trace in traces):
             break
         wrongs = [replace(w, size=float(np.sign(w.size) * max(SMALLER * abs(w.size), SIZES[w.effect].smallest))) for w in wrongs]
-    return wrongs, [rig.log(trace, job, rig.recorder, number) for number, (trace, job) in enumerate(zip(traces, jobs, strict=True))]
+    return wrongs, rig.logs(traces, jobs)
 
 
 def calm(trace: Trace) -> bool:
@@ -138,9 +139,8 @@ class _Rig:
         with np.errstate(all="ignore"):  # a size too large may shake a rig to pieces; it is then not taken
             return self.simulator(plants, np.stack([t for _, t, _ in jobs]), self.recorder.rate, seeds=[s for *_, s in jobs])
 
-    def run(self, jobs: Sequence[tuple[Sequence[Wrong], np.ndarray, int]], recorder: Recorder) -> list[Log]:
-        traces = self.traces(jobs)
-        return [self.log(trace, job, recorder, number) for number, (trace, job) in enumerate(zip(traces, jobs, strict=True))]
+    def logs(self, traces: Sequence[Trace], jobs: Sequence[tuple[Sequence[Wrong], np.ndarray, int]]) -> list[Log]:
+        return [self.log(trace, job, self.recorder, number) for number, (trace, job) in enumerate(zip(traces, jobs, strict=True))]
 
     def log(self, trace: Trace, job: tuple[Sequence[Wrong], np.ndarray, int], recorder: Recorder, number: int) -> Log:
         return record(

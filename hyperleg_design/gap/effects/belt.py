@@ -17,6 +17,7 @@ pushes it to, and crosses over as the load turns round, s = w / 2 tanh(u / (c rm
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -82,6 +83,7 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coas
         coasting: from 0, carried over by the load, to 1, moving by itself `(k,)`; a joint, on side 1, always does.
     """
     found = np.zeros((len(play), len(signals.time)))
+    pushed = cache(lambda: _pushed(signals, motor))
     kicks: dict[bool, list[float]] = {}
     for row, width in enumerate(play):
         if width <= 0:
@@ -94,7 +96,7 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coas
                 kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
             found[row] = free * np.array(_bounced(kicks[at_rotor], signals.step, float(width) / 2))
         if free < 1:
-            found[row] += (1 - free) * float(width) / 2 * _pushed(signals, motor)
+            found[row] += (1 - free) * float(width) / 2 * pushed()
     return found
 
 

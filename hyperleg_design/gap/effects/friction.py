@@ -25,6 +25,8 @@ from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resist
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
 
+FRICTION = frozenset({"coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction"})
+"""Effects of joints that rub."""
 NOISES = 8.0
 """Least z over the noise of the smoothed position."""
 WIDTH = 0.01

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from hyperleg_design.gap.smoothing import bridged
+
 
 def delayed(values: np.ndarray, delay: np.ndarray, step: float) -> np.ndarray:
     """Signal some time ago, by linear interpolation; before its beginning, its first value.
@@ -44,8 +46,7 @@ def lagged(values: np.ndarray, time_constant: np.ndarray, step: float) -> np.nda
     out = np.full((len(time_constant), len(values)), np.nan)
     if not known.any():
         return out
-    ticks = np.arange(len(values))
-    filled = values if known.all() else np.interp(ticks, ticks[known], values[known])
+    filled = bridged(values)
     for row, lag in enumerate(time_constant):
         if lag <= 1e-6 * step:
             out[row] = values
@@ -65,11 +66,9 @@ def band_limited(values: np.ndarray, step: float, cutoff: float) -> np.ndarray:
     """Signal `(t,)` without what lies above a frequency [Hz], no delay; unknown ticks are bridged."""
     from scipy.signal import butter, sosfiltfilt
 
-    known = np.isfinite(values)
-    if not known.any():
+    if not np.isfinite(values).any():
         return values
-    ticks = np.arange(len(values))
-    filled = values if known.all() else np.interp(ticks, ticks[known], values[known])
+    filled = bridged(values)
     if cutoff >= 0.45 / step or len(values) < 20:
         return filled
     return np.asarray(sosfiltfilt(butter(2, cutoff, fs=1 / step, output="sos"), filled, padlen=min(len(values) - 1, 100)))

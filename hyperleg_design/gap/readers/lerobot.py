@@ -9,7 +9,6 @@ degrees: only the dataset's author knows.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -22,6 +21,7 @@ from hyperleg_design.gap import log as logs
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.readers.source import FOLDER_FILE, beside, joint_names, made_log
 from hyperleg_design.gap.readers.units import FACTORS
+from hyperleg_design.reading import read_json
 
 IN_DEGREES = ("so100", "so101", "so_", "koch", "moss", "lekiwi", "omx", "bi_so")
 """Beginnings of `robot_type` whose joints are in degrees."""
@@ -78,10 +78,7 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
 
 def _info(path: Path) -> dict[str, Any]:
     where = f"{path.name}/meta/info.json"
-    try:
-        info = json.loads((path / "meta" / "info.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(where, "", None, f"is not JSON ({' '.join(str(error).split())[:80]})") from None
+    info = read_json(path / "meta" / "info.json", where)
     if not isinstance(info, dict) or not isinstance(info.get("features", {}), dict):
         raise InputError(where, "", None, "expects a mapping with features")
     return info
