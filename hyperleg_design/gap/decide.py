@@ -6,7 +6,7 @@ one must do so beside those before it. What no list of effects explains is `unkn
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -36,6 +36,8 @@ SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
+HELD = 0.5
+"""Share of what a joint holds that friction must explain."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
 """Gap over floor up to which a shape must be so many times more evident to be told, as no cause was named."""
 
@@ -58,6 +60,8 @@ class Decision:
     """Share of the time in which most drives at once do not do what they were told, beside the causes."""
     chatter: tuple[str, ...]
     """Joints that chatter though none of the causes can make them."""
+    holds: Mapping[str, float]
+    """Joints that hold more than known friction and that of the causes together, see `holding` [Nm]."""
     not_judged: tuple[screen.NotJudged, ...]
 
 
@@ -82,7 +86,10 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *swung))
+    sticking = {joint: torque for joint, torque in judge.holds.items() if judge.held(chosen, joint) < HELD}
+    if sticking and verdict == "none":
+        verdict = "unknown"
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, sticking, (*not_judged, *swung))
 
 
 def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> Model:
@@ -135,7 +142,11 @@ def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequen
 def _named(judge: Judge, model: Model) -> bool:
     """Whether the first cause is worth its name: by all rows with excess or, where it is beyond doubt, by those where it shows."""
     rules = judge.thresholds
-    if model.gain < rules.evident * (CHATTERING if model.causes[-1].unsettling else 1.0) or not _visible(judge, model):
+    if model.gain < rules.evident * (CHATTERING if model.causes[-1].unsettling else 1.0):
+        return False
+    if any(judge.held(model, joint) >= HELD for joint in judge.holds):
+        return True  # what a joint shows at rest is in no row
+    if not _visible(judge, model):
         return False
     rows = judge.excess_rows(model)
     if float(judge.gap(model.held.bare, rows)) < rules.least_gap:

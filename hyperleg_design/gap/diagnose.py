@@ -21,6 +21,7 @@ from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
 from hyperleg_design.gap.fit import Design
 from hyperleg_design.gap.held_out import Held, predict
+from hyperleg_design.gap.holding import sticks
 from hyperleg_design.gap.judge import CHATTERS, Judge, Model, rank
 from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
@@ -175,6 +176,7 @@ class _Report:
             equivalent=equivalent, separating_experiment=None if trial is None else experiment.as_mapping(trial, equivalent[0]),
             not_judged=tuple({"effect": n.effect, "location": n.location, "reason": n.reason} for n in found.not_judged),
             residual_shape=self.shape(), checks=doubts, nuisance=self.nuisance(), provenance=self.provenance(),
+            at_rest=tuple({"location": j, "torque": t, "says": sticks(j, t)} for j, t in judge.holds.items()),
         )  # fmt: skip
 
     def doubtful(self, table: dict[tuple[tuple[str, str], ...], float], alike_first: Sequence[Model]) -> bool:
@@ -321,6 +323,8 @@ class _Report:
             found.append({"shape": "lost_commands", "location": "robot", "says": says, "closed_beyond": 0.0, "gain": 0.0})
         for joint in self.found.chatter:
             found.append({"shape": "chatter", "location": joint, "says": swings(self.signals, joint), "closed_beyond": 0.0, "gain": 0.0})
+        for joint, torque in self.found.holds.items():
+            found.append({"shape": "sticks", "location": joint, "says": sticks(joint, torque), "closed_beyond": 0.0, "gain": 0.0})
         for one, gain, closed in self.found.shaped[:MOST_SHAPES]:
             if gain > 0 and closed > 0:
                 place = "robot" if one.row < 0 else samples.rows[one.row].name

@@ -87,6 +87,8 @@ class Diagnosis:
     not_judged: tuple[Mapping[str, str], ...] = ()
     residual_shape: tuple[Mapping[str, Any], ...] = ()
     checks: tuple[str, ...] = ()
+    at_rest: tuple[Mapping[str, Any], ...] = ()
+    """Joints that hold more than all known friction while they stand: `location`, `torque` beyond it [Nm], and `says`."""
     nuisance: tuple[Mapping[str, Any], ...] = ()
     """Calibration errors that were fitted along, the largest first, in usual sizes."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
@@ -109,6 +111,7 @@ class Diagnosis:
             "not_judged": [dict(one) for one in self.not_judged],
             "residual_shape": [dict(one) for one in self.residual_shape],
             "checks": list(self.checks),
+            "at_rest": [dict(one) for one in self.at_rest],
             "nuisance": [dict(one) for one in self.nuisance],
             "provenance": dict(self.provenance),
         }
@@ -154,6 +157,7 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
             not_judged=tuple(content.get("not_judged", ())),
             residual_shape=tuple(content.get("residual_shape", ())),
             checks=tuple(content.get("checks", ())),
+            at_rest=tuple(content.get("at_rest", ())),
             nuisance=tuple(content.get("nuisance", ())),
             provenance=dict(content.get("provenance", {})),
         )

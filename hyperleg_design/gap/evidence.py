@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.gap.filtering import moving, sticking
+
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
 
@@ -26,7 +28,7 @@ class Evidence:
     time: np.ndarray
     """`(t,)` [s]."""
     before: np.ndarray
-    """Residual of the nominal model `(t, r)` [Nm]; NaN where it cannot be told."""
+    """Residual of the nominal model `(t, r)` [Nm]; NaN where it cannot be told, and where a joint may stick."""
     explained: np.ndarray
     """What the causes leave there `(t, r)` [Nm]."""
     speed: np.ndarray
@@ -63,6 +65,8 @@ def evidence(signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str
         if trace is not None:
             explained = explained + trace[0]
     known = np.isfinite(residual) & np.isfinite(explained) & signals.valid[:, None]
+    if balance == "motion":
+        known = np.stack([moving(*pair) for pair in zip(known.T, sticking(signals).T, strict=True)], -1)
     before = _smooth(np.where(known, residual, 0.0), signals.step)
     made = _smooth(np.where(known, explained, 0.0), signals.step)
     subject = signals.subject

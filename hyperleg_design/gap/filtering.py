@@ -137,9 +137,7 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
         for column in range(residual.shape[1]):
             mask = signals.valid & np.isfinite(residual[:, column])
             if balance == "motion" and resting is not None:
-                moving = mask & ~resting[:, column]
-                # a joint that hardly moves is worth its rest, too
-                mask = moving if moving.sum() > LEAST_MOVING * mask.sum() else mask
+                mask = moving(mask, resting[:, column])
             if mask.sum() < FEWEST:
                 continue
             rows.append(Row(balance, column, row_name(signals, balance, column), _cutoff(signals, balance, column)))
@@ -147,6 +145,12 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
     length = next_fast_len(len(signals.time), real=True)
     bands = tuple(_bands(row, mask, length, signals.step) for row, mask in zip(rows, masks, strict=True))
     return Sieve(signals, tuple(rows), np.array(masks).reshape(len(rows), len(signals.time)), bands, length)
+
+
+def moving(known: np.ndarray, resting: np.ndarray) -> np.ndarray:
+    """Known ticks of a joint `(t,)` without its rest; a joint that hardly moves is worth its rest, too."""
+    found = known & ~resting
+    return found if found.sum() > LEAST_MOVING * known.sum() else known
 
 
 def row_name(signals: Signals, balance: str, column: int) -> str:
@@ -218,15 +222,21 @@ def traced(sieve: Sieve, traces: Mapping[str, np.ndarray]) -> dict[int, np.ndarr
 
 STILL, AROUND = 0.06, 0.02
 """Time over which a joint that moves less than its friction takes to turn over may stick, and time around it that is left out [s]."""
+CREEP, ASTRAY = 0.1, 0.5
+"""Speed below which friction may be smaller than it is in motion [rad/s], unless the joint follows its target to this share."""
 
 
 def sticking(signals: Signals) -> np.ndarray:
     """Ticks at which a joint may stick, so that its friction is whatever the other torques ask for `(t, n)` of bool."""
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d
+    from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
     from hyperleg_design.gap.effects.friction import presliding, shaken
 
     span = max(round(STILL / signals.step), 2)
     moved = maximum_filter1d(signals.position, span, axis=0) - minimum_filter1d(signals.position, span, axis=0)
     still = (moved < 2 * presliding(signals)) & ~shaken(signals)
+    if signals.target is not None:
+        ahead = np.gradient(uniform_filter1d(signals.target, span, axis=0, mode="nearest"), signals.step, axis=0)
+        led = np.abs(signals.velocity - ahead) <= ASTRAY * np.abs(ahead)
+        still |= (np.abs(signals.velocity) < CREEP) & ~led & np.isfinite(ahead) & ~shaken(signals)
     return np.asarray(maximum_filter1d(still.astype(np.uint8), 2 * round(AROUND / signals.step) + 1, axis=0) > 0)

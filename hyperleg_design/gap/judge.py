@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ import numpy as np
 from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.fit import Cause, Design, Fit, parts
 from hyperleg_design.gap.held_out import Held, predict
+from hyperleg_design.gap.holding import SURE, share
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.thresholds import Thresholds
@@ -73,6 +74,11 @@ class Judge:
     threads: int
 
     @cached_property
+    def holds(self) -> Mapping[str, float]:
+        """Joints that hold more than all known friction, see `holding` [Nm]."""
+        return self.base.samples.sieves[0].signals.holds
+
+    @cached_property
     def nothing(self) -> Model:
         """Calibration errors alone."""
         design = Design(self.base)
@@ -130,7 +136,12 @@ class Judge:
         design = Design(self.base, causes)
         fit = design.fit(scale=self.nothing.fit.scale, rounds=ROUNDS)
         held = predict(design, fit=fit)
-        return Model(tuple(causes), fit, held, self.gain(fit, held))
+        model = Model(tuple(causes), fit, held, self.gain(fit, held))
+        return replace(model, gain=model.gain + sum(SURE * self.held(model, joint) ** 2 for joint in self.holds)) if self.holds else model
+
+    def held(self, model: Model, joint: str) -> float:
+        """Share of what a joint holds that a model explains."""
+        return share(model, joint, self.holds[joint], [s.signals for s in self.base.samples.sieves])
 
     def gain(self, fit: Fit, held: Held) -> float:
         """Log-likelihood of held-out blocks over that of no cause, the cost of the calibration errors taken into account."""

@@ -21,6 +21,7 @@ from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import episodes
 from hyperleg_design.gap.fit import Design, Fit
 from hyperleg_design.gap.held_out import predict
+from hyperleg_design.gap.holding import noticed
 from hyperleg_design.gap.learned import Learned, learned
 from hyperleg_design.gap.samples import LOGS, Samples, gather
 from hyperleg_design.gap.screen import reach
@@ -64,7 +65,7 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
     Raises:
         InputError: no log shows a balance.
     """
-    signals = newly(signals, references)
+    signals = noticed(newly(signals, references), references)
     subject = signals[0].subject
     usual = nuisance.usual_errors(subject, signals[0].step)
     own = _columns(signals, usual, thresholds, sessions_of(signals))

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import zip_longest
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -17,6 +18,7 @@ from hyperleg_design.gap.chatter import UNSETTLING, unsettled
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.endogenous import factor
 from hyperleg_design.gap.fit import Cause, Design, Fit
+from hyperleg_design.gap.holding import SURE, SURELY
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Effect
@@ -30,9 +32,13 @@ STEPS = 4
 """Gauss-Newton steps a start in the screen."""
 MOST_DESCENTS, DESCENTS = 16, 2
 """Effects that are not linear which are fitted exactly, and starts of each."""
+MOST_STARTS = 12
+"""Starts of an effect at a place whose traces are tried."""
 PROMISING = 0.1
 """Gain of an effect by its starts' traces, over the best gain of any, from which it is fitted exactly."""
 
+BREAKAWAY = "stribeck_friction"
+"""Effect of joints that stick."""
 DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
 """Signals of `Signals` that drive an effect."""
 
@@ -82,6 +88,9 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     subject = samples.sieves[0].signals.subject
     usual = effect.usual(location, subject)
     low, high = effect.bounds(location, subject)
+    holds = samples.sieves[0].signals.holds
+    if effect.identifier == BREAKAWAY and location in holds:
+        low[0] = min(SURELY * holds[location], high[0])
     nulls = effect.nulls
     k = len(nulls)
     if effect.linear:
@@ -199,7 +208,8 @@ def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[
         whole = Cause(name, location, one, one, np.ones(1), np.zeros(1), np.full(1, 10.0), np.zeros(1, bool), column[None], none, True)
         gains.append(_candidate(base, whole, nothing, beside).gain if np.any(column) else -np.inf)
     order = np.argsort(-np.array(gains), kind="stable")
-    return _Rough(name, location, starts[order], gains[order[0]])
+    holds = name == BREAKAWAY and location in base.samples.sieves[0].signals.holds
+    return _Rough(name, location, starts[order], gains[order[0]] + SURE * holds)
 
 
 def _best(base: Base, rough: _Rough, nothing: Fit, beside: Sequence[Cause]) -> Candidate | None:
@@ -224,10 +234,11 @@ def lacking(effect: Effect, location: str, signals: Sequence[Signals]) -> str:
 
 
 def _starts(base: Base, effect: Effect, location: str) -> np.ndarray:
-    """Starts of all logs, each once."""
-    found = np.concatenate([effect.starts(s.signals, location) for s in base.samples.sieves])
+    """Starts of all logs, each once; the first of every log before the second of any."""
+    logs = [list(effect.starts(s.signals, location)) for s in base.samples.sieves]
+    found = np.array([start for turn in zip_longest(*logs) for start in turn if start is not None])
     _, first = np.unique(np.round(found, 12), axis=0, return_index=True)
-    return found[np.sort(first)][:12]
+    return found[np.sort(first)][:MOST_STARTS]
 
 
 def _candidate(base: Base, cause: Cause, nothing: Fit, beside: Sequence[Cause], rounds: int = 1) -> Candidate:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -86,5 +87,7 @@ class Signals:
     """Standard deviation of the noise of a position sample, as the log itself tells `(n,)` [rad]."""
     chatter: Chatter | None = None
     """Of joints that swing to and fro above all that was commanded; None where none does."""
+    holds: Mapping[str, float] = field(default_factory=dict)
+    """Joints that were seen to hold more than all known friction in any log under test, and by how much [Nm]; see `holding`."""
     notes: tuple[str, ...] = ()
     """What this log lacked and what was assumed in its place."""

@@ -24,6 +24,9 @@ VERDICTS = {
     "unknown": "There is a gap, and no effect of the catalogue closes it; the shape of what is left is described below.",
 }
 
+LEAST_CLOSED = 0.05
+"""Share of the excess that a cause must close to be said to close the gap."""
+
 
 def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals]) -> Path:
     """Write `index.html` and its figures beside `diagnosis.json`.
@@ -46,12 +49,19 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     verdict = str(diagnosis["verdict"])
     page = Page(
         title=f"Gap diagnosis of {signals[0].subject.name}" if signals else "Gap diagnosis",
-        lead=f"Verdict: {verdict}. {VERDICTS[verdict]} {_sentence(causes)}{_chatter(diagnosis)}",
+        lead=f"Verdict: {verdict}. {_meaning(diagnosis)} {_sentence(causes)}{_chatter(diagnosis)}{_at_rest(diagnosis)}",
         sections=[section for section in sections if section.content],
         facts=_facts(gap, causes),
         provenance={**dict(diagnosis.get("provenance", {})), "page made by commit": provenance.git_commit()},
     )
     return write_text(folder / "index.html", render(page))
+
+
+def _meaning(diagnosis: Mapping[str, Any]) -> str:
+    """What the verdict says of these logs."""
+    if diagnosis["causes"] and diagnosis.get("at_rest") and float(diagnosis["gap"]["closed"]) < LEAST_CLOSED:
+        return "One explanation goes with what joints do at rest; in motion they show no gap beyond the repeatability floor."
+    return VERDICTS[str(diagnosis["verdict"])]
 
 
 def _chatter(diagnosis: Mapping[str, Any]) -> str:
@@ -60,6 +70,12 @@ def _chatter(diagnosis: Mapping[str, Any]) -> str:
     if not joints:
         return ""
     return f"What is left first of all: {', '.join(joints)} chatter{'s' if len(joints) == 1 else ''}, as of a loop that is hardly stable."
+
+
+def _at_rest(diagnosis: Mapping[str, Any]) -> str:
+    """What joints show while they stand."""
+    said = [str(one["says"]) for one in diagnosis.get("at_rest", ())]
+    return f" At rest, which is in no balance and in no share closed: {'; '.join(said)}." if said else ""
 
 
 def cause_text(cause: Mapping[str, Any]) -> str:

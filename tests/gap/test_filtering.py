@@ -1,3 +1,5 @@
+import dataclasses
+
 import diagnosed
 import numpy as np
 import pytest
@@ -54,6 +56,14 @@ def test_a_joint_at_rest_may_stick_and_a_moving_one_does_not(signals):
     assert not np.any(found & fast)
     first = np.all(np.abs(signals.velocity[:5]) < 1e-2)
     assert not first or found[2].all()
+
+
+def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target(signals):
+    slow = 0.05 * signals.time[:, None] * np.ones(2)
+    creeps = dataclasses.replace(signals, position=slow, velocity=np.full_like(slow, 0.05), chatter=None)
+    assert not sticking(dataclasses.replace(creeps, target=slow + 0.01))[20:-20].any()
+    assert sticking(dataclasses.replace(creeps, target=np.ones_like(slow))).all()
+    assert not sticking(dataclasses.replace(creeps, target=None))[20:-20].any()
 
 
 def test_rows_that_a_trace_leaves_alone_are_missing(signals):

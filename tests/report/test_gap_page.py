@@ -76,5 +76,15 @@ def test_joints_that_chatter_come_first(tmp_path: Path, signals) -> None:
     assert "  left: chatter at swing: swings to and fro by 2 rad/s at 60 Hz" in diagnosis_text(told).splitlines()
 
 
+def test_what_a_joint_shows_at_rest_is_told_and_no_gap_is_said_to_close(tmp_path: Path, signals) -> None:
+    rest = {"location": "swing", "torque": 0.3, "says": "swing stays where it is: it sticks"}
+    told = diagnosis("explained", at_rest=[rest])
+    told["gap"] = {**told["gap"], "closed": 0.0}
+    text = write_gap_page(tmp_path, told, signals).read_text()
+    assert "swing stays where it is: it sticks." in text
+    assert "closes the gap" not in text
+    assert "  at rest, which is in no balance: swing stays where it is: it sticks" in diagnosis_text(told).splitlines()
+
+
 def test_causes_read_as_a_sentence() -> None:
     assert cause_text(CAUSE) == "coulomb_friction at swing (torque 0.2 Nm, 0.17 .. 0.21)"

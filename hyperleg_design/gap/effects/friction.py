@@ -8,7 +8,7 @@ the elastic-plastic limit of the Dahl and LuGre models),
 
 where twice s, as noise alone never lets it stay at its ends. A joint that comes to rest keeps it: right on ramps slower than
 the noise of the velocity, and in holds that a damped controller creeps into; where a joint sticks while its controller pulls
-it the other way, nothing in a log tells the friction, and `resting` says so.
+it the other way, nothing but the torque itself tells the friction: such rest is in no balance, `holding` speaks of it.
 """
 
 from __future__ import annotations
@@ -31,8 +31,6 @@ NOISES = 8.0
 """Least z over the noise of the smoothed position."""
 WIDTH = 0.01
 """Velocity at which friction in a simulation has three quarters of its size [rad/s]; a sign, softened below what logs resolve."""
-REST = 0.2
-"""Time within which a joint that moves less than `2 z` counts as resting [s]; assumed."""
 
 _SLIDING: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
@@ -69,15 +67,6 @@ def presliding(signals: Signals) -> np.ndarray:
     passed = np.sqrt(np.clip(2 * np.nan_to_num(signals.bandwidth) * signals.step, 0.0, 1.0))
     plain = 1.0 if signals.chatter is None else np.sqrt(1 - signals.chatter.share)
     return np.asarray(np.maximum(PRESLIDING, NOISES * np.nan_to_num(signals.noise) * plain * passed))
-
-
-def resting(signals: Signals) -> np.ndarray:
-    """Where a joint's friction is anything up to its size, as it does not move `(t, n)` of bool."""
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d
-
-    span = max(round(REST / signals.step), 1)
-    moved = maximum_filter1d(signals.position, span, axis=0) - minimum_filter1d(signals.position, span, axis=0)
-    return np.asarray(moved < 2 * presliding(signals)) & ~shaken(signals)
 
 
 def shaken(signals: Signals) -> np.ndarray:

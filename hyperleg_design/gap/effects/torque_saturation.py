@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, limited, motor_strength
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 _QUANTILES = (0.97, 0.9, 0.8, 0.6)
+_NEEDED = 0.95
 
 
 class TorqueSaturation(Effect):
@@ -59,12 +61,14 @@ class TorqueSaturation(Effect):
         return np.array([size / (0.1 * motor_strength(subject, subject.motors.index(location)))])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Torques that the command of this log exceeds ever more often."""
+        """The torque that the motion hardly ever needs more than, and torques that the command of this log exceeds ever more often."""
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
             return super().starts(signals, location)
         asked = np.abs(limited(signals, motor, commanded(signals, motor)))
-        return np.asarray(np.minimum(1 / np.maximum(np.nanquantile(asked, _QUANTILES), 1e-9), self.parameters[0].high)[:, None])
+        needed = np.abs(applied(signals.subject.motor_from_joint[motor : motor + 1], signals.rigid))
+        limits = np.append(np.nanquantile(needed, _NEEDED), np.nanquantile(asked, _QUANTILES))
+        return np.asarray(np.minimum(1 / np.maximum(limits, 1e-9), self.parameters[0].high)[:, None])
 
     def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
         """The limit."""

@@ -21,10 +21,16 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 
 def test_starts_bind_ever_more_often(pendulum):
     signals = pendulum(Wrong())
-    starts = 1 / SATURATION.starts(signals, "swing")[:, 0]
+    starts = 1 / SATURATION.starts(signals, "swing")[1:, 0]
     bound = [np.mean(np.abs(signals.command[:, 0]) > limit) for limit in starts]
     assert np.all(np.diff(starts) < 0)
     assert np.all(np.diff(bound) > 0)
+
+
+def test_the_first_start_is_what_a_drive_gives_at_most_however_much_it_is_asked_for(pendulum):
+    for limit in (0.8, 0.3):
+        signals = pendulum(Wrong(limit=limit), sees=())
+        assert 0.6 * limit < 1 / SATURATION.starts(signals, "swing")[0, 0] < 1.2 * limit
 
 
 def test_people_read_the_limit(pendulum):

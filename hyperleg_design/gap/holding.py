@@ -1,0 +1,114 @@
+"""Friction at rest that logs show without any doubt: a joint that stands still while the torque on it changes.
+
+What a joint that sticks is held by is no function of the motion, so its rest is left out of the balances (`filtering.sticking`).
+But while it does not move, gravity does not change either: half the range over which the torque on it rises and falls is friction
+that it has at least (the bound |f| <= F of Coulomb's law for rest), whatever load or offset there may be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.effects.friction import FRICTION
+from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.effects.series import band_limited
+from hyperleg_design.gap.filtering import sticking
+from hyperleg_design.gap.rigid import turned
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.judge import Model
+    from hyperleg_design.gap.signals import Signals
+
+SHORTEST = 0.1
+"""Rests that count [s]."""
+BAND = 10.0
+"""Of the torque on a joint at rest [Hz]; below a third of the log's rate."""
+ENDS = (3.0, 97.0)
+"""Percentiles between which a torque ranges."""
+OF_LOAD = 0.15
+"""Share of the range of the load, as other joints move, that the model may have wrong (assumed)."""
+BEYOND, LEAST = 0.25, 0.01
+"""Friction beyond the known one that counts: of that, and of the torque that the joint is made for; belts and drives hold some, too."""
+SURE = 20.0
+"""Log-likelihood of friction that explains what a joint holds."""
+
+SURELY = 0.9
+"""Share of what a joint holds that its breakaway friction has at least, where that is the cause."""
+
+_HELD: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
+
+
+def held(signals: Signals) -> np.ndarray:
+    """Friction at rest that a log shows at least, by joint `(n,)` [Nm]; kept while `signals` live."""
+    if signals not in _HELD:
+        subject = signals.subject
+        motion = signals.residual["motion"] + subject.coulomb * turned(signals.velocity, subject.friction_speed)
+        rest = sticking(signals) & signals.valid[:, None] & np.isfinite(motion)
+        found = np.zeros(len(subject.joints))
+        for joint in range(len(found)):
+            torque = band_limited(motion[:, joint], signals.step, min(BAND, 0.3 / signals.step))
+            for part in _stretches(rest[:, joint], SHORTEST / signals.step):
+                found[joint] = max(found[joint], _half(torque[part]) - OF_LOAD * _half(signals.rigid[part, joint]))
+        _HELD[signals] = found
+    return _HELD[signals]
+
+
+def noticed(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Signals]:
+    """Logs with the joints that hold more than the friction that the model has and reference logs show, and by how much.
+
+    Args:
+        signals: conditioned logs under test.
+        references: conditioned logs of the healthy robot.
+    """
+    subject = signals[0].subject
+    known = np.max([subject.coulomb, *(held(s) for s in references)], 0)
+    shows = np.max([held(s) for s in signals], 0)
+    shaken = np.any([s.chatter.joints for s in signals if s.chatter is not None] or [np.zeros(len(known), bool)], 0)
+    counts = (shows - known > BEYOND * known + LEAST * joint_strength(subject)) & ~shaken & ~subject.passive
+    holds = {subject.joints[j]: float(shows[j] - known[j]) for j in np.flatnonzero(counts).tolist()}
+    return [replace(s, holds=holds) for s in signals]
+
+
+def share(model: Model, joint: str, torque: float, signals: Sequence[Signals]) -> float:
+    """How much of what a joint holds a model's friction explains, from 0 to 1.
+
+    Args:
+        model: of some causes.
+        joint: that holds.
+        torque: beyond known friction [Nm].
+        signals: conditioned logs under test.
+    """
+    given = 0.0
+    for place, cause in enumerate(model.causes):
+        if cause.location == joint and cause.effect in FRICTION - {"viscous_friction"}:
+            given += float(model.values(place)[0]) * (_load(signals, joint) if cause.effect == "load_dependent_friction" else 1.0)
+    return float(np.clip(given / torque, 0.0, 1.0))
+
+
+def sticks(joint: str, torque: float) -> str:
+    """For people."""
+    return f"{joint} stays where it is while the torque on it changes by {torque:.3g} Nm to either side beyond all friction that is known: it sticks"
+
+
+def _load(signals: Sequence[Signals], joint: str) -> float:
+    """Torque that motors usually send through a joint at most [Nm]."""
+    place = signals[0].subject.joints.index(joint)
+    sent = [applied(s.subject.joint_from_motor, s.believed)[:, place] for s in signals]
+    return float(np.nanpercentile(np.abs(np.concatenate(sent)), 90))
+
+
+def _half(values: np.ndarray) -> float:
+    low, high = np.percentile(values, ENDS)
+    return float(high - low) / 2
+
+
+def _stretches(mask: np.ndarray, shortest: float) -> list[slice]:
+    """Unbroken stretches of a mask that are long enough."""
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    return [slice(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= shortest]

@@ -1,0 +1,62 @@
+import numpy as np
+import pytest
+import robots
+from diagnosed import conditioned
+
+from hyperleg_design.gap.diagnose import diagnose_signals
+from hyperleg_design.gap.holding import held, noticed
+
+SERVO = robots.PENDULUM.replace(
+    '<motor name="servo" joint="swing" ctrlrange="-3 3"/>', '<position name="servo" joint="swing" kp="8" kv="0.3" forcerange="-3 3"/>'
+)
+
+
+@pytest.fixture(scope="module")
+def servo(tmp_path_factory):
+    path = tmp_path_factory.mktemp("servo") / "servo.xml"
+    path.write_text(SERVO)
+    return path
+
+
+def ramps(time):
+    """Slow moves to and fro with holds between."""
+    corners = np.array([0.0, 0.5, 0.5, -0.4, -0.4, 0.1, 0.1, 0.6, 0.6])
+    return np.array([np.interp(time, np.arange(len(corners)) * 1.2, corners)])
+
+
+def log(friction=0.0, mass=0.5, **metadata):
+    """A servo that ramps, with dry friction [Nm] at its joint and a mass at its end [kg]."""
+    text = SERVO.replace('damping="0.02"', f'damping="0.02" frictionloss="{friction}"').replace('mass="0.5"', f'mass="{mass}"')
+    found = robots.servo_run(text, ramps, 10.0, **metadata)
+    rng = np.random.default_rng(3)
+    noise = {"position": 2e-5, "velocity": 2e-3, "motor_torque": 5e-3}
+    return found.changed(signals={c: v + rng.normal(0, noise.get(c.partition("/")[0], 0.0), len(v)) for c, v in found.signals.items()})
+
+
+def test_a_joint_that_sticks_shows_its_friction_and_never_more(servo):
+    for friction in (0.3, 0.6):
+        shown = float(held(conditioned(servo, log(friction))[0])[0])
+        assert 0.6 * friction < shown < 1.1 * friction
+
+
+def test_neither_a_load_nor_a_free_joint_is_taken_for_friction(servo):
+    for healthy in (log(), log(mass=0.9)):
+        signals = conditioned(servo, healthy)
+        assert float(held(signals[0])[0]) < 0.05
+        assert noticed(signals, ())[0].holds == {}
+
+
+def test_what_held_before_is_no_news(servo):
+    signals = conditioned(servo, log(0.5), log(0.5, session="before", role="reference"))
+    assert list(noticed(signals[:1], ())[0].holds) == ["swing"]
+    assert noticed(signals[:1], signals[1:])[0].holds == {}
+
+
+def test_a_joint_that_sticks_is_never_called_healthy(servo):
+    found = diagnose_signals(conditioned(servo, log(0.6)), threads=1)
+    assert found.verdict in ("explained", "ambiguous")
+    assert found.causes[0].effect in ("coulomb_friction", "stribeck_friction")
+    torque = found.causes[0].parameters["torque"]
+    assert torque.low < 0.66
+    assert torque.high > 0.5
+    assert "it sticks" in found.mapping()["at_rest"][0]["says"]
