@@ -144,7 +144,10 @@ def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[st
         name = f"trace-{i + 1}.png"
         save(gap_figures.trace_figure(one), folder / FIGURES / name)
         content.append(
-            Picture(f"{FIGURES}/{name}", f"{one.rows[one.worst]} in {one.log}: torque that the model lacks, {says}; right, against speed.")
+            Picture(
+                f"{FIGURES}/{name}",
+                f"{one.rows[one.worst]} in {one.log}: torque that the model lacks, {says}, but for its rest; right, against speed.",
+            )
         )
     return content
 

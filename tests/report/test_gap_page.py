@@ -78,7 +78,7 @@ def test_joints_that_chatter_come_first(tmp_path: Path, signals) -> None:
 
 def test_what_a_joint_shows_at_rest_is_told_and_no_gap_is_said_to_close(tmp_path: Path, signals) -> None:
     rest = {"location": "swing", "torque": 0.3, "says": "swing stays where it is: it sticks"}
-    told = diagnosis("explained", at_rest=[rest])
+    told = diagnosis("explained", causes=[CAUSE], at_rest=[rest])
     told["gap"] = {**told["gap"], "closed": 0.0}
     text = write_gap_page(tmp_path, told, signals).read_text()
     assert "swing stays where it is: it sticks." in text
