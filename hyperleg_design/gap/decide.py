@@ -36,6 +36,8 @@ SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
+BEYOND_DOUBT = 3.0
+"""Evidence, over that which a further cause needs, of a first cause that is named however little it leaves over the floor."""
 HELD = 0.5
 """Share of what a joint holds that friction must explain."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
@@ -149,7 +151,7 @@ def _named(judge: Judge, model: Model) -> bool:
     if not _visible(judge, model):
         return False
     rows = judge.excess_rows(model)
-    if float(judge.gap(model.held.bare, rows)) < rules.least_gap:
+    if float(judge.gap(model.held.bare, rows)) < rules.least_gap and model.gain < BEYOND_DOUBT * rules.second_evident:
         return False
     if judge.closed(model.held, rows, model.held) >= rules.worth:
         return True

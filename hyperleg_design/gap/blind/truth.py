@@ -68,7 +68,8 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None, *
         case "thermal_derating":
             return {"coefficient": wrong.size / 100.0}
         case "voltage_sag":
-            return {"limits": 1.0}
+            # Of a robot whose file tells no speed-torque line, `limits` is how near that line is, which depends on the unknown voltage.
+            return {"limits": 1.0} if robot.mjcf is None else {}
         case "command_delay":
             return {"delay": wrong.size}
         case "actuator_bandwidth":

@@ -53,7 +53,8 @@ def test_every_effect_changes_every_robot_and_says_what_it_is(name, effect):
     assert not (same and unmoved)
     values = parameters(wrong, robot, day, reach)
     assert all(np.isfinite(v) for v in values.values())
-    assert bool(values) == wrong.listed
+    # where the line of the motors is nobody's knowledge, how far it falls has no number to be compared with
+    assert bool(values) == (wrong.listed and not (effect == "voltage_sag" and robot.mjcf is not None))
     assert wrong.location in places(wrong, robot)
 
 
