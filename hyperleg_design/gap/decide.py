@@ -238,7 +238,11 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[sha
     beyond = shaping.tells(rules, chosen, shaped) and shaped[0].gain > needed
     if not chosen.causes:
         return "unknown" if excess > rules.largest_excess or beyond else "none"
-    much = float(judge.gap(chosen.held.square, rows)) > rules.largest_excess
-    if beyond or (much and judge.closed(chosen.held, rows, chosen.held) < rules.required):
+    left = float(judge.gap(chosen.held.square, rows))
+    far = rules.far_required ** (1 / len(chosen.causes))  # several causes that still leave much are the less likely
+    needed = far if left > rules.far else rules.required if left > rules.largest_excess else -np.inf
+    if any(judge.held(chosen, joint) >= HELD for joint in judge.holds):
+        needed = -np.inf  # what a joint shows at rest is in no row
+    if beyond or judge.closed(chosen.held, rows, chosen.held) < needed:
         return "unknown"
     return "explained"

@@ -32,6 +32,8 @@ class Thresholds:
     second_instead: float
     second_visible: float
     required: float
+    far: float
+    far_required: float
     beyond: float
     beyond_evident: float
     together: float

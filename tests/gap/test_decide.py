@@ -1,8 +1,10 @@
+from dataclasses import replace
+
 import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.decide import decide
+from hyperleg_design.gap.decide import _verdict, decide
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.judge import Judge, rank
 from hyperleg_design.gap.screen import places
@@ -40,3 +42,12 @@ def test_nothing_is_left_by_nothing(judged):
     assert isinstance(judge, Judge)
     assert judge.nothing.gain == 0
     assert np.allclose(judge.nothing.held.square, judge.nothing.held.bare)
+
+
+def test_causes_that_leave_far_more_than_the_floor_must_close_most_of_it(judged):
+    judge, found = judged
+    rules = judge.thresholds
+    closed = judge.closed(found.model.held, found.rows, found.model.held)
+    strict = replace(rules, far=0.0, far_required=1.01 * closed)
+    for several, verdict in ((strict, "unknown"), (replace(strict, far_required=0.5 * closed), "explained")):
+        assert _verdict(replace(judge, thresholds=several), found.model, found.rows, ()) == verdict
