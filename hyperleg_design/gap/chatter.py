@@ -92,20 +92,22 @@ def sliding_share(velocity: np.ndarray, width: np.ndarray | float, swing: np.nda
     return np.asarray(sum(np.tanh((velocity + swing * np.sin(phase)) / width) for phase in phases) / PHASES)
 
 
+def chattering(signals: Sequence[Signals]) -> np.ndarray:
+    """Which joints are unsettled in any of some logs `(n,)` of bool; `()`, False, where none is in any."""
+    return np.asarray(np.any([s.chatter.joints for s in signals if s.chatter is not None], 0))
+
+
 def newly(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Signals]:
     """Logs in which only those joints count as unsettled that were settled in all reference logs."""
-    before = [s.chatter.joints for s in references if s.chatter is not None]
-    if not before:
-        return list(signals)
-    known = np.any(before, 0)
+    known = chattering(references)
     return [s if s.chatter is None else replace(s, chatter=replace(s.chatter, joints=s.chatter.joints & ~known)) for s in signals]
 
 
 def unsettled(samples: Samples) -> tuple[str, ...]:
     """Joints that chatter in any log, and did not in reference logs."""
-    shaken = [s.signals.chatter.joints for s in samples.sieves if s.signals.chatter is not None]
-    joints = samples.sieves[0].signals.subject.joints
-    return tuple(joint for joint, any_log in zip(joints, np.any(shaken, 0), strict=True) if any_log) if shaken else ()
+    signals = [s.signals for s in samples.sieves]
+    joints = signals[0].subject.joints
+    return tuple(joints[j] for j in np.flatnonzero(np.broadcast_to(chattering(signals), len(joints))))
 
 
 def swings(signals: Sequence[Signals], joint: str) -> str:

@@ -6,7 +6,7 @@ one must do so beside those before it. What no list of effects explains is `unkn
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -62,8 +62,6 @@ class Decision:
     """Share of the time in which most drives at once do not do what they were told, beside the causes."""
     chatter: tuple[str, ...]
     """Joints that chatter though none of the causes can make them."""
-    holds: Mapping[str, float]
-    """Joints that hold more than known friction and that of the causes together, see `holding` [Nm]."""
     not_judged: tuple[screen.NotJudged, ...]
 
 
@@ -88,10 +86,9 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
-    sticking = {joint: torque for joint, torque in judge.holds.items() if judge.held(chosen, joint) < HELD}
-    if sticking and verdict == "none":
+    if verdict == "none" and any(judge.held(chosen, joint) < HELD for joint in judge.holds):
         verdict = "unknown"
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, sticking, (*not_judged, *swung))
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *swung))
 
 
 def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> Model:
@@ -146,8 +143,8 @@ def _named(judge: Judge, model: Model) -> bool:
     rules = judge.thresholds
     if model.gain < rules.evident * (CHATTERING if model.causes[-1].unsettling else 1.0):
         return False
-    if any(judge.held(model, joint) >= HELD for joint in judge.holds):
-        return True  # what a joint shows at rest is in no row
+    if _rests(judge, model):
+        return True
     if not _visible(judge, model):
         return False
     rows = judge.excess_rows(model)
@@ -183,6 +180,11 @@ def _kept(model: Model, before: Model) -> bool:
         if float(moved @ moved) > SHARED**2 * float(own @ own):
             return False
     return True
+
+
+def _rests(judge: Judge, model: Model) -> bool:
+    """Whether a model explains what a joint shows at rest, which is in no row."""
+    return any(judge.held(model, joint) >= HELD for joint in judge.holds)
 
 
 def _visible(judge: Judge, model: Model) -> bool:
@@ -241,8 +243,7 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[sha
     left = float(judge.gap(chosen.held.square, rows))
     far = rules.far_required ** (1 / len(chosen.causes))  # several causes that still leave much are the less likely
     needed = far if left > rules.far else rules.required if left > rules.largest_excess else -np.inf
-    if any(judge.held(chosen, joint) >= HELD for joint in judge.holds):
-        needed = -np.inf  # what a joint shows at rest is in no row
-    if beyond or judge.closed(chosen.held, rows, chosen.held) < needed:
+    short = judge.closed(chosen.held, rows, chosen.held) < needed and not _rests(judge, chosen)
+    if beyond or short:
         return "unknown"
     return "explained"

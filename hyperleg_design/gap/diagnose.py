@@ -323,8 +323,6 @@ class _Report:
             found.append({"shape": "lost_commands", "location": "robot", "says": says, "closed_beyond": 0.0, "gain": 0.0})
         for joint in self.found.chatter:
             found.append({"shape": "chatter", "location": joint, "says": swings(self.signals, joint), "closed_beyond": 0.0, "gain": 0.0})
-        for joint, torque in self.found.holds.items():
-            found.append({"shape": "sticks", "location": joint, "says": sticks(joint, torque), "closed_beyond": 0.0, "gain": 0.0})
         for one, gain, closed in self.found.shaped[:MOST_SHAPES]:
             if gain > 0 and closed > 0:
                 place = "robot" if one.row < 0 else samples.rows[one.row].name

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap.chatter import chattering
 from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import joint_strength
@@ -37,26 +37,21 @@ BEYOND, LEAST = 0.25, 0.01
 """Friction beyond the known one that counts: of that, and of the torque that the joint is made for; belts and drives hold some, too."""
 SURE = 20.0
 """Log-likelihood of friction that explains what a joint holds."""
-
 SURELY = 0.9
 """Share of what a joint holds that its breakaway friction has at least, where that is the cause."""
 
-_HELD: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
-
 
 def held(signals: Signals) -> np.ndarray:
-    """Friction at rest that a log shows at least, by joint `(n,)` [Nm]; kept while `signals` live."""
-    if signals not in _HELD:
-        subject = signals.subject
-        motion = signals.residual["motion"] + subject.coulomb * turned(signals.velocity, subject.friction_speed)
-        rest = sticking(signals) & signals.valid[:, None] & np.isfinite(motion)
-        found = np.zeros(len(subject.joints))
-        for joint in range(len(found)):
-            torque = band_limited(motion[:, joint], signals.step, min(BAND, 0.3 / signals.step))
-            for part in _stretches(rest[:, joint], SHORTEST / signals.step):
-                found[joint] = max(found[joint], _half(torque[part]) - OF_LOAD * _half(signals.rigid[part, joint]))
-        _HELD[signals] = found
-    return _HELD[signals]
+    """Friction at rest that a log shows at least, by joint `(n,)` [Nm]."""
+    subject = signals.subject
+    motion = signals.residual["motion"] + subject.coulomb * turned(signals.velocity, subject.friction_speed)
+    rest = sticking(signals) & signals.valid[:, None] & np.isfinite(motion)
+    found = np.zeros(len(subject.joints))
+    for joint in range(len(found)):
+        torque = band_limited(motion[:, joint], signals.step, min(BAND, 0.3 / signals.step))
+        for part in _stretches(rest[:, joint], SHORTEST / signals.step):
+            found[joint] = max(found[joint], _half(torque[part]) - OF_LOAD * _half(signals.rigid[part, joint]))
+    return found
 
 
 def noticed(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Signals]:
@@ -69,8 +64,7 @@ def noticed(signals: Sequence[Signals], references: Sequence[Signals]) -> list[S
     subject = signals[0].subject
     known = np.max([subject.coulomb, *(held(s) for s in references)], 0)
     shows = np.max([held(s) for s in signals], 0)
-    shaken = np.any([s.chatter.joints for s in signals if s.chatter is not None] or [np.zeros(len(known), bool)], 0)
-    counts = (shows - known > BEYOND * known + LEAST * joint_strength(subject)) & ~shaken & ~subject.passive
+    counts = (shows - known > BEYOND * known + LEAST * joint_strength(subject)) & ~chattering(signals) & ~subject.passive
     holds = {subject.joints[j]: float(shows[j] - known[j]) for j in np.flatnonzero(counts).tolist()}
     return [replace(s, holds=holds) for s in signals]
 
