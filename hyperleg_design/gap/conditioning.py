@@ -20,6 +20,7 @@ from hyperleg_design.gap.ground import balance as ground_balance
 from hyperleg_design.gap.plausibility import frozen
 from hyperleg_design.gap.signals import BaseMotion, Signals
 from hyperleg_design.gap.smoothing import smooth
+from hyperleg_design.gap.supply import over_nominal
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
@@ -72,9 +73,10 @@ def condition(log: Log, subject: Subject) -> Signals:
     if subject.floating:
         base, derived = base_motion(log, subject, ticks)
         notes += derived
+    voltage = _voltage(log, ticks)
     command, target, control, others = _command(log, subject, ticks, motion)
     measured = _measured(log, subject, ticks)
-    limited = None if command is None else limited_torque(subject, command, motion.first)
+    limited = None if command is None else limited_torque(subject, command, motion.first, voltage)
     believed, more = _believed(log, subject, measured, limited)
     notes += more
     own = None if base is None else rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
@@ -102,7 +104,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         log=log, subject=subject, step=step, time=ticks, position=motion.value, velocity=motion.first, acceleration=motion.second, base=base,
         target=target, command=command, measured=measured, believed=believed, rigid=needed,
         temperature=resampled_or_none(log.time, of_motors(log, "motor_temperature", subject), ticks),
-        voltage=_voltage(log, ticks), contact=ground.foot_force, valid=valid, residual=residual, pad_force=ground.pad_force,
+        voltage=voltage, contact=ground.foot_force, valid=valid, residual=residual, pad_force=ground.pad_force,
         touching=ground.touching, bandwidth=motion.crossover / (2 * np.pi), noise=motion.level, chatter=shaken, notes=tuple(notes),
     )  # fmt: skip
     ground_residual = ground_balance(signals)
@@ -132,14 +134,22 @@ def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.asarray(product)
 
 
-def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Motor torques within peak torque and DC-motor line of the nominal motors `(t, m)` [Nm]; joint velocity `(t, n)` [rad/s]."""
+def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray, voltage: np.ndarray | None = None) -> np.ndarray:
+    """Motor torques within peak torque and DC-motor line of the nominal motors `(t, m)` [Nm].
+
+    Args:
+        subject: the robot.
+        torque: of the motors `(t, m)` [Nm].
+        velocity: of the joints `(t, n)` [rad/s].
+        voltage: of the battery `(t,)` [V], which motors without current control follow.
+    """
     torque = np.clip(torque, -subject.torque_limit, subject.torque_limit)
     line = np.isfinite(subject.stall_torque) & np.isfinite(subject.no_load_speed)
     if line.any():
         speed = velocity @ subject.joint_from_motor[:, line]
         stall = subject.stall_torque[line]
         droop = stall / subject.no_load_speed[line] * speed
+        stall = stall * over_nominal(subject, voltage)[:, line]
         peak = subject.torque_limit[line]
         torque[:, line] = np.clip(np.maximum(np.minimum(torque[:, line], stall - droop), -stall - droop), -peak, peak)
     return torque
@@ -192,11 +202,12 @@ def _command(
         stiffness, damping = subject.gains.T
         spring, damper = stiffness * (raw_target - log.stack("position", subject.joints)), -damping * speed
         spring[:, subject.passive] = damper[:, subject.passive] = 0.0
-        asked = spring + damper
         if np.isfinite(logged).any():
             residual, others = control_residual(subject, logged, spring, damper)
             control = resampled_or_none(log.time, residual, ticks)
-        torque = resampled(log.time, applied(subject.motor_from_joint, asked), ticks)
+        supplied = over_nominal(subject, log.column("battery_voltage"))
+        asked = supplied * applied(subject.motor_from_joint, spring) + applied(subject.motor_from_joint, damper)
+        torque = resampled(log.time, asked, ticks)
         command = np.where(np.isfinite(command), command, torque)
     if subject.one_to_one and subject.passive.any():
         command[:, subject.passive] = 0.0

@@ -8,7 +8,6 @@ that it has at least (the bound |f| <= F of Coulomb's law for rest), whatever lo
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +22,11 @@ from hyperleg_design.gap.rigid import turned
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.judge import Model
+    from hyperleg_design.gap.learned import Learned
     from hyperleg_design.gap.signals import Signals
 
+RUBBING = FRICTION - {"viscous_friction"}
+"""Effects that hold a joint at rest."""
 SHORTEST = 0.1
 """Rests that count [s]."""
 BAND = 10.0
@@ -54,19 +56,23 @@ def held(signals: Signals) -> np.ndarray:
     return found
 
 
-def noticed(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Signals]:
-    """Logs with the joints that hold more than the friction that the model has and reference logs show, and by how much.
+def noticed(signals: Sequence[Signals], references: Sequence[Signals], learned: Sequence[Learned] = ()) -> dict[str, float]:
+    """Joints that hold more than the friction that the model has and reference logs show, and by how much [Nm].
 
     Args:
         signals: conditioned logs under test.
         references: conditioned logs of the healthy robot.
+        learned: effects that it has already.
     """
     subject = signals[0].subject
     known = np.max([subject.coulomb, *(held(s) for s in references)], 0)
+    for one in learned:
+        if one.effect in RUBBING:
+            joint = subject.joints.index(one.location)
+            known[joint] = max(known[joint], subject.coulomb[joint] + _given(one.effect, one.location, one.values, signals))
     shows = np.max([held(s) for s in signals], 0)
     counts = (shows - known > BEYOND * known + LEAST * joint_strength(subject)) & ~chattering(signals) & ~subject.passive
-    holds = {subject.joints[j]: float(shows[j] - known[j]) for j in np.flatnonzero(counts).tolist()}
-    return [replace(s, holds=holds) for s in signals]
+    return {subject.joints[j]: float(shows[j] - known[j]) for j in np.flatnonzero(counts).tolist()}
 
 
 def share(model: Model, joint: str, torque: float, signals: Sequence[Signals]) -> float:
@@ -80,14 +86,19 @@ def share(model: Model, joint: str, torque: float, signals: Sequence[Signals]) -
     """
     given = 0.0
     for place, cause in enumerate(model.causes):
-        if cause.location == joint and cause.effect in FRICTION - {"viscous_friction"}:
-            given += float(model.values(place)[0]) * (_load(signals, joint) if cause.effect == "load_dependent_friction" else 1.0)
+        if cause.location == joint and cause.effect in RUBBING:
+            given += _given(cause.effect, joint, model.values(place), signals)
     return float(np.clip(given / torque, 0.0, 1.0))
 
 
 def sticks(joint: str, torque: float) -> str:
     """For people."""
     return f"{joint} stays where it is while the torque on it changes by {torque:.3g} Nm to either side beyond all friction that is known: it sticks"
+
+
+def _given(effect: str, joint: str, values: np.ndarray, signals: Sequence[Signals]) -> float:
+    """Friction that an effect gives a joint at rest [Nm]."""
+    return float(values[0]) * (_load(signals, joint) if effect == "load_dependent_friction" else 1.0)
 
 
 def _load(signals: Sequence[Signals], joint: str) -> float:

@@ -76,7 +76,7 @@ class Judge:
     @cached_property
     def holds(self) -> Mapping[str, float]:
         """Joints that hold more than all known friction, see `holding` [Nm]."""
-        return self.base.samples.sieves[0].signals.holds
+        return self.base.samples.holds
 
     @cached_property
     def nothing(self) -> Model:
@@ -187,7 +187,8 @@ def rank(model: Model) -> float:
 def plausible(model: Model) -> float:
     """Log prior of the last cause of a model, over that of any other."""
     cause = model.causes[-1]
-    found = -PER_PARAMETER * len(cause.nulls) + RARE.get(cause.effect, 0.0)
+    free = len(cause.nulls) - (int(cause.shape.sum()) if cause.linear else 0)
+    found = -PER_PARAMETER * free + RARE.get(cause.effect, 0.0)
     if cause.unsettling:
         found += CHATTERS
     if cause.unseen:

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.nuisance import Usual
 from hyperleg_design.gap.screen import linearise
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.judge import Model
     from hyperleg_design.gap.samples import Samples
+    from hyperleg_design.gap.subject import Subject
 
 ANOTHER_DAY = 0.05
 """Of a learned parameter, its change from one day to the next (assumed)."""
@@ -54,6 +56,14 @@ class Learned:
         if cause is None:
             return None
         return cause.trace(cause.phi), cause.columns * (self.deviation / self.usual)[:, None]
+
+
+def unsaid(subject: Subject) -> list[tuple[str, str]]:
+    """Effects and places of which a model says nothing, though every machine has them: friction of joints that have none in it, rotors."""
+    driven = subject.one_to_one & ~subject.passive
+    free = [joint for joint, own, has in zip(subject.joints, subject.coulomb, driven, strict=True) if has and not own]
+    rotors = [motor for motor, own in zip(subject.motors, subject.rotor_inertia, strict=True) if not own and motor in EFFECTS["rotor_inertia"].locations(subject)]
+    return [(effect, joint) for effect in sorted(FRICTION) for joint in free] + [("rotor_inertia", motor) for motor in rotors]
 
 
 def learned(model: Model) -> tuple[Learned, ...]:

@@ -43,6 +43,9 @@ class Metadata:
     """Of the position controller by joint: stiffness [Nm/rad], damping [Nms/rad], at the joint."""
     torque_constant: Mapping[str, float] = field(default_factory=dict)
     """By motor [Nm/A], of the torque that `motor_torque` means."""
+    supply: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    """By motor without current control, whose duty cycle follows the gains: nominal supply [V], and stall torque [Nm] and no-load
+    speed [rad/s] at it. Their stiffness and their limits follow the logged voltage of the battery."""
     payload: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     """What hangs on the robot by link: mass [kg], centre of mass in the link's frame x, y, z [m]."""
     session: str = ""
@@ -101,6 +104,7 @@ def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
         "gravity": _gravity,
         "gains": _gains,
         "torque_constant": _torque_constants,
+        "supply": _supplies,
         "payload": _payloads,
         "session": _text,
         "role": _text,
@@ -182,6 +186,14 @@ def _torque_constants(value: Any, where: str, name: str) -> dict[str, float]:
     for motor, constant in found.items():
         if constant <= 0:
             raise InputError(where, f"{name}.{motor}", constant, "expects Nm/A, above 0")
+    return found
+
+
+def _supplies(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]:
+    found = {motor: _numbers(numbers, 3, where, f"{name}.{motor}") for motor, numbers in _mapping(value, where, name).items()}
+    for motor, numbers in found.items():
+        if min(numbers) <= 0:
+            raise InputError(where, f"{name}.{motor}", value[motor], "expects [supply V, stall torque Nm, no-load speed rad/s], all above 0")
     return found
 
 

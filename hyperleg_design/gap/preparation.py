@@ -6,8 +6,8 @@ floor, and the logs under test may differ from them by the usual change from day
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +22,7 @@ from hyperleg_design.gap.episodes import episodes
 from hyperleg_design.gap.fit import Design, Fit
 from hyperleg_design.gap.held_out import predict
 from hyperleg_design.gap.holding import noticed
-from hyperleg_design.gap.learned import Learned, learned
+from hyperleg_design.gap.learned import Learned, learned, unsaid
 from hyperleg_design.gap.samples import LOGS, Samples, gather
 from hyperleg_design.gap.screen import reach
 
@@ -65,7 +65,7 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
     Raises:
         InputError: no log shows a balance.
     """
-    signals = noticed(newly(signals, references), references)
+    signals = newly(signals, references)
     subject = signals[0].subject
     usual = nuisance.usual_errors(subject, signals[0].step)
     own = _columns(signals, usual, thresholds, sessions_of(signals))
@@ -77,11 +77,13 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
         kept |= _showing(healthy)
         errors = [one for one, k in zip(usual, kept, strict=True) if k]
         base = healthy.base(kept, _wide(errors), thresholds)
-        seen = [name for name in AT_LIMITS if name != "voltage_sag" or any(s.voltage is not None for s in references)]
-        before = shown_already(base, thresholds, screen.places(subject, seen), threads)
+        limits = [name for name in AT_LIMITS if name != "voltage_sag" or any(s.voltage is not None for s in references)]
+        before = shown_already(base, thresholds, [*screen.places(subject, limits), *unsaid(subject)], threads)
         prior = _after(base, before.fit, errors)
-        own = own.scaled(_scales(base, before))
-        return _with_learned(own, kept, prior, errors, learned(before), thresholds)
+        own, known = own.scaled(_scales(base, before)), learned(before)
+        own = replace(own, holds=noticed(signals, references, known))
+        return _with_learned(own, kept, prior, errors, known, thresholds)
+    own = replace(own, holds=noticed(signals, ()))
     errors = [one for one, k in zip(usual, kept, strict=True) if k]
     prior = Prior(np.zeros(len(errors)), np.eye(len(errors)))
     return Prepared(own.base(kept, prior, thresholds), tuple(errors), False)
@@ -137,6 +139,8 @@ class _Columns:
     thresholds: Thresholds
     known: np.ndarray | None = None
     """Traces of what the healthy robot shows already `(S,)`; left out of the residual."""
+    holds: Mapping[str, float] = field(default_factory=dict)
+    """As of `Samples`."""
 
     def scaled(self, scales: dict[tuple[str, int, int], float]) -> _Columns:
         """With the floor of each row and band scaled in variance."""
@@ -154,11 +158,11 @@ class _Columns:
 
     def gathered(self, floors: list[list[np.ndarray]], apart: np.ndarray | None = None) -> Samples:
         """The samples anew, over other floors, or with episodes apart `(S,)`."""
-        return gather(self.sieves, floors, self.sessions.tolist(), self.thresholds.information, apart)
+        return replace(gather(self.sieves, floors, self.sessions.tolist(), self.thresholds.information, apart), holds=self.holds)
 
     def base(self, kept: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
         """Base without the errors that show nowhere, its episodes apart."""
-        found = _base(self.samples, self.errors[kept], prior, thresholds, self.known)
+        found = _base(replace(self.samples, holds=self.holds), self.errors[kept], prior, thresholds, self.known)
         apart = episodes(found)
         if not apart.any():
             return found

@@ -20,6 +20,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.conditioning import wrong_limits
 from hyperleg_design.gap.machine import machine_of
 from hyperleg_design.gap.rigid import pad_points
+from hyperleg_design.gap.supply import followed
 from hyperleg_design.simulation import actuation
 from hyperleg_design.simulation.alteration import Alteration, damps_motors
 from hyperleg_design.simulation.chain import Chain, Driven
@@ -208,7 +209,7 @@ class Plant:
         from mujoco.batch import Batch
 
         self.subject = subject
-        self.chain = Chain(machine_of(subject), alterations, count, step)
+        self.chain = Chain(machine_of(subject), (*followed(subject), *alterations), count, step)
         self.model = replay_model(subject, self.chain, alterations, step, unlimited)
         self.batch = Batch(self.model, count, threads)
         self.qpos, self.qvel, self._applied = (self.batch.bind(name) for name in ("qpos", "qvel", "qfrc_applied"))

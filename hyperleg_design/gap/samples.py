@@ -8,7 +8,7 @@ of one log; parts are dealt to folds twice: `BLOCKS` deals stretches of every lo
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -75,6 +75,8 @@ class Samples:
     """Of each part `(2, P)`, by way of holding out."""
     log: np.ndarray
     """Of each part `(P,)`."""
+    holds: Mapping[str, float] = field(default_factory=dict)
+    """Joints that hold more than all known friction in any of the logs, and by how much [Nm]; see `holding`."""
 
     @property
     def groups(self) -> int:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 SHOWN = 0.02
 """Root mean square of a trace over the floor, at its usual size in the group where it shows most, below which these logs cannot show it."""
-STEPS = 4
+STEPS = 8
 """Gauss-Newton steps a start in the screen."""
 MOST_DESCENTS, DESCENTS = 16, 2
 """Effects that are not linear which are fitted exactly, and starts of each."""
@@ -88,13 +88,16 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     subject = samples.sieves[0].signals.subject
     usual = effect.usual(location, subject)
     low, high = effect.bounds(location, subject)
-    holds = samples.sieves[0].signals.holds
+    holds = samples.holds
     if effect.identifier == BREAKAWAY and location in holds:
         low[0] = min(SURELY * holds[location], high[0])
     nulls = effect.nulls
     k = len(nulls)
+    shape = np.array([p.shape for p in effect.parameters])
     if effect.linear:
-        settings, divide = nulls + np.diag(usual), np.ones(k)
+        nulls = np.where(shape, values, nulls)
+        low, high = np.where(shape, nulls, low), np.where(shape, nulls, high)
+        settings, divide = nulls + np.diag(np.where(shape, 0.0, usual)), np.ones(k)
         found = samples.columns(lambda s: effect.trace(s, location, settings), k)
         if found is None:
             return None
@@ -111,7 +114,6 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         some = divide != 0
         columns = np.where(some[:, None], (found[:k] - found[k]) / np.where(some, divide, 1.0)[:, None], 0.0)
         constant = found[k] - ((values - nulls) / usual) @ columns
-    shape = np.array([p.shape for p in effect.parameters])
     declared = max((float(kg[0]) for place, kg in subject.declared.payload.items() if _same_place(subject, place, location)), default=0.0)
     scaled = factor(samples, effect.identifier, location, usual)
     driver = DRIVERS.get(effect.identifier)
@@ -194,10 +196,11 @@ def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[
     if missing:
         return NotJudged(name, location, missing)
     if effect.linear:
-        cause = linearise(base.samples, effect, location, effect.nulls)
-        if cause is None or reach(base.samples, cause.columns) < SHOWN:
+        causes = [linearise(base.samples, effect, location, values) for values in _variants(base, effect, location)]
+        shown = [c for c in causes if c is not None and reach(base.samples, c.columns) >= SHOWN]
+        if not shown:
             return NotJudged(name, location, "these logs do not excite it")
-        return _candidate(base, cause, nothing, beside)
+        return max((_candidate(base, c, nothing, beside) for c in shown), key=lambda c: c.gain)
     starts = _starts(base, effect, location)
     columns = base.samples.columns(lambda s: effect.trace(s, location, starts), len(starts))
     if columns is None or reach(base.samples, columns) < SHOWN:
@@ -208,7 +211,7 @@ def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[
         whole = Cause(name, location, one, one, np.ones(1), np.zeros(1), np.full(1, 10.0), np.zeros(1, bool), column[None], none, True)
         gains.append(_candidate(base, whole, nothing, beside).gain if np.any(column) else -np.inf)
     order = np.argsort(-np.array(gains), kind="stable")
-    holds = name == BREAKAWAY and location in base.samples.sieves[0].signals.holds
+    holds = name == BREAKAWAY and location in base.samples.holds
     return _Rough(name, location, starts[order], gains[order[0]] + SURE * holds)
 
 
@@ -231,6 +234,12 @@ def lacking(effect: Effect, location: str, signals: Sequence[Signals]) -> str:
     if not balances & set().union(*(s.residual for s in signals)):
         return f"these logs have no balance in which it shows ({', '.join(sorted(balances))})"
     return ""
+
+
+def _variants(base: Base, effect: Effect, location: str) -> np.ndarray:
+    """Of all logs, each once."""
+    found = np.concatenate([effect.variants(s.signals, location) for s in base.samples.sieves])
+    return np.unique(found, axis=0)
 
 
 def _starts(base: Base, effect: Effect, location: str) -> np.ndarray:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from hyperleg_design.gap.supply import over_nominal
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.chatter import Chatter
@@ -87,7 +89,10 @@ class Signals:
     """Standard deviation of the noise of a position sample, as the log itself tells `(n,)` [rad]."""
     chatter: Chatter | None = None
     """Of joints that swing to and fro above all that was commanded; None where none does."""
-    holds: Mapping[str, float] = field(default_factory=dict)
-    """Joints that were seen to hold more than all known friction in any log under test, and by how much [Nm]; see `holding`."""
     notes: tuple[str, ...] = ()
     """What this log lacked and what was assumed in its place."""
+
+    @cached_property
+    def supplied(self) -> np.ndarray:
+        """Voltage over the nominal one of motors that follow it, 1 of others `(t, m)`, or `(1, m)`; see `supply`."""
+        return over_nominal(self.subject, self.voltage)

@@ -88,6 +88,8 @@ class Subject:
     """Springs of the file at the joints: stiffness and position at rest `(n,)` [Nm/rad, rad]."""
     torque_constant: np.ndarray
     """NaN where unknown `(m,)` [Nm/A]."""
+    supply: np.ndarray
+    """Nominal supply of motors without current control, whose torques follow the battery's voltage; NaN of all others `(m,)` [V]."""
     passive: np.ndarray
     """Joints without a drive `(n,)`."""
     position_low: np.ndarray
@@ -139,12 +141,12 @@ class Subject:
         return pinocchio_model(self.tree, self.gravity)
 
     def declare(self, metadata: Metadata) -> Subject:
-        """The same robot with the gains, torque constants, payload and gravity that one log declares.
+        """The same robot with the gains, torque constants, supplies, payload and gravity that one log declares.
 
         Raises:
             InputError: a joint, motor or link that the robot does not have.
         """
-        keys = ("gains", "torque_constant", "payload", "gravity")
+        keys = ("gains", "torque_constant", "supply", "payload", "gravity")
         if all(getattr(self.declared, k) == getattr(metadata, k) for k in keys) and self.bare is not None:
             return self
         return _declared(self.bare or self, metadata)
@@ -233,7 +235,12 @@ def _declared(bare: Subject, metadata: Metadata) -> Subject:
         gains[_index(joint, bare.joints, "gains", "joint")] = pair
     for motor, value in metadata.torque_constant.items():
         constant[motor_index(bare, motor, "torque_constant")] = value
+    supply, stall, free = np.array(bare.supply), np.array(bare.stall_torque), np.array(bare.no_load_speed)
+    for motor, numbers in metadata.supply.items():
+        place = motor_index(bare, motor, "supply")
+        supply[place], stall[place], free[place] = numbers
     values: dict[str, Any] = {"gains": gains, "torque_constant": constant, "declared": metadata, "bare": bare}
+    values |= {"supply": supply, "stall_torque": stall, "no_load_speed": free}
     moved = metadata.gravity != STANDARD_GRAVITY
     if metadata.payload or moved:
         import copy

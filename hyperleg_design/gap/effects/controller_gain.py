@@ -46,12 +46,12 @@ class ControllerGain(Effect):
         scale = np.atleast_2d(np.asarray(values, float))[..., None] - 1.0
         stiffness, damping = subject.gains[joint]
         error = signals.target[:, joint] - signals.position[:, joint]
-        more = scale[:, 0] * (stiffness * error) - scale[:, 1] * (damping * signals.velocity[:, joint])
+        spring, damper = scale[:, 0] * (stiffness * error), scale[:, 1] * (damping * signals.velocity[:, joint])
         changes, control = {}, None
         for motor in np.flatnonzero(subject.motor_from_joint[:, joint]).tolist():
             if subject.motors[motor] not in driven_motors(subject) or not is_commanded(signals, motor):
                 continue
-            share = subject.motor_from_joint[motor, joint] * more
+            share = subject.motor_from_joint[motor, joint] * (signals.supplied[:, motor] * spring - damper)
             if _logged(signals, motor):
                 if "control" in signals.residual:
                     control = np.zeros((*share.shape, len(subject.motors))) if control is None else control

@@ -59,7 +59,7 @@ class Effect(ABC):
     """One line for people."""
     parameters: ClassVar[tuple[Parameter, ...]]
     linear: ClassVar[bool] = False
-    """Whether the trace is linear in (values - nulls)."""
+    """Whether the trace is linear in (values - nulls), but for parameters that only shape it: these are one of `variants`."""
 
     @abstractmethod
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -127,6 +127,10 @@ class Effect(ABC):
         low, high = self.bounds(location, signals.subject)
         tried = np.clip(self.nulls + np.array([[1.0], [-1.0]]) * np.where(sized, usual, 0.0), low, high)
         return np.asarray(tried[np.any(tried != self.nulls, 1)])
+
+    def variants(self, signals: Signals, location: str) -> np.ndarray:
+        """Of a linear effect, values of the parameters that only shape its trace, each worth a try `(v, parameters)`; the rest null."""
+        return self.nulls[None]
 
     def steps(self, location: str, subject: Subject) -> np.ndarray:
         """Steps of finite differences, small enough for the trace to be about straight over them `(parameters,)`."""

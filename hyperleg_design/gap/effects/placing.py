@@ -106,7 +106,7 @@ def limited(signals: Signals, motor: int, torque: np.ndarray, *, peak: float | n
     stall, free = float(subject.stall_torque[motor]), float(subject.no_load_speed[motor])
     line = np.isfinite(stall) and np.isfinite(free)
     droop = stall / free * motor_velocity(signals, motor) if line else np.zeros(1)
-    available = stall * np.maximum(voltage, 0.0)
+    available = stall * np.maximum(voltage, 0.0) * signals.supplied[:, motor]
     largest = max(float(np.nanmax(torque, initial=0.0)), -float(np.nanmin(torque, initial=0.0)))
     if largest <= min(float(np.nanmin(peak, initial=np.inf)), float(np.nanmin(available, initial=np.inf)) - float(np.abs(droop).max())):
         return np.broadcast_to(torque, np.broadcast_shapes(np.shape(torque), np.shape(peak), np.shape(voltage)))

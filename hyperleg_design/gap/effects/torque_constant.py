@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import at_motor, driven_motors
-from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+from hyperleg_design.gap.effects.placing import at_motor, before_measurement, driven_motors, is_commanded, is_measured
+from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -19,13 +19,18 @@ if TYPE_CHECKING:
 class TorqueConstant(Effect):
     """A motor's torque is `scale` times the one believed, from its current and the declared constant, or as commanded.
 
-    Trace: (1 - scale) times the believed torque.
+    Either the motor is another one, and its drive knows no more of it than the log (`reading` 0); or the constant by which the
+    log's currents are read is wrong, and the drive gives what it was asked for (1). Trace: (1 - scale) times the believed torque,
+    in the balance of motion, and with a wrong reading in that of the drive.
     """
 
     identifier: ClassVar[str] = "torque_constant"
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a motor gives more or less torque than its current and its data sheet say"
-    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("scale", "", 1.0, 0.3, 2.0, 0.08, "8 % off on a dynamometer (EMBiR)"),)
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("scale", "", 1.0, 0.3, 2.0, 0.08, "8 % off on a dynamometer (EMBiR)"),
+        Parameter("reading", "", 0.0, 0.0, 1.0, 1.0, "0: the motor is another one, 1: only its current is read wrongly", shape=True),
+    )
     linear: ClassVar[bool] = True
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -35,27 +40,56 @@ class TorqueConstant(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
-        return at_motor(signals, motor, (1.0 - np.atleast_2d(values)[:, :1]) * signals.believed[:, motor])
+        scale, reading = np.atleast_2d(np.asarray(values, float)).T[..., None]
+        lost = (1.0 - scale) * signals.believed[:, motor]
+        found = at_motor(signals, motor, lost)
+        if reading.any() and _told_twice(signals, motor):
+            found |= before_measurement(signals, {motor: reading * lost})
+        return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
-        return ScaledTorque(location, np.asarray(values, float)[..., 0])
+        values = np.asarray(values, float)
+        return ScaledTorque(location, values[..., 0], values[..., 1])
+
+    def variants(self, signals: Signals, location: str) -> np.ndarray:
+        """Another motor; and a wrong reading, where the log tells both what was asked for and what was given."""
+        both = _told_twice(signals, signals.subject.motors.index(location))
+        return np.array([[1.0, 0.0], [1.0, 1.0]] if both else [[1.0, 0.0]])
+
+
+def _told_twice(signals: Signals, motor: int) -> bool:
+    return is_measured(signals, motor) and is_commanded(signals, motor)
 
 
 @dataclass(frozen=True, eq=False)
 class ScaledTorque(Alteration):
-    """Torque of a motor over the one that its drive takes itself to give."""
+    """Torque of a motor over the one that its drive takes itself to give, or over the one that is read from it."""
 
     motor: str
     scale: Any
-    """`()` or `(n,)` [-]."""
+    reading: Any = 0.0
+    """`()` or `(n,)` each [-]."""
 
 
 class _Scaled(Live):
     alteration: ScaledTorque
 
     def prepare(self) -> None:
-        self.place = self.machine.motor(self.alteration.motor)
+        one = self.alteration
+        self.place = self.machine.motor(one.motor)
+        self.read = 1.0 + np.asarray(one.reading) * (np.asarray(one.scale) - 1.0)
+
+    def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
+        command[:, self.place] /= self.read
+        return command
+
+    def limits(self, limits: Limits, tick: Tick) -> Limits:
+        shape = np.broadcast_shapes(np.shape(limits.peak_torque), (self.count, len(self.machine.motors)))
+        stall, peak = np.array(np.broadcast_to(limits.stall_torque, shape)), np.array(np.broadcast_to(limits.peak_torque, shape))
+        stall[:, self.place] /= self.read
+        peak[:, self.place] /= self.read
+        return Limits(limits.no_load_speed, stall, peak)
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
         torque[:, self.place] *= self.alteration.scale

@@ -72,8 +72,8 @@ class VoltageSag(Effect):
         lost = missing(signals)
         changes = {}
         for motor in range(len(subject.motors)):
-            if not is_commanded(signals, motor):
-                continue
+            if not is_commanded(signals, motor) or (signals.voltage is not None and np.isfinite(subject.supply[motor])):
+                continue  # of motors that follow a logged voltage it is no news
             asked, wanted = commanded(signals, motor), commanded(signals, motor) * (1 - torque * lost)
             if np.isfinite(subject.stall_torque[motor]) and np.isfinite(subject.no_load_speed[motor]):
                 given = limited(signals, motor, wanted, voltage=np.maximum(1 - limits * lost, 0.0))

@@ -2,7 +2,7 @@
 
 Servos are position-controlled by firmware: duty = gain * error_gain * (goal - position) of the supply, clipped to one; the
 motor's torque is kt (duty V - kt speed) / R. At the nominal supply that is a stiffness of kt / R * V * gain * error_gain and
-a damping of kt^2 / R, which the metadata declare as gains. The motor's current is not recorded by most files; it is worked
+a damping of kt^2 / R, which the metadata declare as gains, with a stall torque of kt / R * V and a no-load speed of V / kt. The motor's current is not recorded by most files; it is worked
 out from recorded duty, recorded supply voltage and recorded speed.
 
 The source lacks the mass of the arm, friction and rotor inertia; kt and R are BAM's published fits (model m1, whose friction
@@ -115,7 +115,8 @@ def _found(content: Mapping[str, Any], joint: str) -> dict[str, Any]:
         stiffness = slope * content["vin"] * content["kp"] * servo.error_gain
         found["gains"] = {joint: [stiffness, slope * servo.torque_constant]}
         found["torque_constant"] = {joint: servo.torque_constant}
-        found["extra"] = {**known, "resistance": servo.resistance, "torque_limit": slope * content["vin"]}
+        found["supply"] = {joint: [content["vin"], slope * content["vin"], content["vin"] / servo.torque_constant]}
+        found["extra"] = {**known, "resistance": servo.resistance}
     return found
 
 
