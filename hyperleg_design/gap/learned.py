@@ -62,7 +62,8 @@ def unsaid(subject: Subject) -> list[tuple[str, str]]:
     """Effects and places of which a model says nothing, though every machine has them: friction of joints that have none in it, rotors."""
     driven = subject.one_to_one & ~subject.passive
     free = [joint for joint, own, has in zip(subject.joints, subject.coulomb, driven, strict=True) if has and not own]
-    rotors = [motor for motor, own in zip(subject.motors, subject.rotor_inertia, strict=True) if not own and motor in EFFECTS["rotor_inertia"].locations(subject)]
+    places = EFFECTS["rotor_inertia"].locations(subject)
+    rotors = [motor for motor, own in zip(subject.motors, subject.rotor_inertia, strict=True) if motor in places and not own]
     return [(effect, joint) for effect in sorted(FRICTION) for joint in free] + [("rotor_inertia", motor) for motor in rotors]
 
 

@@ -41,6 +41,8 @@ TORQUE_OFFSET, SPRING = 0.002, 0.002
 """Of the torque that the joint is made for, and that a radian."""
 LATE, LATE_TICKS = 0.001, 0.15
 """[s] and ticks of the log, of all drives; a lag of one of them is half."""
+READING = 1
+"""Parameter of a torque constant by which currents are read wrongly; its error is one of what drives are said to give, apart from motors."""
 GAIN = 0.015
 GYRO, ACCELEROMETER = 0.003, 0.05
 """[rad/s], [m/s^2]"""
@@ -116,6 +118,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
         rotor = ROTOR * subject.rotor_inertia[m] + OWN_INERTIA * inertia[main] / max(float(column[main]), 1e-9) ** 2
         found += [
             Usual("torque_constant", motor, 0, TORQUE_CONSTANT),
+            Usual("torque_constant", motor, READING, TORQUE_CONSTANT),
             Usual("rotor_inertia", motor, 0, rotor),
             Usual("actuator_bandwidth", motor, 0, 0.5 * late),
         ]
@@ -148,6 +151,9 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
             found.append({b: v * one.spread for b, v in trace.items()})
             continue
         effect = EFFECTS[one.effect]
+        if one.effect == "torque_constant" and one.parameter == READING:
+            found.append(_read(signals, one.location, one.spread))
+            continue
         values = effect.nulls
         low, high = effect.bounds(one.location, signals.subject)[:, one.parameter]
         sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
@@ -156,6 +162,16 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
         moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
         found.append({b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()} if moved else {})
     return found
+
+
+def _read(signals: Signals, motor: str, share: float) -> dict[str, np.ndarray]:
+    """A share of what a motor was asked for, where it is also measured."""
+    place = signals.subject.motors.index(motor)
+    if signals.measured is None or "drive" not in signals.residual:
+        return {}
+    rows = np.zeros_like(signals.measured)
+    rows[:, place] = share * (signals.measured - signals.residual["drive"])[:, place]
+    return {"drive": rows}
 
 
 def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:

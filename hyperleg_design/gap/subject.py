@@ -236,9 +236,9 @@ def _declared(bare: Subject, metadata: Metadata) -> Subject:
     for motor, value in metadata.torque_constant.items():
         constant[motor_index(bare, motor, "torque_constant")] = value
     supply, stall, free = np.array(bare.supply), np.array(bare.stall_torque), np.array(bare.no_load_speed)
-    for motor, numbers in metadata.supply.items():
-        place = motor_index(bare, motor, "supply")
-        supply[place], stall[place], free[place] = numbers
+    for motor, line in metadata.supply.items():
+        index = motor_index(bare, motor, "supply")
+        supply[index], stall[index], free[index] = line
     values: dict[str, Any] = {"gains": gains, "torque_constant": constant, "declared": metadata, "bare": bare}
     values |= {"supply": supply, "stall_torque": stall, "no_load_speed": free}
     moved = metadata.gravity != STANDARD_GRAVITY

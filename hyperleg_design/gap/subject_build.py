@@ -134,7 +134,8 @@ def _assembled(*, path: Path, model: Any, tree: Mechanism, matrix: np.ndarray, r
         torque_limit=v["limit"], stall_torque=v["stall"], no_load_speed=v["free"], rotor_inertia=rotor,
         armature=(matrix * rotor) @ matrix.T + np.diag(armature), coulomb=v["coulomb"], viscous=v["viscous"],
         friction_speed=np.full(count, float(v["width"])), spring=v.get("spring", np.zeros(count)), spring_rest=v.get("rest", np.zeros(count)),
-        torque_constant=v["constant"], supply=np.full(len(v["motors"]), np.nan), passive=v["passive"], position_low=low, position_high=high, default=v["default"], model=model, tree=tree,
+        torque_constant=v["constant"], supply=np.full(len(v["motors"]), np.nan),
+        passive=v["passive"], position_low=low, position_high=high, default=v["default"], model=model, tree=tree,
         imu_rotation=v["imu"][0], imu_position=v["imu"][1], unlogged=v["held"], notes=tuple(notes), declared=Metadata(), bare=None,
     )  # fmt: skip
     for value in vars(subject).values():

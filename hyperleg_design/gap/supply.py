@@ -9,7 +9,7 @@ motor's own (kt^2 / R), which no voltage changes. So are hobby servos (Dynamixel
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 

@@ -4,8 +4,9 @@ import pytest
 
 from hyperleg_design.gap.decide import decide, shown_already
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.learned import ANOTHER_DAY, learned
+from hyperleg_design.gap.learned import ANOTHER_DAY, learned, unsaid
 from hyperleg_design.gap.screen import linearise, places
+from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.gap.thresholds import load_thresholds
 
 FRICTION = (("viscous_friction", "knee"), ("coulomb_friction", "knee"))
@@ -45,3 +46,11 @@ def test_a_limit_that_the_healthy_robot_reaches_too_is_no_cause(robot_files):
     wanted = places(alone.base.samples.sieves[0].signals.subject, ("torque_saturation", "torque_constant"))
     assert decide(alone.base, rules, wanted)[1].model.names[0][0] == "torque_saturation"
     assert decide(beside.base, rules, wanted)[1].model.names == ()
+
+
+def test_only_what_the_model_leaves_out_is_asked_of_reference_logs(robot_files):
+    bare = load_subject(robot_files["pendulum"])
+    assert bare.coulomb[0] == 0
+    assert {place for _, place in unsaid(bare)} == {"swing"}
+    assert {"coulomb_friction", "load_dependent_friction"} <= {name for name, _ in unsaid(bare)}
+    assert unsaid(load_subject("hyperleg")) == []

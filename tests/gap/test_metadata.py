@@ -40,6 +40,8 @@ def test_remarks_stand_once():
         ({"gains": {"knee": [1, "a"]}}, "gains.knee = 'a'.*finite number"),
         ({"torque_constant": {"m": 0}}, "torque_constant.m.*above 0"),
         ({"torque_constant": {"m": float("nan")}}, "torque_constant.m.*finite"),
+        ({"supply": {"m": [7.4, 0, 8]}}, "supply.m.*above 0"),
+        ({"supply": {"m": 7.4}}, "supply.m.*3 numbers"),
         ({"payload": {"hand": [-1, 0, 0, 0]}}, "payload.hand.*mass"),
         ({"payload": {"hand": 2.0}}, "payload.hand.*4 numbers"),
         ({"robot": 3}, "robot.*text"),

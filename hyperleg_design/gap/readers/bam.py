@@ -2,8 +2,8 @@
 
 Servos are position-controlled by firmware: duty = gain * error_gain * (goal - position) of the supply, clipped to one; the
 motor's torque is kt (duty V - kt speed) / R. At the nominal supply that is a stiffness of kt / R * V * gain * error_gain and
-a damping of kt^2 / R, which the metadata declare as gains, with a stall torque of kt / R * V and a no-load speed of V / kt. The motor's current is not recorded by most files; it is worked
-out from recorded duty, recorded supply voltage and recorded speed.
+a damping of kt^2 / R, which the metadata declare as gains, with a stall torque of kt / R * V and a no-load speed of V / kt. The
+motor's current is not recorded by most files; it is worked out from recorded duty, supply voltage and speed.
 
 The source lacks the mass of the arm, friction and rotor inertia; kt and R are BAM's published fits (model m1, whose friction
 does not depend on load) to recordings of this kind.

@@ -93,7 +93,7 @@ def _so101(joints: list[str]) -> dict[str, Any]:
         "base": "fixed",
         "gains": dict.fromkeys(joints, gains),
         "torque_constant": dict.fromkeys(joints, STS3215["torque_constant"]),
-        "supply": dict.fromkeys(joints, [STS3215["supply"], slope * STS3215["supply"], STS3215["supply"] / STS3215["torque_constant"]]),
+        "supply": dict.fromkeys(joints, (STS3215["supply"], slope * STS3215["supply"], STS3215["supply"] / STS3215["torque_constant"])),
         "extra": {"servo": "STS3215", "kp": SO101_FIRMWARE_GAIN, "vin": STS3215["supply"], "resistance": STS3215["resistance"]},
         "session": "so101",
     }

@@ -9,11 +9,25 @@ CONSTANT = effect("torque_constant")
 def test_trace_is_what_a_weak_motor_leaves(pendulum):
     for sees in (("motor_torque",), ()):
         signals = pendulum(Wrong(constant=0.85), sees=sees)
-        trace = CONSTANT.trace(signals, "swing", np.array([[0.85]]))
+        trace = CONSTANT.trace(signals, "swing", np.array([[0.85, 0.0]]))
         assert set(trace) == {"motion"}
         assert misfit(signals, trace) < 0.02
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):
-    signals = simulated("torque_constant", [0.85])
-    assert misfit(signals, CONSTANT.trace(signals, "swing", np.array([[0.85]]))) < 0.02
+    signals = simulated("torque_constant", [0.85, 0.0])
+    assert misfit(signals, CONSTANT.trace(signals, "swing", np.array([[0.85, 0.0]]))) < 0.02
+
+
+def test_a_wrong_reading_leaves_the_motion_and_shows_in_both_balances(simulated):
+    healthy, signals = simulated("torque_constant", None), simulated("torque_constant", [0.85, 1.0])
+    assert np.abs(signals.position - healthy.position).max() < 1e-9
+    np.testing.assert_allclose(0.85 * signals.measured, healthy.measured, atol=1e-9)
+    trace = CONSTANT.trace(signals, "swing", np.array([[0.85, 1.0]]))
+    for balance in ("motion", "drive"):
+        assert misfit(signals, trace, balance) < 0.08  # the simulation's controller runs between the log's ticks
+
+
+def test_a_wrong_reading_is_tried_where_the_log_tells_both_torques(pendulum):
+    assert CONSTANT.variants(pendulum(Wrong()), "swing").tolist() == [[1.0, 0.0], [1.0, 1.0]]
+    assert CONSTANT.variants(pendulum(Wrong(), sees=()), "swing").tolist() == [[1.0, 0.0]]

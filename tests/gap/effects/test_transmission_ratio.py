@@ -11,7 +11,7 @@ def test_trace_is_what_another_ratio_leaves(pendulum):
     trace = RATIO.trace(signals, "swing", np.array([[1.1]]))
     assert misfit(signals, trace) < 0.03
     # its rotor tells it from a torque constant
-    assert misfit(signals, effect("torque_constant").trace(signals, "swing", np.array([[1.1]]))) > 5 * misfit(signals, trace)
+    assert misfit(signals, effect("torque_constant").trace(signals, "swing", np.array([[1.1, 0.0]]))) > 5 * misfit(signals, trace)
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):

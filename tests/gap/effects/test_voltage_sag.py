@@ -34,7 +34,14 @@ def test_limits_follow_the_voltage_of_a_design_whose_line_is_known():
     asked = np.zeros((ticks, 14))
     asked[:, 0] = 5.0
     signals = SimpleNamespace(
-        subject=subject, velocity=velocity, command=asked, measured=None, believed=asked, voltage=volts, residual={"motion": velocity}
+        supplied=np.ones((1, 14)),
+        subject=subject,
+        velocity=velocity,
+        command=asked,
+        measured=None,
+        believed=asked,
+        voltage=volts,
+        residual={"motion": velocity},
     )
     found = SAG.trace(signals, "battery", np.array([[1.0, 0.0, 10.0]]))["motion"][0]
     stall = subject.stall_torque[0]

@@ -79,7 +79,7 @@ def test_xl330(real_logs):
     for log in found:
         stiffness, damping = log.metadata.gains["servo"]
         error = log.signals["position_target/servo"] - log.signals["position/servo"]
-        duty = np.abs(error) * stiffness / log.metadata.extra["torque_limit"]
+        duty = np.abs(error) * stiffness / log.metadata.supply["servo"][1]
         free = duty < 0.9  # the firmware's duty is not clipped
         asked = stiffness * error * log.signals["battery_voltage"] / 7.4 - damping * log.signals["velocity/servo"]
         given = log.metadata.torque_constant["servo"] * log.signals["motor_current/servo"]
