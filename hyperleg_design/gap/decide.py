@@ -21,6 +21,7 @@ from hyperleg_design.gap.fit import Cause, Design, Fit, parts
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.samples import Samples
     from hyperleg_design.gap.thresholds import Thresholds
 
 FINALISTS = 10
@@ -59,7 +60,7 @@ class Decision:
     shaped: tuple[shaping.Told, ...]
     """Best first."""
     together: float
-    """Share of the time in which most drives at once do not do what they were told, beside the causes."""
+    """Share of the time in which most drives at once do not do what they were told, beside the causes; 0 where that is little."""
     chatter: tuple[str, ...]
     """Joints that chatter though none of the causes can make them."""
     not_judged: tuple[screen.NotJudged, ...]
@@ -82,10 +83,10 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     chosen, slots = _chosen(judge, wanted, singles)
     rows = judge.excess_rows(chosen if chosen.causes or not singles else singles[0])
     shaped = shaping.instead(judge, chosen, rows, max((m.gain for m in singles), default=0.0)) or shaping.beside(judge, chosen, rows)
-    lost = together(base.samples, chosen.held.left)
+    lost = _lost(base.samples, chosen.held.left, thresholds)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
-    verdict = "unknown" if lost > thresholds.together or shaken else _verdict(judge, chosen, rows, shaped)
+    verdict = "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
     if verdict == "none" and any(judge.held(chosen, joint) < HELD for joint in judge.holds):
         verdict = "unknown"
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *swung))
@@ -231,6 +232,15 @@ def _turned(model: Model) -> Model:
     order = np.r_[np.arange(len(model.fit.phi) - size, len(model.fit.phi)), np.arange(len(model.fit.phi) - size)]
     fit = replace(model.fit, phi=model.fit.phi[order], covariance=model.fit.covariance[np.ix_(order, order)])
     return replace(model, causes=(model.causes[-1], *model.causes[:-1]), fit=fit)
+
+
+def _lost(samples: Samples, left: np.ndarray, rules: Thresholds) -> float:
+    """Share of the time in which commands get lost, if it is one that counts."""
+    share, least = together(samples, left), rules.together
+    subject = samples.sieves[0].signals.subject
+    if subject.one_to_one and not any(row.balance == "drive" for row in samples.rows):
+        share, least = together(samples, left, "motion"), rules.together_joints
+    return share if share > least else 0.0
 
 
 def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[shaping.Told]) -> str:

@@ -318,8 +318,8 @@ class _Report:
         """What the residual beside the causes looks like."""
         samples = self.judge.base.samples
         found: list[dict[str, Any]] = []
-        if self.found.together > self.judge.thresholds.together:
-            says = f"for {100 * self.found.together:.1f} % of the time most drives at once do not follow their commands: these get lost or come late"
+        if self.found.together:
+            says = f"for {100 * self.found.together:.1f} % of the time most joints at once do not follow their commands: these get lost or come late"
             found.append({"shape": "lost_commands", "location": "robot", "says": says, "closed_beyond": 0.0, "gain": 0.0})
         for joint in self.found.chatter:
             found.append({"shape": "chatter", "location": joint, "says": swings(self.signals, joint), "closed_beyond": 0.0, "gain": 0.0})

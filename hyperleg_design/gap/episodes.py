@@ -78,7 +78,7 @@ BIN = 0.05
 """Time within which what happens is together [s]."""
 
 
-def together(samples: Samples, left: np.ndarray) -> float:
+def together(samples: Samples, left: np.ndarray, balance: str = "drive") -> float:
     """Share of the time in which at least two, and half of all drives do not do what they were told, all at once.
 
     Limits and gear teeth belong to one drive; commands that get lost on their way belong to all.
@@ -86,8 +86,9 @@ def together(samples: Samples, left: np.ndarray) -> float:
     Args:
         samples: of all logs.
         left: what a model leaves of every sample, weighted `(S,)`.
+        balance: whose rows tell; of `motion`, what joints do where nobody measured what their drives give.
     """
-    drives = [i for i, row in enumerate(samples.rows) if row.balance == "drive"]
+    drives = [i for i, row in enumerate(samples.rows) if row.balance == balance]
     if len(drives) < 2:
         return 0.0
     plain = np.abs(left) / np.sqrt(samples.share)

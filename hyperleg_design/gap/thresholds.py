@@ -37,6 +37,7 @@ class Thresholds:
     beyond: float
     beyond_evident: float
     together: float
+    together_joints: float
     largest_excess: float
     alike: float
     alike_closed: float

@@ -50,3 +50,12 @@ def test_one_drive_is_too_few(robot_files):
     samples, left = drives(np.ones((3, TICKS), bool))
     samples.rows = [SimpleNamespace(balance="motion")] * 2 + [SimpleNamespace(balance="drive")]
     assert together(samples, left) == 0.0
+
+
+def test_joints_tell_where_nobody_measured_the_drives():
+    wild = np.zeros((3, TICKS), bool)
+    wild[:2] = (np.arange(TICKS) * STEP) % 1.0 < 0.1
+    samples, left = drives(wild)
+    samples.rows = [SimpleNamespace(balance="motion")] * 3
+    assert together(samples, left) == 0.0
+    assert 0.08 <= together(samples, left, "motion") <= 0.12
