@@ -8,8 +8,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.needed import needed
 from hyperleg_design.simulation.alteration import Alteration, Live
 
 if TYPE_CHECKING:
@@ -73,34 +73,18 @@ def _basis(signals: Signals, joint: int) -> Basis:
     hinge = bool(signals.subject.tree.hinge[joint])
     nodes = 2 * np.pi / NODES * np.arange(1, NODES) if hinge else np.array([-0.1, 0.1])
     matrix = np.linalg.inv(_waves(nodes) if hinge else np.stack([nodes, nodes**2], -1))
-    here = _needed(signals, signals.position)
+    here = needed(signals, signals.position)
     shifts = []
     for node in nodes:
         position = signals.position.copy()
         position[:, joint] -= node
-        there = _needed(signals, position)
+        there = needed(signals, position)
         shifts.append({balance: there[balance] - here[balance] for balance in here})
     found = {}
     for balance in here:
         differences = np.stack([shift[balance] for shift in shifts])
         rows = np.flatnonzero(np.nanmax(np.abs(differences), (0, 1)) > 1e-12)
         found[balance] = (rows, np.tensordot(matrix, differences[..., rows], 1))
-    return found
-
-
-def _needed(signals: Signals, position: np.ndarray) -> dict[str, np.ndarray]:
-    """Torque that the motion needs at other positions, less what contact gives `(t, n)`, and the base's wrench `(t, 6)`."""
-    subject, base = signals.subject, signals.base
-    motion = position, signals.velocity, signals.acceleration
-    found = {"motion": rigid.inverse_dynamics(subject, *motion, base)}
-    if "base" in signals.residual and base is not None:
-        found["base"] = rigid.base_wrench(subject, *motion, base)
-    if signals.pad_force is not None:
-        rotation = None if base is None else base.rotation
-        torque, wrench = rigid.contact_torque(subject, position, rotation, np.nan_to_num(signals.pad_force))
-        found["motion"] = found["motion"] - torque
-        if "base" in found:
-            found["base"] = found["base"] - wrench
     return found
 
 

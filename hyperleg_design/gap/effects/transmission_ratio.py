@@ -5,12 +5,14 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.needed import needed
 from hyperleg_design.gap.effects.placing import at_motor, driven_motors
-from hyperleg_design.simulation.alteration import Alteration, Machine
+from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -20,8 +22,10 @@ if TYPE_CHECKING:
 class TransmissionRatio(Effect):
     """A motor turns `scale` times as fast over its joints as the model says, and pulls on them `scale` times as hard.
 
-    Positions are the joints' own. Trace: (1 - scale) tau + (scale^2 - 1) J M^T q_ddot on the motor's side, the second part as
-    the rotor turns faster too. Apart from it, this looks like a torque constant.
+    Where positions are the joints' own (`side` 0), the trace is (1 - scale) tau + (scale^2 - 1) J M^T q_ddot on the motor's side,
+    the second part as the rotor turns faster too: apart from it, this looks like a torque constant. Where they are worked out from
+    rotors by the model (1), the joints stand elsewhere, at q + (1 / scale - 1) P M^T q, P the motor's row of the inverse of M, and
+    the trace is (1 - scale) (tau - J M^T q_ddot) and what that motion needs more than the logged one.
     """
 
     identifier: ClassVar[str] = "transmission_ratio"
@@ -29,6 +33,7 @@ class TransmissionRatio(Effect):
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("scale", "", 1.0, 0.5, 2.0, 0.03, "linkages off their design point, one tooth of 40 on a pulley (assumed)"),
+        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "0: positions are the joints' own, 1: worked out from the rotors'", shape=True),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -39,13 +44,50 @@ class TransmissionRatio(Effect):
         """See `Effect.trace`."""
         subject = signals.subject
         motor = subject.motors.index(location)
-        scale = np.atleast_2d(np.asarray(values, float))[:, :1]
+        scale, side = np.atleast_2d(np.asarray(values, float)).T[..., None]
         rotor = subject.rotor_inertia[motor] * (signals.acceleration @ subject.joint_from_motor[:, motor])
-        return at_motor(signals, motor, (1.0 - scale) * signals.believed[:, motor] + (scale**2 - 1.0) * rotor)
+        turning = (1 - side) * (scale**2 - 1.0) + side * (scale - 1.0)
+        found = at_motor(signals, motor, (1.0 - scale) * signals.believed[:, motor] + turning * rotor)
+        if not side.any():
+            return found
+        farther = (1 / scale - 1)[:, 0]
+        powers = side * np.stack([farther, farther**2], -1)
+        for balance, parts in _elsewhere(signals, motor).items():
+            more = np.tensordot(powers, parts, 1)
+            found[balance] = found[balance] + more if balance in found else more
+        return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`; the controller keeps computing with the model's."""
-        return ScaledRatio(location, np.asarray(values, float)[..., 0])
+        values = np.asarray(values, float)
+        return ScaledRatio(location, values[..., 0], values[..., 1])
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """Longer and shorter, with encoders on either side."""
+        return np.array([[1 + sign * size, side] for side in (0.0, 1.0) for sign in (1, -1) for size in (0.05,)])
+
+
+NODE = 0.1
+"""Share by which joints are moved for `_elsewhere`."""
+_MOVED: WeakKeyDictionary[Signals, dict[int, dict[str, np.ndarray]]] = WeakKeyDictionary()
+
+
+def _elsewhere(signals: Signals, motor: int) -> dict[str, np.ndarray]:
+    """What the motion needs more where a motor's share of it is larger, in that share and its square `(2, t, rows)`, by balance."""
+    kept = _MOVED.setdefault(signals, {})
+    if motor not in kept:
+        subject = signals.subject
+        own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
+        here, there = needed(signals, signals.position, rotors=False), []
+        for node in (NODE, -NODE):
+            moved = (values + node * values @ own for values in (signals.position, signals.velocity, signals.acceleration))
+            there.append(needed(signals, *moved, rotors=False))
+            there[-1]["motion"] = there[-1]["motion"] + node * (signals.position @ own) * subject.spring
+        kept[motor] = {}
+        for balance, now in here.items():
+            more, less = there[0][balance] - now, there[1][balance] - now
+            kept[motor][balance] = np.stack([(more - less) / (2 * NODE), (more + less) / (2 * NODE**2)])
+    return kept[motor]
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +96,8 @@ class ScaledRatio(Alteration):
 
     motor: str
     scale: Any
-    """`()` or `(n,)` [-]."""
+    side: Any = 0.0
+    """`()` or `(n,)` each [-]."""
 
     def machine(self, machine: Machine) -> Machine:
         """With the other M."""
@@ -65,3 +108,22 @@ class ScaledRatio(Alteration):
         matrix = np.array(np.broadcast_to(old, (*column.shape[:-1], *old.shape[-2:])))
         matrix[..., place] = column
         return dataclasses.replace(machine, joint_from_motor=matrix)
+
+
+class _Scaled(Live):
+    alteration: ScaledRatio
+
+    def prepare(self) -> None:
+        one, place = self.alteration, self.machine.motor(self.alteration.motor)
+        scale = np.asarray(one.scale, float)
+        # the machine's own M is scaled already
+        column = np.asarray(self.machine.joint_from_motor)[..., place] / scale[..., None]
+        row = np.asarray(self.machine.motor_from_joint)[..., place, :]
+        share = np.asarray(one.side) * (scale - 1)
+        self.told = share[..., None, None] * (column[..., :, None] * row[..., None, :])
+
+    def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return tuple(values + (values[..., None, :] @ self.told)[..., 0, :] for values in (position, velocity))
+
+
+ScaledRatio.live = _Scaled

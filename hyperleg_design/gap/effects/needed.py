@@ -1,0 +1,38 @@
+"""What another motion than the logged one would need: for effects by which positions are told wrongly."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap import rigid
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+
+
+def needed(
+    signals: Signals, position: np.ndarray, velocity: np.ndarray | None = None, acceleration: np.ndarray | None = None, *, rotors: bool = True
+) -> dict[str, np.ndarray]:
+    """Torque that a motion needs, less what contact gives, by balance: `motion` `(t, n)` [Nm], and the `base`'s wrench `(t, 6)`.
+
+    Args:
+        signals: a conditioned log; its base moves as logged.
+        position: of the joints `(t, n)` [rad].
+        velocity: `(t, n)` [rad/s]; as logged by default.
+        acceleration: `(t, n)` [rad/s^2]; as logged by default.
+        rotors: add the rotors' inertia.
+    """
+    subject, base = signals.subject, signals.base
+    motion = position, signals.velocity if velocity is None else velocity, signals.acceleration if acceleration is None else acceleration
+    found = {"motion": rigid.inverse_dynamics(subject, *motion, base, rotors=rotors)}
+    if "base" in signals.residual and base is not None:
+        found["base"] = rigid.base_wrench(subject, *motion, base)
+    if signals.pad_force is not None:
+        rotation = None if base is None else base.rotation
+        torque, wrench = rigid.contact_torque(subject, position, rotation, np.nan_to_num(signals.pad_force))
+        found["motion"] = found["motion"] - torque
+        if "base" in found:
+            found["base"] = found["base"] - wrench
+    return found
