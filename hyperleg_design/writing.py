@@ -7,7 +7,7 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -15,6 +15,8 @@ from hyperleg_design.errors import OutputError
 
 MARKER = ".hyperleg"
 """File that says a folder was made by this package and may be replaced by it."""
+MADE = "made by hyperleg; these files are replaced when it is written again:"
+"""First line of a marker that lists what was written."""
 
 
 def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
@@ -82,10 +84,14 @@ def check_output_folder(folder: str | os.PathLike[str]) -> Path:
 
 
 @contextmanager
-def output_folder(folder: str | os.PathLike[str]) -> Iterator[Path]:
+def output_folder(folder: str | os.PathLike[str], keep: Sequence[str] = ()) -> Iterator[Path]:
     """Build a folder aside and put it in place when the block ends well.
 
-    A folder of ours is replaced; on an error nothing changes.
+    A folder of ours is replaced, but for files that somebody added to it; on an error nothing changes.
+
+    Args:
+        folder: to be written.
+        keep: patterns of files of ours that stay when they are not written anew.
 
     Raises:
         OutputError: the target is not ours, or cannot be written.
@@ -97,7 +103,9 @@ def output_folder(folder: str | os.PathLike[str]) -> Iterator[Path]:
         temporary = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
         temporary.chmod(0o755)
         yield temporary
-        (temporary / MARKER).write_text("made by hyperleg; replaced as a whole when written again\n")
+        kept = _carried(folder, temporary, keep)
+        written = sorted({str(p.relative_to(temporary)) for p in temporary.rglob("*") if p.is_file()} - kept)
+        (temporary / MARKER).write_text("\n".join((MADE, *written, "")))
         if folder.exists():
             _swap(folder, temporary)
         else:
@@ -109,6 +117,24 @@ def output_folder(folder: str | os.PathLike[str]) -> Iterator[Path]:
     finally:
         if temporary is not None and temporary.exists():
             shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _carried(folder: Path, new: Path, keep: Sequence[str]) -> set[str]:
+    """Copy what somebody added to a folder, and what is to be kept, into its successor; the names of what was added."""
+    marker = folder / MARKER
+    lines = marker.read_text(encoding="utf-8").splitlines() if marker.is_file() else []
+    if not lines or lines[0] != MADE:
+        return set()
+    ours, added = set(lines[1:]), set()
+    for path in folder.rglob("*"):
+        name = str(path.relative_to(folder))
+        if name == MARKER or not path.is_file() or (new / name).exists() or (name in ours and not any(path.match(p) for p in keep)):
+            continue
+        (new / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(path, new / name)
+        if name not in ours:
+            added.add(name)
+    return added
 
 
 def _swap(folder: Path, new: Path) -> None:

@@ -71,7 +71,8 @@ def make(folder: Path, text: str) -> None:
 def test_our_folder_is_replaced_as_a_whole(tmp_path: Path):
     out = tmp_path / "deep" / "out"
     make(out, "one")
-    (out / "stale.txt").touch()
+    with writing.output_folder(out) as inside:
+        (inside / "b.txt").touch()
     make(out, "two")
     assert everything(tmp_path / "deep") == {"out/a.txt": b"two", f"out/{writing.MARKER}": (out / writing.MARKER).read_bytes()}
 
@@ -150,3 +151,17 @@ def test_a_disk_that_is_really_full(small_disk: Path):
     with pytest.raises(OutputError, match="No space left"), writing.output_folder(small_disk / "out") as inside:
         writing.write_bytes(inside / "big", bytes(200_000))
     assert everything(small_disk) == {"a.txt": b"old"}
+
+
+def test_what_somebody_added_to_a_folder_stays(tmp_path):
+    out = tmp_path / "out"
+    for text in ("one", "two"):
+        with writing.output_folder(out) as inside:
+            (inside / "sub").mkdir()
+            (inside / "sub" / "ours.txt").write_text(text)
+            (inside / f"{text}.csv").write_text(text)
+        (out / "sub" / "mine.txt").write_text("mine")
+    assert {p.name: p.read_text() for p in out.rglob("*.*") if p.name != writing.MARKER} == {"ours.txt": "two", "two.csv": "two", "mine.txt": "mine"}
+    with writing.output_folder(out, keep=("*.csv",)) as inside:
+        (inside / "three.csv").write_text("three")
+    assert {p.name for p in out.rglob("*.*")} == {writing.MARKER, "two.csv", "three.csv", "mine.txt"}

@@ -26,7 +26,7 @@ def check_sources(
         sources: files or folders of any known format.
         robot: design, MJCF or URDF to compare with; by default the one that each log names, if any.
         mapping: `THEIRS=OURS` each, columns of CSV files.
-        out: folder for `check.json` and every log as Parquet; nothing is written by default.
+        out: folder for `check.json` and every log as Parquet, beside those written before; nothing is written by default.
 
     Raises:
         InputError: no source, one that cannot be opened, or a robot that cannot be read.
@@ -41,7 +41,7 @@ def check_sources(
     known: dict[str, Subject] = {}
     checks = [check_log(log, _subject(log, robot, known)) for log in logs]
     if out is not None:
-        with output_folder(out) as folder:
+        with output_folder(out, keep=("*.parquet",)) as folder:
             write_json(folder / "check.json", [check.mapping() for check in checks])
             for name, log in zip(_names(logs), logs, strict=True):
                 write_log(folder / f"{name}.parquet", log)

@@ -166,6 +166,7 @@ def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, o
             cannot be understood.
     """
     metadata = [log.metadata for log in logs]
+    named = not robot
     robot = str(robot) if robot else _agreed([m.robot for m in metadata], "robot", logs)
     base = _agreed([m.base for m in metadata], "base", logs)
     if not robot:
@@ -174,7 +175,7 @@ def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, o
     from hyperleg_design.gap.subject_build import of_design, of_file
     from hyperleg_design.robot.design import load_design
 
-    path = _find(robot, logs)
+    path = _find(robot, logs, named)
     known = set().union(*(log.joints for log in logs)) if logs else None
     if path.suffix.lower() in (".yaml", ".yml"):
         bare = of_design(load_design(path, overrides=chosen), path, base or "floating", known)
@@ -215,11 +216,11 @@ def _agreed(values: Sequence[str], field: str, logs: Sequence[Log]) -> str:
     return next(iter(stated), "")
 
 
-def _find(robot: str, logs: Sequence[Log]) -> Path:
-    """File of a robot: as it stands, beside the logs that name it, or a shipped design."""
+def _find(robot: str, logs: Sequence[Log], named: bool) -> Path:
+    """File of a robot: as it stands, beside the logs, which come first where it is they that `named` it, or a shipped design."""
     path = Path(robot)
-    folders = [Path(log.folder) for log in logs if log.folder]
-    for place in (path, *(folder / path for folder in folders)):
+    beside = [Path(log.folder) / path for log in logs if log.folder]
+    for place in (*beside, path) if named else (path, *beside):
         if place.suffix.lower() in (".xml", ".mjcf", ".urdf", ".yaml", ".yml") and place.is_file():
             return place
     if path.suffix.lower() in (".xml", ".mjcf", ".urdf"):

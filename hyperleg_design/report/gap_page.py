@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hyperleg_design import provenance
 from hyperleg_design.gap.evidence import Evidence, evidence
 from hyperleg_design.report import gap_figures
+from hyperleg_design.report.gap_text import chosen
 from hyperleg_design.report.page import Cell, Details, Heading, Page, Picture, Section, Table, render
 from hyperleg_design.report.style import save
 from hyperleg_design.writing import write_text
@@ -80,7 +81,7 @@ def _at_rest(diagnosis: Mapping[str, Any]) -> str:
 
 def cause_text(cause: Mapping[str, Any]) -> str:
     """`coulomb_friction at left_knee (torque 1.9 Nm, 1.7 .. 2.1)`."""
-    return f"{cause['effect']} at {cause['location']} ({', '.join(_parameter_texts(cause['parameters']))})"
+    return f"{cause['effect']} at {cause['location']} ({', '.join(_parameter_texts(cause['effect'], cause['parameters']))})"
 
 
 def _facts(gap: Mapping[str, Any], causes: Sequence[Mapping[str, Any]]) -> list[tuple[str, str]]:
@@ -98,8 +99,8 @@ def _sentence(causes: Sequence[Mapping[str, Any]]) -> str:
     return f"Named: {'; '.join(cause_text(c) for c in causes)}." if causes else ""
 
 
-def _parameter_texts(parameters: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    return [f"{name} {p['value']:.4g} {p['unit']}, {p['low']:.4g} .. {p['high']:.4g}" for name, p in parameters.items()]
+def _parameter_texts(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    return [told or f"{name} {p['value']:.4g} {p['unit']}, {p['low']:.4g} .. {p['high']:.4g}" for name, p, told in chosen(effect, parameters)]
 
 
 def _balance(signals: Signals, causes: Sequence[Mapping[str, Any]]) -> str:
@@ -173,7 +174,7 @@ def _causes(folder: Path, gap: Mapping[str, Any], causes: Sequence[Mapping[str, 
 
 
 def _cause_row(cause: Mapping[str, Any]) -> list[Any]:
-    parameters = "; ".join(_parameter_texts(cause["parameters"]))
+    parameters = "; ".join(_parameter_texts(cause["effect"], cause["parameters"]))
     return [cause["effect"], cause["location"], parameters, f"{100 * float(cause['closed']):.0f} %", f"{float(cause['probability']):.2f}"]
 
 
@@ -191,7 +192,8 @@ def _next_steps(diagnosis: Mapping[str, Any]) -> list[Any]:
 def _limits(diagnosis: Mapping[str, Any]) -> list[Any]:
     content: list[Any] = []
     if diagnosis.get("residual_shape"):
-        content += [Heading("Shape of what is left"), _plain(diagnosis["residual_shape"])]
+        rows = [[one["location"], one["says"], f"{100 * one['closed_beyond']:.0f} %", f"{one['gain']:.1f}"] for one in diagnosis["residual_shape"]]
+        content += [Heading("Shape of what is left"), Table(["where", "looks like", "would close of it", "log-likelihood"], rows)]
     if diagnosis.get("not_judged"):
         rows = [
             [_name(entry), _plain(entry.get("reason", entry.get("why", ""))) if isinstance(entry, Mapping) else ""]

@@ -26,6 +26,9 @@ def effects_text(table: Sequence[Mapping[str, Any]]) -> str:
     for entry in table:
         lines.append(f"{entry['effect']}  ({entry['where']})  {entry['summary']}")
         for p in entry["parameters"]:
+            if p["choices"]:
+                lines.append(f"    {p['name']}: {', '.join(f'{i} {words}' for i, words in enumerate(p['choices']))}")
+                continue
             unit = f" {p['unit']}" if p["unit"] else ""
             shape = ", shapes the trace only" if p["shape"] else ""
             lines.append(

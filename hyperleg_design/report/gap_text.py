@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from hyperleg_design.gap.effects import EFFECTS
+
 if TYPE_CHECKING:
     from hyperleg_design.gap.added import Changed, Replayed
     from hyperleg_design.gap.check import Check
@@ -83,6 +85,16 @@ def gap_text(gap: Gap, most: int = 12) -> str:
     return "\n".join(lines)
 
 
+def chosen(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, Mapping[str, Any], str]]:
+    """Parameters by name, with words for those that are a choice."""
+    choices = {p.name: p.choices for p in EFFECTS[effect].parameters}
+    found = []
+    for name, one in parameters.items():
+        words = choices.get(name, ())
+        found.append((name, one, words[min(max(round(float(one["value"])), 0), len(words) - 1)] if words else ""))
+    return found
+
+
 def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     """Verdict, gap, causes, rivals and what to do next."""
     gap = diagnosis["gap"]
@@ -93,7 +105,8 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     for title, rows in (("cause", diagnosis["causes"]), ("rival", diagnosis["rivals"][:4])):
         for row in rows:
             told = ", ".join(
-                f"{n} {p['value']:.4g} {p['unit']} ({p['low']:.4g} .. {p['high']:.4g})".replace("  ", " ") for n, p in row["parameters"].items()
+                choice or f"{n} {p['value']:.4g} {p['unit']} ({p['low']:.4g} .. {p['high']:.4g})".replace("  ", " ")
+                for n, p, choice in chosen(row["effect"], row["parameters"])
             )
             lines.append(f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}, closes {100 * row['closed']:.0f} %; {told}")
     lines += [f"  at rest, which is in no balance: {one['says']}" for one in diagnosis.get("at_rest", ())]

@@ -8,13 +8,16 @@ import numpy as np
 
 from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import driven_motors
+from hyperleg_design.gap.effects.placing import SIDES, driven_motors
 from hyperleg_design.simulation.two_mass import STIFFEST, Belt
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
     from hyperleg_design.simulation.alteration import Alteration
+
+
+COASTING = ("a rotor that the load carries over", "a rotor that crosses by itself")
 
 
 class Backlash(Effect):
@@ -29,8 +32,8 @@ class Backlash(Effect):
     summary: ClassVar[str] = "a motor turns freely through a small angle before its joint follows"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("angle", "rad", 0.0, 0.0, 0.1, 0.006, "0.1-1 deg at the joint (engineering estimate)"),
-        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "0: positions are the joints' own, 1: the rotors'", shape=True),
-        Parameter("coasting", "", 1.0, 0.0, 1.0, 1.0, "1: crosses by itself, 0: carried over by the load, as rotors that rub", shape=True),
+        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
+        Parameter("coasting", "", 1.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=COASTING),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:

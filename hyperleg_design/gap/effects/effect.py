@@ -43,6 +43,8 @@ class Parameter:
     """Where the magnitude comes from."""
     shape: bool = False
     """Whether it only shapes the trace (a Stribeck speed, a cogging order) and means nothing while the size is at its null."""
+    choices: tuple[str, ...] = ()
+    """What 0, 1, ... stand for, of one that is no size."""
 
 
 class Effect(ABC):

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
     from hyperleg_design.simulation.alteration import Machine
 
+SIDES = ("encoders at the joints", "encoders at the rotors")
+"""Choices of the parameter `side`: whose positions logs and controllers know."""
 ROBOT = "robot"
 BATTERY = "battery"
 LIVELY = 10.0

@@ -29,7 +29,7 @@ class TorqueConstant(Effect):
     summary: ClassVar[str] = "a motor gives more or less torque than its current and its data sheet say"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("scale", "", 1.0, 0.3, 2.0, 0.08, "8 % off on a dynamometer (EMBiR)"),
-        Parameter("reading", "", 0.0, 0.0, 1.0, 1.0, "0: the motor is another one, 1: only its current is read wrongly", shape=True),
+        Parameter("reading", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=("another motor", "its current is read wrongly")),
     )
     linear: ClassVar[bool] = True
 

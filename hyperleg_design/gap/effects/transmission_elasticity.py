@@ -8,7 +8,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import driven_motors
+from hyperleg_design.gap.effects.placing import SIDES, driven_motors
 from hyperleg_design.simulation.two_mass import DAMPING_RATIO, Belt
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class TransmissionElasticity(Effect):
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("compliance", "rad/Nm", 0.0, 0.0, 1e4, 0.01, "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor"),
         Parameter("damping_ratio", "", DAMPING_RATIO, 0.0, 1.0, 0.05, "steel-corded belts ring for a few periods (assumed)", shape=True),
-        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "0: positions are the joints' own, 1: the rotors'", shape=True),
+        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:

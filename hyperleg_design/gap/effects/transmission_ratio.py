@@ -11,7 +11,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.needed import needed
-from hyperleg_design.gap.effects.placing import at_motor, driven_motors
+from hyperleg_design.gap.effects.placing import SIDES, at_motor, driven_motors
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class TransmissionRatio(Effect):
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("scale", "", 1.0, 0.5, 2.0, 0.03, "linkages off their design point, one tooth of 40 on a pulley (assumed)"),
-        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "0: positions are the joints' own, 1: worked out from the rotors'", shape=True),
+        Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
