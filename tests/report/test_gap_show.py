@@ -23,7 +23,7 @@ def test_text_names_every_effect_with_its_numbers():
     for name, one in EFFECTS.items():
         assert f"{name}  ({one.kind})" in text
         for parameter in one.parameters:
-            assert f"    {parameter.name}: {parameter.null:g}" in text
+            assert f"    {parameter.name}: {0 if parameter.choices else parameter.null:g}" in text
     assert max(map(len, text.splitlines())) < 160
 
 
