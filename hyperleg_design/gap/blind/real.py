@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import HyperlegError
+from hyperleg_design.gap.blind.score import said_of
 from hyperleg_design.gap.blind.trial import FAILED, as_mapping
 
 if TYPE_CHECKING:
@@ -187,7 +188,7 @@ def judged(case: RealCase, found: Mapping[str, Any], seconds: float) -> RealRow:
             stated = first["parameters"].get(case.parameter[0])
             if stated and stated.get("low") is not None and stated.get("high") is not None:
                 inside = bool(stated["low"] <= case.parameter[1] <= stated["high"])
-    said = ", ".join(f"{c['effect']} at {c['location']}" for c in named[:2]) or str(found.get("message", ""))
+    said = said_of(found)
     truth = {"": "nothing wrong", "-": "no long delay"}.get(case.effect, f"{case.effect} at {case.also[0] if case.also else ''}")
     probability = first.get("probability") if first else None
     return RealRow(case.name, truth, verdict, said, right, inside, None if probability is None else float(probability), seconds)

@@ -274,7 +274,7 @@ class _View:
         if not why:
             return None
         truth = ", ".join(f"{w['effect']} at {w['location']} ({w['multiple']:.1f} x)" for w in self.wrongs) or "nothing"
-        causes = ", ".join(f"{c['effect']} at {c['location']}" for c in self.ranked[:2]) if self.alarm else str(self.diagnosis.get("message", ""))
+        causes = said_of(self.diagnosis)
         said = f"{self.verdict}{': ' if causes else ''}{causes}"
         return Miss(str(self.truth["case"]), self.kind, str(self.truth["plant"]), str(self.truth["robot"]), truth, said, self.probability, why)
 
@@ -300,6 +300,15 @@ class _View:
 
     def _is(self, said: str, truth: str, lenient: bool) -> bool:
         return said == truth or (lenient and any(e == truth for g in self._with_first() for e, _ in g))
+
+
+def said_of(diagnosis: Mapping[str, Any]) -> str:
+    """The causes that were named, and what else it may be where that was said."""
+    verdict = diagnosis.get("verdict")
+    if verdict not in ("explained", "ambiguous"):
+        return str(diagnosis.get("message", ""))
+    causes, rivals = ([f"{c['effect']} at {c['location']}" for c in diagnosis.get(k) or []] for k in ("causes", "rivals"))
+    return ", ".join(causes) + (f", or {rivals[0]}" if verdict == "ambiguous" and rivals else "")
 
 
 def _named(member: Any) -> tuple[str, str]:
