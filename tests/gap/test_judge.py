@@ -1,0 +1,64 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.judge import PER_PARAMETER, RARE, Judge, plausible, rank
+from hyperleg_design.gap.screen import linearise
+from hyperleg_design.gap.thresholds import load_thresholds
+
+
+@pytest.fixture(scope="module")
+def judge(viscous_ready):
+    return Judge(viscous_ready.base, load_thresholds(), 1)
+
+
+@pytest.fixture(scope="module")
+def right(judge, knee_friction):
+    return judge.model([knee_friction])
+
+
+@pytest.fixture(scope="module")
+def weak_motor(judge):
+    samples = judge.base.samples
+    motor = samples.sieves[0].signals.subject.motors[0]
+    return judge.model([linearise(samples, EFFECTS["torque_constant"], motor, EFFECTS["torque_constant"].nulls)])
+
+
+def test_nothing_closes_nothing_and_the_cause_nearly_all(judge, right):
+    rows = judge.excess_rows(right)
+    assert judge.closed(judge.nothing.held, rows, judge.nothing.held) == pytest.approx(0.0, abs=1e-9)
+    assert judge.closed(right.held, rows, right.held) > 0.9
+    assert right.gain > judge.thresholds.evident
+
+
+def test_a_trace_is_as_large_as_what_leaving_it_out_leaves(judge, right):
+    shown, bare = judge.shown(right, 0), judge.rows(right.held.bare)
+    knee = int(np.argmax(shown))
+    assert judge.base.samples.rows[knee % len(judge.base.samples.rows)].name == "knee"
+    assert shown[knee] == pytest.approx(bare[knee], rel=0.3)
+
+
+def test_every_block_once_is_all_blocks(judge, right):
+    rows = judge.excess_rows(right)
+    drawn = np.stack([np.ones(judge.base.blocks), np.eye(judge.base.blocks)[0]])
+    gaps = judge.gap(right.held.bare, rows, drawn)
+    assert gaps[0] == pytest.approx(float(judge.gap(right.held.bare, rows)))
+    assert gaps[1] != pytest.approx(gaps[0])
+
+
+def test_odds_count_what_is_fitted_and_not_what_is_chosen(right, weak_motor):
+    assert plausible(right) == pytest.approx(-PER_PARAMETER)
+    assert weak_motor.causes[0].shape.tolist() == [False, True]
+    assert plausible(weak_motor) == pytest.approx(-PER_PARAMETER)
+    rarer = replace(weak_motor, causes=(replace(weak_motor.causes[0], effect="voltage_sag"),))
+    assert rank(rarer) == pytest.approx(rank(weak_motor) + RARE["voltage_sag"])
+
+
+def test_a_choice_is_told_as_it_was_made(judge, weak_motor):
+    samples = judge.base.samples
+    effect, motor = EFFECTS["torque_constant"], samples.sieves[0].signals.subject.motors[0]
+    read = judge.model([linearise(samples, effect, motor, np.array([1.0, 1.0]))])
+    assert read.values(0)[1] == 1.0
+    assert weak_motor.values(0)[1] == 0.0
