@@ -37,7 +37,7 @@ SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
-BEYOND_DOUBT = 3.0
+BEYOND_DOUBT = 1.5
 """Evidence, over that which a further cause needs, of a first cause that is named however little it leaves over the floor."""
 HELD = 0.5
 """Share of what a joint holds that friction must explain."""
@@ -83,7 +83,7 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     chosen, slots = _chosen(judge, wanted, singles)
     rows = judge.excess_rows(chosen if chosen.causes or not singles else singles[0])
     shaped = shaping.instead(judge, chosen, rows, max((m.gain for m in singles), default=0.0)) or shaping.beside(judge, chosen, rows)
-    lost = _lost(base.samples, chosen.held.left, thresholds)
+    lost = 0.0 if _sags(judge, chosen, rows) else _lost(base.samples, chosen.held.left, thresholds)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     verdict = "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
@@ -232,6 +232,12 @@ def _turned(model: Model) -> Model:
     order = np.r_[np.arange(len(model.fit.phi) - size, len(model.fit.phi)), np.arange(len(model.fit.phi) - size)]
     fit = replace(model.fit, phi=model.fit.phi[order], covariance=model.fit.covariance[np.ix_(order, order)])
     return replace(model, causes=(model.causes[-1], *model.causes[:-1]), fit=fit)
+
+
+def _sags(judge: Judge, chosen: Model, rows: np.ndarray) -> bool:
+    """Whether a weak battery is named, which all drives feel at once: its model need not get each of them right."""
+    sagging = any(c.effect == "voltage_sag" for c in chosen.causes)
+    return sagging and judge.closed(chosen.held, rows, chosen.held) >= judge.thresholds.far_required
 
 
 def _lost(samples: Samples, left: np.ndarray, rules: Thresholds) -> float:
