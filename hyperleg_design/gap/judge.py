@@ -24,7 +24,8 @@ EXCESSIVE = 0.25
 PER_PARAMETER = 0.5
 """Log prior odds against each parameter, beside what held-out data say."""
 RARE = {"transmission_ratio": -0.5, "voltage_sag": -1.0, "thermal_derating": -0.5, "controller_gain": -1.5}
-"""Log prior odds of effects that look like another and are rarer (assumed: belts have the ratio of their teeth, controllers the gains they were told)."""
+"""Log prior odds of effects that look like another and are rarer (assumed: belts have the ratio of their teeth, controllers the gains
+that they were told)."""
 LARGEST_ERROR, HEAVIER, OWN_MASS = 0.8, 5.0, 0.1
 """Error over a link's own mass from which it is rather something that hangs there; log odds for as much again; the usual error."""
 UNSEEN = {"voltage_sag": 6.0, "thermal_derating": 1.0}

@@ -8,33 +8,24 @@ from hyperleg_design.gap.smoothing import bridged
 
 
 def delayed(values: np.ndarray, delay: np.ndarray, step: float) -> np.ndarray:
-    """Signal some time ago, by cubic splines (straight lines would smooth it, half way between ticks most); before its beginning, its first value.
+    """Signal some time ago, by linear interpolation; before its beginning, its first value.
 
     Args:
-        values: `(t,)`; what touches unknown ticks is unknown.
+        values: `(t,)`.
         delay: `(k,)` [s], not negative.
         step: of the time base [s].
 
     Returns:
         `(k, t)`.
     """
-    from scipy.interpolate import make_interp_spline
-
-    ticks = np.arange(len(values), dtype=float)
-    known = np.isfinite(values)
-    out = np.full((len(delay), len(values)), np.nan)
-    if not known.any():
-        return out
-    filled = bridged(values)
-    spline = make_interp_spline(ticks, filled, k=3) if len(values) > 3 else None
-    for row, late in enumerate(np.maximum(delay, 0.0) / step):
-        ago = np.maximum(ticks - late, 0.0)
-        before, after = np.floor(ago).astype(int), np.ceil(ago).astype(int)
-        if spline is None or late == int(late):
-            out[row] = np.interp(ago, ticks, filled)
-        else:
-            out[row] = spline(ago)
-        out[row, ~(known[before] & known[after])] = np.nan
+    out = np.empty((len(delay), len(values)))
+    for row, ticks in enumerate(np.maximum(delay, 0.0) / step):
+        whole = min(int(ticks), len(values) - 1)
+        part = ticks - whole
+        late = np.concatenate([np.full(whole, values[0]), values[: len(values) - whole]])
+        if part:
+            late = np.concatenate([late[:1], (1 - part) * late[1:] + part * late[:-1]])
+        out[row] = late
     return out
 
 

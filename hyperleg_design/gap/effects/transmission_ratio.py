@@ -32,7 +32,7 @@ class TransmissionRatio(Effect):
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("scale", "", 1.0, 0.5, 2.0, 0.03, "linkages off their design point, one tooth of 40 on a pulley (assumed)"),
+        Parameter("scale", "", 1.0, 0.7, 1.4, 0.03, "linkages off their design point, one tooth of 40 on a pulley (assumed)"),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
     )
 
