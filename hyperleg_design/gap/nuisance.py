@@ -42,7 +42,9 @@ TORQUE_OFFSET, SPRING = 0.002, 0.002
 LATE, LATE_TICKS = 0.001, 0.15
 """[s] and ticks of the log, of all drives; a lag of one of them is half."""
 READING = 1
-"""Parameter of a torque constant by which currents are read wrongly; its error is one of what drives are said to give, apart from motors."""
+"""Parameter of a torque constant by which currents are read wrongly."""
+CURRENT = 0.005
+"""Of the torque that a drive says that it gives, apart from its motor's."""
 GAIN = 0.015
 GYRO, ACCELEROMETER = 0.003, 0.05
 """[rad/s], [m/s^2]"""
@@ -118,7 +120,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
         rotor = ROTOR * subject.rotor_inertia[m] + OWN_INERTIA * inertia[main] / max(float(column[main]), 1e-9) ** 2
         found += [
             Usual("torque_constant", motor, 0, TORQUE_CONSTANT),
-            Usual("torque_constant", motor, READING, TORQUE_CONSTANT),
+            Usual("torque_constant", motor, READING, CURRENT),
             Usual("rotor_inertia", motor, 0, rotor),
             Usual("actuator_bandwidth", motor, 0, 0.5 * late),
         ]
