@@ -19,6 +19,7 @@ from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Cause, Design, Fit, parts
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
+from hyperleg_design.gap.subject import FULL
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.samples import Samples
@@ -31,7 +32,9 @@ REFINED = 24
 MOST_CAUSES = 3
 OWN_WORTH = 0.5
 """Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
-AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", "voltage_sag"), 0.95
+SAG, SAGGED = "voltage_sag", 0.03
+"""Effect of a weak battery; share of the voltage that must be missing where reference logs tell what it is when all is well."""
+AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.95
 """Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
@@ -78,7 +81,8 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     judge = Judge(base, thresholds, threads)
     swinging = unsettled(base.samples)
     averaged = [name for name in wanted if name[0] in FRICTION and name[1] in swinging]
-    wanted = [name for name in wanted if name not in averaged]
+    supplied = [name for name in wanted if name[0] == SAG and _as_healthy(base.samples)]
+    wanted = [name for name in wanted if name not in (*averaged, *supplied)]
     singles, not_judged = _finalists(judge, wanted, ())
     chosen, slots = _chosen(judge, wanted, singles)
     rows = judge.excess_rows(chosen if chosen.causes or not singles else singles[0])
@@ -86,15 +90,16 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     lost = 0.0 if _sags(judge, chosen, rows) else _lost(base.samples, chosen.held.left, thresholds)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
+    swung += [screen.NotJudged(*name, "its voltage is that of the reference logs") for name in supplied]
     verdict = "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
-    if verdict == "none" and any(judge.held(chosen, joint) < HELD for joint in judge.holds):
+    if verdict == "none" and (_fails(base.samples, thresholds) or any(judge.held(chosen, joint) < HELD for joint in judge.holds)):
         verdict = "unknown"
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *swung))
 
 
 def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> Model:
     """Causes that reference logs of a healthy robot name; arguments as of `decide`."""
-    judge = Judge(base, thresholds, threads)
+    judge = Judge(base, replace(thresholds, seldom=0.0), threads)
     return _chosen(judge, wanted, _finalists(judge, wanted, ())[0])[0]
 
 
@@ -136,7 +141,8 @@ def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence
 
 
 def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequence[Cause]) -> float:
-    return Design(base, [*beside, candidate.cause]).fit(scale=start.scale, rounds=ROUNDS).evidence
+    found = Design(base, [*beside, candidate.cause]).fit(scale=start.scale, rounds=ROUNDS).evidence
+    return found + screen.at_rest(base.samples, *candidate.name)
 
 
 def _named(judge: Judge, model: Model) -> bool:
@@ -146,7 +152,7 @@ def _named(judge: Judge, model: Model) -> bool:
         return False
     if _rests(judge, model):
         return True
-    if not _visible(judge, model):
+    if not _visible(judge, model) or _seldom(judge, model):
         return False
     rows = judge.excess_rows(model)
     if float(judge.gap(model.held.bare, rows)) < rules.least_gap and model.gain < BEYOND_DOUBT * rules.second_evident:
@@ -163,7 +169,7 @@ def _further(judge: Judge, model: Model, before: Model) -> bool:
     """
     rules, already = judge.thresholds, len(before.causes)
     gain = model.gain - before.gain
-    if not _visible(judge, model):
+    if not _visible(judge, model) or _seldom(judge, model):
         return False
     if gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth):
         return True
@@ -191,6 +197,33 @@ def _rests(judge: Judge, model: Model) -> bool:
 def _visible(judge: Judge, model: Model) -> bool:
     """Whether the last cause shows over the floor."""
     return float(np.sqrt(judge.shown(model, len(model.causes) - 1).max())) >= judge.thresholds.visible
+
+
+def _seldom(judge: Judge, model: Model) -> bool:
+    """Whether the last cause is a weak battery that shows in rare episodes alone, on drives whose limits nobody declared."""
+    samples = judge.base.samples
+    if model.causes[-1].effect != SAG or np.isfinite(samples.sieves[0].signals.subject.stall_torque).all():
+        return False
+    episode, most = divmod(int(judge.shown(model, len(model.causes) - 1).argmax()), len(samples.rows))
+    return bool(episode) and _of_time(samples, most) < judge.thresholds.seldom
+
+
+def _of_time(samples: Samples, row: int) -> float:
+    """Share of a row that is in episodes."""
+    own = samples.row == row
+    return float(samples.share[own & samples.episodic[samples.group]].sum() / max(samples.share[own].sum(), 1e-300))
+
+
+def _fails(samples: Samples, rules: Thresholds) -> bool:
+    """Whether a drive does not do what it is told, more often than healthy ones at their limits."""
+    return any(row.balance == "drive" and _of_time(samples, place) > rules.failing for place, row in enumerate(samples.rows))
+
+
+def _as_healthy(samples: Samples) -> bool:
+    """Whether all logs tell the battery's voltage, and reference logs that it is what it was when all was well."""
+    voltages = [s.signals.voltage for s in samples.sieves]
+    nominal = samples.sieves[0].signals.subject.voltage
+    return bool(np.isfinite(nominal)) and all(v is not None and float(np.nanpercentile(v, 100 - FULL)) > (1 - SAGGED) * nominal for v in voltages)
 
 
 def _closes_own(judge: Judge, model: Model, before: Model, worth: float, least: float = 0.0) -> bool:
@@ -236,7 +269,7 @@ def _turned(model: Model) -> Model:
 
 def _sags(judge: Judge, chosen: Model, rows: np.ndarray) -> bool:
     """Whether a weak battery is named, which all drives feel at once: its model need not get each of them right."""
-    sagging = any(c.effect == "voltage_sag" for c in chosen.causes)
+    sagging = any(c.effect == SAG for c in chosen.causes)
     return sagging and judge.closed(chosen.held, rows, chosen.held) >= judge.thresholds.far_required
 
 

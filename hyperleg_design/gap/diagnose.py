@@ -16,7 +16,7 @@ from hyperleg_design.gap.chatter import swings
 from hyperleg_design.gap.check import Check, check_log
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.decide import Decision, decide
-from hyperleg_design.gap.diagnosis import Diagnosis, Named, Place, Shrinkage
+from hyperleg_design.gap.diagnosis import NAMING, Diagnosis, Named, Place, Shrinkage
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
 from hyperleg_design.gap.fit import Design
@@ -154,7 +154,7 @@ class _Report:
         """All of it."""
         judge, found = self.judge, self.found
         verdict = found.verdict
-        named = found.model.causes if verdict in ("explained", "ambiguous") else ()
+        named = found.model.causes if verdict in NAMING else ()
         doubts = self.doubts()
         sets: list[list[Model]] = []
         if named:

@@ -14,6 +14,8 @@ from hyperleg_design.writing import write_json
 
 SCHEMA = 1
 VERDICTS = ("explained", "ambiguous", "none", "unknown")
+NAMING = ("explained", "ambiguous")
+"""Verdicts by which causes are named."""
 SCHEMA_FILE = Path(__file__).with_name("diagnosis_schema.json")
 DIGITS = 6
 """Significant digits of numbers."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.gap.filtering import moving, sticking
+from hyperleg_design.gap.filtering import moving_ticks, sticking
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -66,7 +66,7 @@ def evidence(signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str
             explained = explained + trace[0]
     known = np.isfinite(residual) & np.isfinite(explained) & signals.valid[:, None]
     if balance == "motion":
-        known = np.stack([moving(*pair) for pair in zip(known.T, sticking(signals).T, strict=True)], -1)
+        known = moving_ticks(signals, known, sticking(signals))
     before = _smooth(np.where(known, residual, 0.0), signals.step)
     made = _smooth(np.where(known, explained, 0.0), signals.step)
     subject = signals.subject

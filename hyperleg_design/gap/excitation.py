@@ -216,6 +216,9 @@ def _voltage(effect: str, log: Log, motion: _Motion) -> Excitation:
     values = log.column("battery_voltage")
     if not np.isfinite(values).any():
         return Excitation(effect, False, (), "no battery voltage")
+    following = log.metadata.supply
+    if following and following.keys() >= set(log.motors or log.joints):
+        return Excitation(effect, False, (), "all drives follow the logged voltage already, as declared by `supply`")
     spread = float((np.nanpercentile(values, 95) - np.nanpercentile(values, 5)) / max(abs(np.nanmean(values)), 1e-9))
     enough = spread >= SAGGING and bool(motion.torque.any())
     return Excitation(effect, enough, (), f"voltage varies by {100 * spread:.0f} %" + ("" if enough else f"; {100 * SAGGING:.0f} % are needed"))

@@ -137,7 +137,7 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
         for column in range(residual.shape[1]):
             mask = signals.valid & np.isfinite(residual[:, column])
             if balance == "motion" and resting is not None:
-                mask = moving(mask, resting[:, column])
+                mask = moving(mask, resting[:, column], rubs=bool(signals.subject.coulomb[column] > 0))
             if mask.sum() < FEWEST:
                 continue
             rows.append(Row(balance, column, row_name(signals, balance, column), _cutoff(signals, balance, column)))
@@ -147,10 +147,16 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
     return Sieve(signals, tuple(rows), np.array(masks).reshape(len(rows), len(signals.time)), bands, length)
 
 
-def moving(known: np.ndarray, resting: np.ndarray) -> np.ndarray:
-    """Known ticks of a joint `(t,)` without its rest; a joint that hardly moves is worth its rest, too."""
+def moving(known: np.ndarray, resting: np.ndarray, *, rubs: bool) -> np.ndarray:
+    """Known ticks of a joint `(t,)` without its rest; one that hardly moves is worth its rest, too, unless its model `rubs` dry."""
     found = known & ~resting
-    return found if found.sum() > LEAST_MOVING * known.sum() else known
+    return found if rubs or found.sum() > LEAST_MOVING * known.sum() else known
+
+
+def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np.ndarray:
+    """`moving` of all joints `(t, n)`."""
+    rubs = signals.subject.coulomb > 0
+    return np.stack([moving(k, r, rubs=bool(dry)) for k, r, dry in zip(known.T, resting.T, rubs, strict=True)], -1)
 
 
 def row_name(signals: Signals, balance: str, column: int) -> str:

@@ -158,15 +158,16 @@ class _Columns:
 
     def gathered(self, floors: list[list[np.ndarray]], apart: np.ndarray | None = None) -> Samples:
         """The samples anew, over other floors, or with episodes apart `(S,)`."""
-        return replace(gather(self.sieves, floors, self.sessions.tolist(), self.thresholds.information, apart), holds=self.holds)
+        return gather(self.sieves, floors, self.sessions.tolist(), self.thresholds.information, apart)
 
     def base(self, kept: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
         """Base without the errors that show nowhere, its episodes apart."""
-        found = _base(replace(self.samples, holds=self.holds), self.errors[kept], prior, thresholds, self.known)
+        found = self._over(self.samples, kept, prior, thresholds)
         apart = episodes(found)
-        if not apart.any():
-            return found
-        return _base(self.gathered(self.floors, apart), self.errors[kept], prior, thresholds, self.known)
+        return self._over(self.gathered(self.floors, apart), kept, prior, thresholds) if apart.any() else found
+
+    def _over(self, samples: Samples, kept: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
+        return _base(replace(samples, holds=self.holds), self.errors[kept], prior, thresholds, self.known)
 
 
 def _columns(signals: Sequence[Signals], usual: Sequence[nuisance.Usual], thresholds: Thresholds, sessions: np.ndarray) -> _Columns:

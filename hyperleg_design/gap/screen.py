@@ -134,6 +134,11 @@ def _unsettling(samples: Samples, effect: Effect, location: str) -> bool:
     return location in shaken if location in subject.joints else bool(shaken)
 
 
+def at_rest(samples: Samples, effect: str, location: str) -> float:
+    """Log-likelihood that breakaway friction gains by what its joint holds at rest, which is in no sample."""
+    return SURE if effect == BREAKAWAY and location in samples.holds else 0.0
+
+
 def _same_place(subject: Subject, one: str, other: str) -> bool:
     tree = subject.tree
     known = (*tree.links, *tree.joints)
@@ -211,8 +216,7 @@ def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[
         whole = Cause(name, location, one, one, np.ones(1), np.zeros(1), np.full(1, 10.0), np.zeros(1, bool), column[None], none, True)
         gains.append(_candidate(base, whole, nothing, beside).gain if np.any(column) else -np.inf)
     order = np.argsort(-np.array(gains), kind="stable")
-    holds = name == BREAKAWAY and location in base.samples.holds
-    return _Rough(name, location, starts[order], gains[order[0]] + SURE * holds)
+    return _Rough(name, location, starts[order], gains[order[0]] + at_rest(base.samples, name, location))
 
 
 def _best(base: Base, rough: _Rough, nothing: Fit, beside: Sequence[Cause]) -> Candidate | None:
@@ -268,7 +272,10 @@ def descend(base: Base, effect: Effect, location: str, start: np.ndarray, nothin
         beside: causes that are fitted along.
     """
     cause = linearise(base.samples, effect, location, start)
-    if cause is None or reach(base.samples, np.concatenate([cause.columns, (cause.constant + cause.phi @ cause.columns)[None]])) < SHOWN:
+    rests = at_rest(base.samples, effect.identifier, location)
+    if cause is None:
+        return None
+    if not rests and reach(base.samples, np.concatenate([cause.columns, (cause.constant + cause.phi @ cause.columns)[None]])) < SHOWN:
         return None
     before = sum(len(c.nulls) for c in beside)
     design = Design(base, [*beside, cause])
@@ -297,7 +304,7 @@ def descend(base: Base, effect: Effect, location: str, start: np.ndarray, nothin
         if not bettered:
             break
     fit = design.fit(scale=scale, rounds=1)
-    return Candidate(cause, fit, fit.evidence - nothing.evidence)
+    return Candidate(cause, fit, fit.evidence - nothing.evidence + rests)
 
 
 def _cost(design: Design, weight: np.ndarray, phi: np.ndarray, before: int) -> float:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.simulation.actuation import applied
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ class _Follows(Live):
             self.ratio = np.where(np.isfinite(found), found, 1.0)
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
-        damper = -(self.machine.damping * tick.velocity) @ self.machine.motor_from_joint.T
+        damper = -applied(self.machine.motor_from_joint, self.machine.damping * tick.velocity)
         return np.asarray((command - damper) * self.ratio + damper)
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:

@@ -31,6 +31,8 @@ class Thresholds:
     second_evident: float
     second_instead: float
     second_visible: float
+    seldom: float
+    failing: float
     required: float
     far: float
     far_required: float

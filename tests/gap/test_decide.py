@@ -1,10 +1,11 @@
 from dataclasses import replace
+from types import SimpleNamespace
 
 import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.decide import _verdict, decide
+from hyperleg_design.gap.decide import _as_healthy, _fails, _seldom, _verdict, decide
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.judge import Judge, rank
 from hyperleg_design.gap.screen import places
@@ -51,3 +52,46 @@ def test_causes_that_leave_far_more_than_the_floor_must_close_most_of_it(judged)
     strict = replace(rules, far=0.0, far_required=1.01 * closed)
     for several, verdict in ((strict, "unknown"), (replace(strict, far_required=0.5 * closed), "explained")):
         assert _verdict(replace(judge, thresholds=several), found.model, found.rows, ()) == verdict
+
+
+def supplied(voltage, nominal):
+    subject = SimpleNamespace(voltage=nominal)
+    return SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(voltage=v, subject=subject)) for v in voltage])
+
+
+def test_a_battery_as_full_as_in_reference_logs_is_no_cause():
+    rng = np.random.default_rng(0)
+    full, weak = 48 + 0.05 * rng.standard_normal((2, 500)), 40 + 0.05 * rng.standard_normal(500)
+    assert _as_healthy(supplied(full, 48.0))
+    assert not _as_healthy(supplied([*full, weak], 48.0))
+    assert not _as_healthy(supplied(full, float("nan")))
+    assert not _as_healthy(supplied([full[0], None], 48.0))
+
+
+def in_episodes(share, balance="drive"):
+    """One row of 1000 samples in two groups, the second its episodes."""
+    group = (np.arange(1000) < 1000 * share).astype(int)
+    rows = (SimpleNamespace(balance=balance),)
+    return SimpleNamespace(rows=rows, row=np.zeros(1000, int), group=group, episodic=np.array([False, True]), share=np.full(1000, 0.5))
+
+
+def test_a_drive_that_often_fails_its_commands_is_a_gap():
+    rules = load_thresholds()
+    assert _fails(in_episodes(1.2 * rules.failing), rules)
+    assert not _fails(in_episodes(0.8 * rules.failing), rules)
+    assert not _fails(in_episodes(1.2 * rules.failing, "motion"), rules)
+
+
+@pytest.mark.parametrize(("share", "effect", "line", "episode", "seldom"), [
+    (0.01, "voltage_sag", np.inf, True, True),
+    (0.03, "voltage_sag", np.inf, True, False),
+    (0.01, "voltage_sag", 3.0, True, False),
+    (0.01, "voltage_sag", np.inf, False, False),
+    (0.01, "torque_saturation", np.inf, True, False),
+])  # fmt: skip
+def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives(share, effect, line, episode, seldom):
+    samples = in_episodes(share)
+    samples.sieves = [SimpleNamespace(signals=SimpleNamespace(subject=SimpleNamespace(stall_torque=np.array([line]))))]
+    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
+    judge.shown = lambda model, place: np.array([0.5, 9.0] if episode else [9.0, 0.5])
+    assert _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect),))) is seldom

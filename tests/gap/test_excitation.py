@@ -69,6 +69,18 @@ def test_fast_content_tells_elasticity_from_delay():
     assert not found["payload"].shown
 
 
+def test_a_voltage_that_all_drives_follow_is_no_news():
+    sagging = 12.0 - 2 * np.linspace(0, 1, 4000)
+    line = (12.0, 3.0, 8.0)
+
+    def shown(**supply):
+        return of(spoiled(rig_log(supply=supply), battery_voltage=sagging))["voltage_sag"].shown
+
+    assert shown()
+    assert shown(hip=line)
+    assert not shown(hip=line, knee=line)
+
+
 def test_temperature_voltage_and_ground():
     ramp = np.linspace(0, 1, 4000)
     log = spoiled(rig_log(), motor_temperature__hip=30 + 40 * ramp, motor_temperature__knee=30 + ramp, battery_voltage=24 - 2 * ramp,

@@ -4,7 +4,7 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.filtering import sieve, sticking, traced
+from hyperleg_design.gap.filtering import moving, moving_ticks, sieve, sticking, traced
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +64,25 @@ def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target(signals):
     assert not sticking(dataclasses.replace(creeps, target=slow + 0.01))[20:-20].any()
     assert sticking(dataclasses.replace(creeps, target=np.ones_like(slow))).all()
     assert not sticking(dataclasses.replace(creeps, target=None))[20:-20].any()
+
+
+def test_the_rest_of_a_joint_that_hardly_moves_counts_only_without_dry_friction(signals):
+    known, resting = np.ones(100, bool), np.arange(100) >= 5
+    assert moving(known, resting, rubs=False).all()
+    np.testing.assert_array_equal(moving(known, resting, rubs=True), ~resting)
+    half = np.arange(100) >= 50
+    np.testing.assert_array_equal(moving(known, half, rubs=False), ~half)
+
+    still = np.ones_like(signals.position, bool)
+    still[:50] = False
+    dry = dataclasses.replace(signals, subject=dataclasses.replace(signals.subject, coulomb=np.array([0.0, 1.0])))
+    one = sieve(dry, still)
+    mask = {row.name: m for row, m in zip(one.rows, one.mask, strict=True) if row.balance == "motion"}
+    assert mask["hip"][60:].any()
+    assert "knee" not in mask or not mask["knee"][50:].any()
+    every = moving_ticks(dry, np.ones_like(still), still)
+    assert every[:, 0].all()
+    np.testing.assert_array_equal(every[:, 1], ~still[:, 1])
 
 
 def test_rows_that_a_trace_leaves_alone_are_missing(signals):

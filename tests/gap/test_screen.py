@@ -1,10 +1,12 @@
+from types import SimpleNamespace
+
 import diagnosed
 import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.fit import Design
-from hyperleg_design.gap.screen import Candidate, NotJudged, descend, lacking, linearise, places, screen
+from hyperleg_design.gap.screen import Candidate, NotJudged, at_rest, descend, lacking, linearise, places, screen
 
 
 @pytest.fixture(scope="module")
@@ -60,3 +62,10 @@ def test_descent_finds_a_parameter_that_is_not_linear(robot_files):
     ready = prepare([replace(signals, residual=shifted)], [], load_thresholds())
     result = descend(ready.base, effect, "hip", np.array([0.3, 0.1]), Design(ready.base).fit(), 12)
     assert result.cause.values == pytest.approx(values, rel=0.15)
+
+
+def test_what_a_joint_holds_at_rest_speaks_for_its_breakaway_friction_alone():
+    samples = SimpleNamespace(holds={"knee": 0.5})
+    assert at_rest(samples, "stribeck_friction", "knee") > 10
+    assert at_rest(samples, "stribeck_friction", "hip") == 0
+    assert at_rest(samples, "coulomb_friction", "knee") == 0

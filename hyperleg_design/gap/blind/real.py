@@ -30,6 +30,7 @@ from hyperleg_design import resources
 from hyperleg_design.errors import HyperlegError
 from hyperleg_design.gap.blind.score import said_of
 from hyperleg_design.gap.blind.trial import FAILED, as_mapping
+from hyperleg_design.gap.diagnosis import NAMING
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
@@ -174,7 +175,7 @@ def score_real(
 def judged(case: RealCase, found: Mapping[str, Any], seconds: float) -> RealRow:
     """Whether a diagnosis of a real case is right."""
     verdict = str(found["verdict"])
-    named = list(found.get("causes") or []) + list(found.get("rivals") or []) if verdict in ("explained", "ambiguous") else []
+    named = list(found.get("causes") or []) + list(found.get("rivals") or []) if verdict in NAMING else []
     first = named[0] if named else None
     inside = None
     if case.effect == "":

@@ -81,9 +81,7 @@ def rig_case(plan: Plan) -> Case:
     references: list[Log] = []
     if plan.references:
         healthy = replace(rig, day=of_day(robot, life, rng), session="before", role="reference")
-        moves = healthy.motions(2, plan.duration, rng)
-        jobs = [((), moves[k], int(rng.integers(2**31))) for k in range(2)]
-        references = healthy.logs(healthy.traces(jobs), jobs)
+        references = _referred(healthy, rng)
     return Case(
         plan=plan, robot=robot.robot, mjcf=robot.mjcf, logs=tuple(logs), references=tuple(references), wrongs=tuple(wrongs), multiples=reached,
         parameters=tuple(parameters(w, robot, rig.day, rig.reach, belts=1.0 if plan.plant == "rig" else BELT_STIFFNESS) for w in wrongs),
@@ -105,6 +103,17 @@ def _recorded(rig: _Rig, wrongs: list[Wrong], rng: np.random.Generator) -> tuple
             break
         wrongs = [replace(w, size=float(np.sign(w.size) * max(SMALLER * abs(w.size), SIZES[w.effect].smallest))) for w in wrongs]
     return wrongs, rig.logs(traces, jobs)
+
+
+def _referred(healthy: _Rig, rng: np.random.Generator) -> list[Log]:
+    """Two logs of the healthy rig; none where it shakes itself to pieces in all motions tried."""
+    for _ in range(CALMED):
+        moves = healthy.motions(2, healthy.plan.duration, rng)
+        jobs: list[tuple[Sequence[Wrong], np.ndarray, int]] = [((), moves[k], int(rng.integers(2**31))) for k in range(2)]
+        traces = healthy.traces(jobs)
+        if all(calm(trace) for trace in traces):
+            return healthy.logs(traces, jobs)
+    return []
 
 
 def calm(trace: Trace) -> bool:

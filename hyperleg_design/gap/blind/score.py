@@ -20,6 +20,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.blind.trial import CASES, DIAGNOSES, FAILED, KEY, read_seal
+from hyperleg_design.gap.diagnosis import NAMING
 from hyperleg_design.writing import write_json
 
 SCORED = "scored.json"
@@ -220,7 +221,7 @@ class _View:
     @property
     def alarm(self) -> bool:
         """Whether a cause was named."""
-        return self.verdict in ("explained", "ambiguous")
+        return self.verdict in NAMING
 
     def first(self, *, lenient: bool = False) -> bool:
         return bool(self.alarm and self.ranked and self._is(self.ranked[0]["effect"], self.effects[0], lenient))
@@ -305,7 +306,7 @@ class _View:
 def said_of(diagnosis: Mapping[str, Any]) -> str:
     """The causes that were named, and what else it may be where that was said."""
     verdict = diagnosis.get("verdict")
-    if verdict not in ("explained", "ambiguous"):
+    if verdict not in NAMING:
         return str(diagnosis.get("message", ""))
     causes, rivals = ([f"{c['effect']} at {c['location']}" for c in diagnosis.get(k) or []] for k in ("causes", "rivals"))
     return ", ".join(causes) + (f", or {rivals[0]}" if verdict == "ambiguous" and rivals else "")

@@ -31,6 +31,8 @@ PROBED = 3
 """Sizes tried."""
 ATTEMPTS = 3
 """Places tried."""
+MILDER, MOTIONS = 3, 4
+"""Times that an effect which fells the robot is made milder; sets of motions tried, as some are near a fall without any."""
 FORCE_NOISE = 0.6
 """Of a pad's load cell [N]."""
 ESTIMATE = (4e-4, 3e-4, 4e-3)
@@ -58,37 +60,13 @@ def walking_case(plan: Plan) -> Case:
     wrongs: list[Wrong] = []
     for effect, wanted in zip(plan.effects, plan.multiples, strict=True):
         wrongs.append(_sized(walker, effect, wanted, rng, [w.location for w in wrongs]))
-    stands: list[Stand] = []
-    clean: list[Log] = []
-    seeds: list[int] = []
-    for _ in range(5 * RECORDINGS):
-        if len(clean) == RECORDINGS:
+    made = None
+    for _ in range(MOTIONS):
+        if (made := _recorded(walker, plan, wrongs, rng)) is not None:
             break
-        stand, seed = drawn_stand(rng), int(rng.integers(2**31))
-        upright = walker.log(walker.trace((), stand, plan.duration, seed), seed, f"today_{len(clean)}", session="today")
-        if upright is not None:
-            stands.append(stand)
-            seeds.append(seed)
-            clean.append(upright)
-    if len(clean) < RECORDINGS:
-        raise RuntimeError("the healthy robot fell in every recording")
-
-    def run(given: Sequence[Wrong], number: int) -> Log:
-        log = walker.log(walker.trace(given, stands[number], plan.duration, seeds[number]), seeds[number], f"today_{number}", session="today")
-        if log is None:
-            raise RuntimeError("the robot fell in a recording")
-        return log
-
-    logs: list[Log] = clean
-    for left in range(3, -1, -1):  # sized on short runs, an effect may fell the robot in a long one
-        try:
-            logs = [run(wrongs, k) for k in range(RECORDINGS)] if wrongs else clean
-            break
-        except RuntimeError:
-            if not left:
-                raise
-            wrongs = [replace(w, size=_milder(w)) for w in wrongs]
-    reached = tuple(shown(w.effect, [run((w,), k) for k in range(RECORDINGS)] if len(wrongs) > 1 else logs, clean, robot) for w in wrongs)
+    if made is None:
+        raise RuntimeError("the robot fell in every recording, however small the effect")
+    logs, wrongs, reached = made
     references: list[Log] = []
     if plan.references:
         walker = replace(walker, day=of_day(robot, life, rng))
@@ -101,6 +79,47 @@ def walking_case(plan: Plan) -> Case:
         also=tuple((BASE, "robot") if w.location == BASE else (*places(w, robot), *_FEET) if w.location in _FEET else places(w,
         robot) for w in wrongs),
     )  # fmt: skip
+
+
+def _recorded(
+    walker: _Walker, plan: Plan, wrongs: Sequence[Wrong], rng: np.random.Generator
+) -> tuple[list[Log], list[Wrong], tuple[float, ...]] | None:
+    """Logs of motions in which the robot stands, without and with the effects, these as large as that allows, and their multiples.
+
+    None where it falls with the mildest.
+    """
+    runs: list[tuple[Stand, int]] = []
+    clean: list[Log] = []
+    for _ in range(5 * RECORDINGS):
+        if len(clean) == RECORDINGS:
+            break
+        stand, seed = drawn_stand(rng), int(rng.integers(2**31))
+        upright = walker.log(walker.trace((), stand, plan.duration, seed), seed, f"today_{len(clean)}", session="today")
+        if upright is not None:
+            runs.append((stand, seed))
+            clean.append(upright)
+    if len(clean) < RECORDINGS:
+        raise RuntimeError("the healthy robot fell in every recording")
+    if not wrongs:
+        return clean, [], ()
+
+    def run(given: Sequence[Wrong]) -> list[Log] | None:
+        logs: list[Log] = []
+        for number, (stand, seed) in enumerate(runs):
+            log = walker.log(walker.trace(given, stand, plan.duration, seed), seed, f"today_{number}", session="today")
+            if log is None:
+                return None
+            logs.append(log)
+        return logs
+
+    given = list(wrongs)
+    for _ in range(1 + MILDER):  # sized on short runs, an effect may fell the robot in a long one
+        logs = run(given)
+        alone = [logs] if len(given) == 1 else [run((w,)) for w in given] if logs is not None else []
+        if logs is not None and all(own is not None for own in alone):
+            return logs, given, tuple(shown(w.effect, own or [], clean, walker.chain) for w, own in zip(given, alone, strict=True))
+        given = [replace(w, size=_milder(w)) for w in given]
+    return None
 
 
 _FEET = ("ground", "left_foot", "right_foot", "robot")

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.needed import needed
+from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.simulation.alteration import Alteration, Live
 
 if TYPE_CHECKING:
@@ -73,12 +73,12 @@ def _basis(signals: Signals, joint: int) -> Basis:
     hinge = bool(signals.subject.tree.hinge[joint])
     nodes = 2 * np.pi / NODES * np.arange(1, NODES) if hinge else np.array([-0.1, 0.1])
     matrix = np.linalg.inv(_waves(nodes) if hinge else np.stack([nodes, nodes**2], -1))
-    here = needed(signals, signals.position)
+    here = as_logged(signals)
     shifts = []
     for node in nodes:
         position = signals.position.copy()
         position[:, joint] -= node
-        there = needed(signals, position)
+        there = needed(signals, position, rotors=False)
         shifts.append({balance: there[balance] - here[balance] for balance in here})
     found = {}
     for balance in here:

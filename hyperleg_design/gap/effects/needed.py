@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from hyperleg_design.gap import rigid
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
+
+_LOGGED: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
 
 
 def needed(
@@ -36,3 +39,10 @@ def needed(
         if "base" in found:
             found["base"] = found["base"] - wrench
     return found
+
+
+def as_logged(signals: Signals) -> dict[str, np.ndarray]:
+    """What the logged motion needs by `needed`, without rotors; kept, as each location compares with it."""
+    if signals not in _LOGGED:
+        _LOGGED[signals] = needed(signals, signals.position, rotors=False)
+    return _LOGGED[signals]

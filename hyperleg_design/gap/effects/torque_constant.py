@@ -79,12 +79,16 @@ class _Scaled(Live):
         one = self.alteration
         self.place = self.machine.motor(one.motor)
         self.read = 1.0 + np.asarray(one.reading) * (np.asarray(one.scale) - 1.0)
+        self.misread = bool(np.any(self.read != 1.0))
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
-        command[:, self.place] /= self.read
+        if self.misread:
+            command[:, self.place] /= self.read
         return command
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:
+        if not self.misread:
+            return limits
         shape = np.broadcast_shapes(np.shape(limits.peak_torque), (self.count, len(self.machine.motors)))
         stall, peak = np.array(np.broadcast_to(limits.stall_torque, shape)), np.array(np.broadcast_to(limits.peak_torque, shape))
         stall[:, self.place] /= self.read

@@ -9,8 +9,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.needed import needed
+from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.placing import SIDES, at_motor, driven_motors
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
@@ -25,7 +26,8 @@ class TransmissionRatio(Effect):
     Where positions are the joints' own (`side` 0), the trace is (1 - scale) tau + (scale^2 - 1) J M^T q_ddot on the motor's side,
     the second part as the rotor turns faster too: apart from it, this looks like a torque constant. Where they are worked out from
     rotors by the model (1), the joints stand elsewhere, at q + (1 / scale - 1) P M^T q, P the motor's row of the inverse of M, and
-    the trace is (1 - scale) (tau - J M^T q_ddot) and what that motion needs more than the logged one.
+    the trace is (1 - scale) (tau - J M^T q_ddot) and what that motion needs more than the logged one, friction included: of coupled
+    joints one may stand while its encoders say that it turns.
     """
 
     identifier: ClassVar[str] = "transmission_ratio"
@@ -50,6 +52,7 @@ class TransmissionRatio(Effect):
         found = at_motor(signals, motor, (1.0 - scale) * signals.believed[:, motor] + turning * rotor)
         if not side.any():
             return found
+        found["motion"] = found["motion"] + _other_friction(signals, motor, side * (1 / scale - 1))
         farther = (1 / scale - 1)[:, 0]
         powers = side * np.stack([farther, farther**2], -1)
         for balance, parts in _elsewhere(signals, motor).items():
@@ -64,7 +67,18 @@ class TransmissionRatio(Effect):
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Longer and shorter, with encoders on either side."""
-        return np.array([[1 + sign * size, side] for side in (0.0, 1.0) for sign in (1, -1) for size in (0.05,)])
+        return np.array([[1.05, 0.0], [0.95, 0.0], [1.05, 1.0], [0.95, 1.0]])
+
+
+def _other_friction(signals: Signals, motor: int, farther: np.ndarray) -> np.ndarray:
+    """Friction of joints that move otherwise than logged, a motor's share of it larger by some shares `(k, 1)`, less the logged `(k, t, n)`."""
+    subject, velocity = signals.subject, signals.velocity
+    own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
+    swing = None if signals.chatter is None else signals.chatter.speed
+    moved = velocity + farther[..., None] * (velocity @ own)
+    return np.asarray(
+        rigid.friction_torque(subject, signals.position, moved, swing) - rigid.friction_torque(subject, signals.position, velocity, swing)
+    )
 
 
 NODE = 0.1
@@ -78,7 +92,7 @@ def _elsewhere(signals: Signals, motor: int) -> dict[str, np.ndarray]:
     if motor not in kept:
         subject = signals.subject
         own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
-        here, there = needed(signals, signals.position, rotors=False), []
+        here, there = as_logged(signals), []
         for node in (NODE, -NODE):
             moved = (values + node * values @ own for values in (signals.position, signals.velocity, signals.acceleration))
             there.append(needed(signals, *moved, rotors=False))

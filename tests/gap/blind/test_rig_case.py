@@ -6,7 +6,7 @@ import pytest
 from hyperleg_design.gap.blind.chain import ROBOTS, chain
 from hyperleg_design.gap.blind.nuisance import of_day, of_robot, perfect
 from hyperleg_design.gap.blind.rig_build import Reach, build_rig
-from hyperleg_design.gap.blind.rig_case import calm, draw, size_at
+from hyperleg_design.gap.blind.rig_case import CALMED, _referred, calm, draw, size_at
 from hyperleg_design.gap.blind.truth import parameters, places
 from hyperleg_design.gap.blind.wrong import SIZES, Wrong
 
@@ -34,6 +34,23 @@ def test_a_rig_that_turns_too_far_or_too_fast_has_gone_to_pieces(signal, value, 
     trace = SimpleNamespace(position=np.zeros((5, 2)), velocity=np.zeros((5, 2)))
     getattr(trace, signal)[3, 1] = value
     assert calm(trace) is whole
+
+
+@pytest.mark.parametrize(("wild", "logs"), [(0, 2), (3, 2), (CALMED, 0)])
+def test_reference_logs_are_of_a_rig_that_stays_whole(wild, logs):
+    tries = []
+
+    def traces(jobs):
+        tries.append(jobs)
+        most = 50.0 if len(tries) <= wild else 1.0
+        return [SimpleNamespace(position=np.full((5, 2), most), velocity=np.zeros((5, 2))) for _ in jobs]
+
+    rig = SimpleNamespace(
+        plan=SimpleNamespace(duration=10.0), motions=lambda count, duration, rng: [np.zeros((5, 2))] * count,
+        traces=traces, logs=lambda traces, jobs: ["log" for _ in traces],
+    )  # fmt: skip
+    assert len(_referred(rig, np.random.default_rng(0))) == logs
+    assert len(tries) == min(wild + 1, CALMED)
 
 
 @pytest.mark.parametrize("name", ROBOTS)
