@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap import contact, rigid
+from hyperleg_design.gap import contact, rigid, transmission
 from hyperleg_design.gap.base_motion import base_motion
 from hyperleg_design.gap.chatter import chatter
 from hyperleg_design.gap.control import control_residual
@@ -97,6 +97,11 @@ def condition(log: Log, subject: Subject) -> Signals:
         residual["drive"] = measured - limited
     if control is not None:
         residual["control"] = control
+    if (spin := resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)) is not None:
+        spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
+        if np.isfinite(spin).any():
+            residual["transmission"], refused = transmission.balance(subject, spin, motion.first)
+            notes += refused
     if others:
         notes.append(f"motors whose logged commands are not those of a controller with stiffness and damping: {', '.join(others)}")
     valid = _valid(log, ticks, position[:, ~lacking], _edge(motion, lacking))

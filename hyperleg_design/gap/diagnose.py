@@ -40,8 +40,8 @@ MOST_RIVALS, MOST_SHAPES, MOST_ERRORS = 8, 3, 12
 """Listed."""
 LEAST_SHARE = 0.02
 """Of the excess, below which a place is not listed."""
-KIND = {"motion": "joint", "drive": "motor", "control": "motor", "base": "robot", "ground": "foot"}
-UNIT = {"motion": "Nm", "drive": "Nm", "control": "Nm", "base": "N, Nm", "ground": "N"}
+KIND = {"motion": "joint", "drive": "motor", "control": "motor", "transmission": "motor", "base": "robot", "ground": "foot"}
+UNIT = {"motion": "Nm", "drive": "Nm", "control": "Nm", "transmission": "rad/s", "base": "N, Nm", "ground": "N"}
 
 
 def diagnose(

@@ -74,7 +74,7 @@ def evidence(signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str
     rows: tuple[str, ...]
     if balance == "motion":
         rows, speed = subject.joints, signals.velocity
-    elif balance in ("drive", "control"):
+    elif balance in ("drive", "control", "transmission"):
         rows, speed = subject.motors, signals.velocity @ subject.joint_from_motor
     elif balance == "base":
         rows = tuple(f"base {part}" for part in ("force x", "force y", "force z", "torque x", "torque y", "torque z"))

@@ -102,6 +102,14 @@ EXPERIMENTS: tuple[Experiment, ...] = (
     Experiment("known angle", "turn the output by hand through a known angle and compare with the encoder at the motor", 5, (
         (_set("transmission_ratio"), SCALING | _set("rotor_inertia")),
     )),
+    Experiment("log rotor speeds", "where drives know their rotors' speed, repeat the motion with motor_velocity logged beside the joints'", 6, (
+        (_set("transmission_ratio", "transmission_elasticity", "backlash"),
+         FRICTION | INERTIAL | LATE | _set(
+             "torque_constant", "thermal_derating", "voltage_sag", "torque_saturation", "controller_gain", "rotor_inertia", "encoder_offset",
+             "joint_spring", "cogging",
+         )),
+        (_set("transmission_ratio"), _set("transmission_elasticity", "backlash")),
+    )),
     Experiment("rest level", "let the robot stand or lie still on a level table for ten seconds", 1, (
         (_set("imu_bias"), INERTIAL | _set("encoder_offset", "joint_spring")),
     )),

@@ -26,6 +26,8 @@ WIDEST = 1.0
 """Bandwidth that the numbers of a band count for at most [Hz]."""
 OF_BANDWIDTH, OF_RATE = 0.9, 0.4
 """Cutoff over the frequency above which motion is noise, and over the log's rate."""
+OF_SPEEDS = 0.5
+"""The same of speeds that are not smoothed, against some that are: there the smoother lets 98 % pass."""
 WITHOUT_BANDWIDTH = 10.0
 """Cutoff where the log does not tell it [Hz]."""
 OF_BALANCE = {"base": 10.0, "ground": 20.0}
@@ -175,11 +177,13 @@ def _cutoff(signals: Signals, balance: str, column: int) -> float:
     most = OF_RATE / signals.step
     if balance in OF_BALANCE:
         return min(OF_BALANCE[balance], most)
-    if balance != "motion":
+    if balance not in ("motion", "transmission"):
         return min(HIGHEST, most)
-    if signals.bandwidth is None or not np.isfinite(signals.bandwidth[column]):
+    joints = [column] if balance == "motion" else np.flatnonzero(signals.subject.joint_from_motor[:, column])
+    bandwidth = np.nan if signals.bandwidth is None else float(np.min(signals.bandwidth[joints], initial=np.inf))
+    if not np.isfinite(bandwidth):
         return min(WITHOUT_BANDWIDTH, most)
-    return min(HIGHEST, OF_BANDWIDTH * float(signals.bandwidth[column]), most)
+    return min(HIGHEST, (OF_BANDWIDTH if balance == "motion" else OF_SPEEDS) * bandwidth, most)
 
 
 def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[Band, ...]:

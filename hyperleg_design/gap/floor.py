@@ -24,6 +24,8 @@ NEAR = 0.5
 """Time over which the size of a load is averaged [s]."""
 TURNING, TURNING_TIME = 0.006, 0.05
 """Way on which friction may turn over [rad], half of it; and time around it for which that counts [s]."""
+FAST = 10.0
+"""Speed that a motor is made for where nobody gives its limits [rad/s]; assumed."""
 LEAST = 1e-4
 """Floor over the torque that a joint is made for, at least: what single precision and rounding in logs leave."""
 
@@ -94,6 +96,8 @@ def _loads(sieve: Sieve) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
             found[balance] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
         elif balance == "ground" and signals.contact is not None:
             found[balance] = np.repeat(np.linalg.norm(signals.contact, axis=-1), 3, axis=-1)
+        elif balance == "transmission":
+            found[balance] = signals.velocity @ subject.joint_from_motor
         elif signals.command is not None and residual.shape[1] == signals.command.shape[1]:
             found[balance] = signals.command
         else:
@@ -107,6 +111,9 @@ def _strength(sieve: Sieve, row: int) -> float:
         return float(joint_strength(subject)[one.column])
     if one.balance in ("base", "ground"):
         return 100.0
+    if one.balance == "transmission":
+        fastest = float(subject.no_load_speed[one.column])
+        return fastest if np.isfinite(fastest) else FAST
     limit = float(subject.torque_limit[one.column])
     return limit if np.isfinite(limit) else 1.0
 

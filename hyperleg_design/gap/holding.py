@@ -17,7 +17,7 @@ from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.series import band_limited
-from hyperleg_design.gap.filtering import sticking
+from hyperleg_design.gap.filtering import CREEP, sticking
 from hyperleg_design.gap.rigid import turned
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def held(signals: Signals) -> np.ndarray:
     """Friction at rest that a log shows at least, by joint `(n,)` [Nm]."""
     subject = signals.subject
     motion = signals.residual["motion"] + subject.coulomb * turned(signals.velocity, subject.friction_speed)
-    rest = sticking(signals) & signals.valid[:, None] & np.isfinite(motion)
+    rest = sticking(signals) & (np.abs(signals.velocity) < CREEP) & signals.valid[:, None] & np.isfinite(motion)
     found = np.zeros(len(subject.joints))
     for joint in range(len(found)):
         torque = band_limited(motion[:, joint], signals.step, min(BAND, 0.3 / signals.step))

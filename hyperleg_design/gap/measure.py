@@ -35,6 +35,7 @@ TORQUE_SIGNALS = {
     "motion": ("torque", "joint", "Nm"),
     "drive": ("drive", "motor", "Nm"),
     "control": ("control", "motor", "Nm"),
+    "transmission": ("transmission", "motor", "rad/s"),
     "base": ("base", "robot", "N, Nm"),
     "ground": ("ground", "foot", "N"),
 }
@@ -46,7 +47,7 @@ class Row:
     """One line of the table."""
 
     signal: str
-    """`torque`, `drive`, `control`, `base`, `ground`, `position` or `velocity`."""
+    """`torque`, `drive`, `control`, `transmission`, `base`, `ground`, `position` or `velocity`."""
     unit: str
     kind: str
     """`joint`, `motor`, `foot` or `robot`."""
@@ -158,6 +159,8 @@ def _sheets(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, st
         elif balance == "control":
             assert signals.command is not None
             made.append(_motor_sheet(signals, signal, unit, residual, signals.command))
+        elif balance == "transmission":
+            made.append(_motor_sheet(signals, signal, unit, residual, signals.velocity @ subject.joint_from_motor))
         else:
             names: tuple[str, ...] = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
             if balance == "ground":

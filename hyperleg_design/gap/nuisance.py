@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap import rigid
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import EFFECTS, belt
 from hyperleg_design.gap.effects.friction import sliding
-from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
+from hyperleg_design.gap.effects.placing import driven_motors, joint_inertia, joint_strength, motor_strength, motor_velocity
+from hyperleg_design.gap.effects.series import first_derivative
+from hyperleg_design.gap.transmission import turned
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -63,6 +65,15 @@ DAY = {
 TURNOVER, SWUNG = "friction_turnover", "friction_in_chatter"
 """Friction of models turns over with speed, as tanh(v / v_s); that of robots at once, or over a way on which bristles bend. By how
 much of these differences, nobody knows: no effect of the catalogue, and no calibration error that is small."""
+GEARED, TOLD_LATE, GIVING = "speed_ratio", "speed_told_late", "stiff_belt"
+"""Of motors whose speed is logged beside that of their joints, which shows what no other balance does: a share of it, the time
+between both sensors' samples, and belts and gears as stiff as they are, which give a little."""
+SPEEDS = (GEARED, TOLD_LATE, GIVING)
+OF_SPEED = 0.003
+"""Of the joints' speed: cords run on their own thickness, linkages off their drawing (assumed)."""
+STIFF, GIVES = 60.0, 0.001
+"""Frequency of a rotor on a belt that nobody calls soft [Hz], and angle at a joint by which one gives under all of its torque [rad]; the
+softer of both is usual."""
 WAYS = (0.0015, 0.006)
 """On which it turns over, half of each [rad]; assumed, beside that of `effects.friction`."""
 SWINGS, OF_SWING = (0.5, 2.0), 0.7
@@ -88,6 +99,8 @@ class Usual:
     @property
     def name(self) -> str:
         """For people."""
+        if self.effect in SPEEDS:
+            return f"{self.effect} at {self.location}"
         parameter = "share" if self.effect in (TURNOVER, SWUNG) else EFFECTS[self.effect].parameters[self.parameter].name
         return f"{self.effect} at {self.location}: {parameter}"
 
@@ -123,6 +136,9 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             Usual("torque_constant", motor, READING, CURRENT),
             Usual("rotor_inertia", motor, 0, rotor),
             Usual("actuator_bandwidth", motor, 0, 0.5 * late),
+            Usual(GEARED, motor, 0, OF_SPEED),
+            Usual(TOLD_LATE, motor, 0, late),
+            Usual(GIVING, motor, 0, _give(subject, m)),
         ]
     for link in EFFECTS["link_mass"].locations(subject):
         own = subject.tree.link_inertial[subject.tree.link(link)]
@@ -134,7 +150,8 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
         for foot in subject.feet:
             found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, BEARING)]
             found.append(Usual("ground_compliance", foot, 1, BEARING))
-    places = {TURNOVER: set(subject.joints), SWUNG: set(subject.joints)} | {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
+    places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
+    places |= {name: set(subject.joints) for name in (TURNOVER, SWUNG)} | {name: set(driven_motors(subject)) for name in SPEEDS}
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 
 
@@ -151,6 +168,9 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
         if one.effect in (TURNOVER, SWUNG):
             trace = (_turnover if one.effect == TURNOVER else _swung)(signals, one.location, one.parameter)
             found.append({b: v * one.spread for b, v in trace.items()})
+            continue
+        if one.effect in SPEEDS:
+            found.append(_speeds(signals, one))
             continue
         effect = EFFECTS[one.effect]
         if one.effect == "torque_constant" and one.parameter == READING:
@@ -174,6 +194,29 @@ def _read(signals: Signals, motor: str, share: float) -> dict[str, np.ndarray]:
     rows = np.zeros_like(signals.measured)
     rows[:, place] = share * (signals.measured - signals.residual["drive"])[:, place]
     return {"drive": rows}
+
+
+def _give(subject: Subject, motor: int) -> float:
+    """Compliance of a belt or gear as they are, on the motor's side [rad/Nm]."""
+    inertia = float(subject.rotor_inertia[motor])
+    of_belt = 1 / (inertia * (2 * np.pi * STIFF) ** 2) if inertia > 0 else 0.0
+    of_gear = GIVES * float(np.abs(subject.joint_from_motor[:, motor]).max()) / motor_strength(subject, motor)
+    return max(of_belt, of_gear)
+
+
+def _speeds(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
+    """Usual errors of a motor's speed beside its joints'."""
+    if "transmission" not in signals.residual:
+        return {}
+    subject = signals.subject
+    motor = subject.motors.index(one.location)
+    if one.effect == GEARED:
+        speed = motor_velocity(signals, motor)
+    elif one.effect == TOLD_LATE:
+        speed = -signals.acceleration @ subject.joint_from_motor[:, motor]
+    else:
+        speed = first_derivative(belt.transmitted(signals, motor), signals.step)
+    return {balance: rows[0] for balance, rows in turned(signals, motor, one.spread * speed[None]).items()}
 
 
 def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:

@@ -57,6 +57,7 @@ KINDS = {
     "other_joints": "a torque that depends on other joints' positions and speeds",
     "rhythm": "a torque that repeats in time, whatever the motion",
     "gravity": "gravity from another direction than the model's",
+    "ratio_over_position": "a speed of the motor over its joints' that varies with their position",
     "encoder_over_position": "a position error that varies with the joint's position",
     "encoder_over_time": "a position error that drifts with time",
 }
@@ -77,9 +78,11 @@ def shapes(samples: Samples, rows: np.ndarray) -> list[Shape]:
     for row in rows.tolist():
         one = samples.rows[row]
         if one.balance == "motion":
-            kinds = [k for k in KINDS if k != "gravity"]
+            kinds = [k for k in KINDS if k not in ("gravity", "ratio_over_position")]
         elif one.balance in ("drive", "control"):
             kinds = ["time", "rhythm", "speed", "load_over_position"]
+        elif one.balance == "transmission":
+            kinds = ["ratio_over_position"]
         else:
             kinds = ["time", "rhythm"]
         found += [Shape(kind, row, f"{one.name}: {KINDS[kind]}") for kind in kinds]
@@ -132,7 +135,7 @@ class _Basis:
         self.row = samples.rows[shape.row]
         logs = [s.signals for s in samples.sieves]
         subject = logs[0].subject
-        of_motor = self.row.balance in ("drive", "control")
+        of_motor = self.row.balance in ("drive", "control", "transmission")
         self.motor = (
             self.row.column if of_motor else int(np.argmax(np.abs(subject.joint_from_motor[self.row.column]))) if self.row.balance == "motion" else 0
         )
@@ -178,6 +181,8 @@ class _Basis:
                 return np.zeros((0, len(time)))
             # the phase starts anew in every log
             return np.concatenate([[np.cos(w * time), np.sin(w * time)] for w in 2 * np.pi * self.frequency * np.arange(1, RHYTHMS + 1)])
+        if name == "ratio_over_position":
+            return self._pieces(q) * (signals.velocity @ signals.subject.joint_from_motor[:, self.motor])
         if name == "encoder_over_time":
             x = 2 * time / self.longest - 1
             return np.stack([x, x**2, x**3])

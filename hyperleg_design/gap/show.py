@@ -376,9 +376,9 @@ def _largest(traces: dict[str, np.ndarray], signals: Signals) -> tuple[str, str,
     """The first of the balances in which there is a trace, its row with the largest, its unit, that trace, and the residual."""
     subject = signals.subject
     wrench = ("force x", "force y", "force z", "moment x", "moment y", "moment z")
-    names = {"motion": subject.joints, "drive": subject.motors, "base": wrench}
+    names = {"motion": subject.joints, "drive": subject.motors, "transmission": subject.motors, "base": wrench}
     names["ground"] = tuple(f"{foot} {axis}" for foot in subject.feet for axis in "xyz")
-    for balance in ("motion", "drive", "ground", "base"):
+    for balance in ("motion", "drive", "ground", "base", "transmission"):
         if balance not in traces:
             continue
         rows = np.where(signals.valid[:, None], traces[balance][0], np.nan)
@@ -387,7 +387,7 @@ def _largest(traces: dict[str, np.ndarray], signals: Signals) -> tuple[str, str,
         size = np.sqrt(np.where(np.isfinite(rows), rows, 0.0) ** 2).mean(0)
         place = int(np.argmax(size))
         if size[place] > NOTHING:
-            unit = "N" if balance == "ground" or (balance == "base" and place < 3) else "Nm"
+            unit = "rad/s" if balance == "transmission" else "N" if balance == "ground" or (balance == "base" and place < 3) else "Nm"
             residual = np.where(np.isfinite(rows[:, place]), signals.residual[balance][:, place], np.nan)
             return balance, names[balance][place], unit, rows[:, place], residual
     unknown = np.full(len(signals.time), np.nan)

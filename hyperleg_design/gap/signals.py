@@ -45,6 +45,7 @@ class Signals:
         control: logged command of the motors minus the one that the declared gains make of the logged targets and state `(t, m)`
             [Nm], where both are known and the controller is of that form;
         base: of a floating base whose contact forces are logged, the six rows of the base `(t, 6)` [N, Nm];
+        transmission: logged speed of the motors minus that of the joints' motion `(t, m)` [rad/s], where both are known;
         ground: logged contact force minus the nominal ground's at the logged motion `(t, 3 f)` [N].
     """
 

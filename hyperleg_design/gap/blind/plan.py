@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,8 @@ TORQUES = {"motor_current": 0.5, "motor_torque": 0.2, "motor_torque_command": 0.
 """What rigs log of their torques."""
 MULTIPLES = (1.0, 5.0)
 """Range of an effect's share over the residual of a clean log."""
+ROTORS = 0.5
+"""Share of rigs that log the speeds of their rotors."""
 REFERENCES = 0.5
 """Share of cases with logs of the healthy robot from another day."""
 ONE_JOINT_CANNOT = ("link_mass", "link_com", "cross_coupling", "tilted_gravity")
@@ -96,7 +98,7 @@ def plan_cases(count: int, seed: int, *, plants: Sequence[str] = tuple(PLANTS), 
             robot = "servo"
             effects = tuple("payload" if e in ONE_JOINT_CANNOT else e for e in effects)
         low, high = MULTIPLES if kind == "single" else (2.0, MULTIPLES[1])
-        plans.append(Plan(
+        plan = Plan(
             index=index, kind=kind, plant=plant, robot=robot, effects=effects,
             multiples=tuple(float(own.uniform(low, high)) for _ in effects), references=bool(own.random() < REFERENCES),
             recorder=Recorder(
@@ -105,7 +107,8 @@ def plan_cases(count: int, seed: int, *, plants: Sequence[str] = tuple(PLANTS), 
                 velocity=bool(own.random() < 0.8), drives=bool(own.random() < 0.6) or bool(set(effects) & set(NEED_DRIVES)),
             ),
             duration=round(float(own.uniform(*duration)), 1), seed=(seed, index),
-        ))  # fmt: skip
+        )  # fmt: skip
+        plans.append(plan if walking else replace(plan, recorder=replace(plan.recorder, rotors=bool(own.random() < ROTORS))))
     return plans
 
 

@@ -34,12 +34,16 @@ class Recorder:
     """Whether speeds are logged."""
     drives: bool = True
     """Whether motor temperature and battery voltage are logged."""
+    rotors: bool = False
+    """Whether speeds of the rotors are logged."""
     position_noise: float = 5e-5
     """[rad]"""
     velocity_noise: float = 0.006
     """[rad/s]"""
     torque_noise: float = 0.003
     """Over the motor's peak torque [-]."""
+    rotor_noise: float = 0.02
+    """Of the rotors' speeds [rad/s]."""
 
 
 def record(trace: Any, targets: np.ndarray, chain: Chain, recorder: Recorder, rng: np.random.Generator, *, name: str, **metadata: Any) -> Log:
@@ -92,6 +96,8 @@ def record(trace: Any, targets: np.ndarray, chain: Chain, recorder: Recorder, rn
     if recorder.drives:
         put("motor_temperature", chain.motors, np.round(at(trace.temperature)))
         signals["battery_voltage"] = np.round(noisy(at(trace.voltage[:, None])[:, 0], 0.02)[keep], 2)
+    if recorder.rotors:
+        put("motor_velocity", chain.motors, noisy(at(trace.motor_velocity), recorder.rotor_noise))
     known: dict[str, Any] = {
         "base": "fixed", "gains": {j: (float(k), float(d)) for j, k, d in zip(chain.joints, chain.stiffness, chain.damping, strict=True)},
     }  # fmt: skip

@@ -1,8 +1,8 @@
 """What belts that stretch or have play leave in a log: motor and joint as two masses, the motion of one of them known.
 
 The rotor turns by M^T q + s. Where positions are the joints' own (`side` 0) the rotor's inertia J takes J s'' beyond a rigid
-belt's torque. Where they are those of the rotors, taken for the joints' (`side` 1), the joints stand s / M behind, and need
-another torque for that. Between, encoders on both sides are mixed.
+belt's torque, and a rotor whose own speed is logged turns s' faster than its joints. Where they are those of the rotors, taken for
+the joints' (`side` 1), the joints stand s / M behind, and need another torque for that. Between, encoders on both sides are mixed.
 
 A belt that gives is stretched by what the joints need through it, u = [M^-1 (needed torque less the rotors')]: s = compliance u,
 filtered by the belt's damping. In a dead zone of width w nothing is transmitted, and s moves by itself,
@@ -27,6 +27,7 @@ from hyperleg_design.gap import rigid
 from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.effects.placing import at_motor, joint_inertia
 from hyperleg_design.gap.effects.series import band_limited, first_derivative, lagged, second_derivative
+from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.two_mass import LIGHTEST
 
 if TYPE_CHECKING:
@@ -41,6 +42,7 @@ CROSSING, CROSSING_BAND = 0.8, 0.15
 """c, the load below which a rotor that does not coast is on its way across; band of its crossing, over the log's rate (assumed)."""
 
 _LOADS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
+_GIVEN: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 
 
 def rotor(subject: Subject, motor: int) -> float:
@@ -59,17 +61,30 @@ def load(signals: Signals, motor: int) -> np.ndarray:
     return kept[motor]
 
 
-def stretch(signals: Signals, motor: int, compliance: np.ndarray, damping_ratio: np.ndarray) -> np.ndarray:
+def transmitted(signals: Signals, motor: int) -> np.ndarray:
+    """Torque that a motor gives its belt, its own torque less what its rotor takes, where its speed is logged; else `load` `(t,)` [Nm]."""
+    if "transmission" not in signals.residual or not np.isfinite(signals.residual["transmission"][:, motor]).any():
+        return load(signals, motor)
+    kept = _GIVEN.setdefault(signals, {})
+    if motor not in kept:
+        spin = signals.residual["transmission"][:, motor] + signals.velocity @ signals.subject.joint_from_motor[:, motor]
+        given = signals.believed[:, motor] - rotor(signals.subject, motor) * first_derivative(spin, signals.step)
+        kept[motor] = band_limited(given, signals.step, BAND / signals.step)
+    return kept[motor]
+
+
+def stretch(signals: Signals, through: np.ndarray, motor: int, compliance: np.ndarray, damping_ratio: np.ndarray) -> np.ndarray:
     """How far a rotor turns beyond its joints under load, on its side of M `(k, t)` [rad].
 
     Args:
         signals: a conditioned log.
+        through: torque through the belt `(t,)` [Nm]: `load`, or `transmitted`.
         motor: place of the motor.
         compliance: `(k,)` [rad/Nm].
         damping_ratio: of the rotor on its belt `(k,)`.
     """
     late = 2 * damping_ratio * np.sqrt(rotor(signals.subject, motor) * compliance)
-    return np.asarray(compliance[:, None] * lagged(load(signals, motor), late, signals.step))
+    return np.asarray(compliance[:, None] * lagged(through, late, signals.step))
 
 
 def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coasting: np.ndarray) -> np.ndarray:
@@ -139,16 +154,19 @@ def _joint_alone(signals: Signals, motor: int) -> np.ndarray:
     return load(signals, motor) / float(share**2 @ joint_inertia(signals.subject))
 
 
-def trace(signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray) -> dict[str, np.ndarray]:
-    """What stretch leaves in the balance of motion, see above.
+def trace(signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray, seen: np.ndarray | None = None) -> dict[str, np.ndarray]:
+    """What stretch leaves in the balances of motion and transmission, see above.
 
     Args:
         signals: a conditioned log.
         motor: place of the motor.
         moved: stretch `(k, t)` [rad].
         side: on which the positions were logged `(k,)`.
+        seen: stretch in the balance of transmission, as the rotor's side tells it `(k, t)` [rad]; by default the same.
     """
-    found = at_motor(signals, motor, (1 - side[:, None]) * rotor(signals.subject, motor) * second_derivative(moved, signals.step))
+    own = (1 - side[:, None]) * moved
+    found = at_motor(signals, motor, rotor(signals.subject, motor) * second_derivative(own, signals.step))
+    found |= turned(signals, motor, first_derivative(own if seen is None else (1 - side[:, None]) * seen, signals.step))
     if side.any():
         subject = signals.subject
         share = subject.motor_from_joint[motor]

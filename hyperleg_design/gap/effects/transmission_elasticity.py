@@ -47,7 +47,8 @@ class TransmissionElasticity(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         compliance, damping_ratio, side = np.atleast_2d(np.asarray(values, float)).T
-        return belt.trace(signals, motor, belt.stretch(signals, motor, compliance, damping_ratio), side)
+        moved, seen = (belt.stretch(signals, through(signals, motor), motor, compliance, damping_ratio) for through in (belt.load, belt.transmitted))
+        return belt.trace(signals, motor, moved, side, seen)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""

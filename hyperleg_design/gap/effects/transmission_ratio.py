@@ -12,7 +12,8 @@ import numpy as np
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.needed import as_logged, needed
-from hyperleg_design.gap.effects.placing import SIDES, at_motor, driven_motors
+from hyperleg_design.gap.effects.placing import SIDES, at_motor, driven_motors, motor_velocity
+from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
 if TYPE_CHECKING:
@@ -24,7 +25,8 @@ class TransmissionRatio(Effect):
     """A motor turns `scale` times as fast over its joints as the model says, and pulls on them `scale` times as hard.
 
     Where positions are the joints' own (`side` 0), the trace is (1 - scale) tau + (scale^2 - 1) J M^T q_ddot on the motor's side,
-    the second part as the rotor turns faster too: apart from it, this looks like a torque constant. Where they are worked out from
+    the second part as the rotor turns faster too: apart from it, and from the rotor's speed where that is logged, this looks like
+    a torque constant. Where they are worked out from
     rotors by the model (1), the joints stand elsewhere, at q + (1 / scale - 1) P M^T q, P the motor's row of the inverse of M, and
     the trace is (1 - scale) (tau - J M^T q_ddot) and what that motion needs more than the logged one, friction included: of coupled
     joints one may stand while its encoders say that it turns.
@@ -50,6 +52,7 @@ class TransmissionRatio(Effect):
         rotor = subject.rotor_inertia[motor] * (signals.acceleration @ subject.joint_from_motor[:, motor])
         turning = (1 - side) * (scale**2 - 1.0) + side * (scale - 1.0)
         found = at_motor(signals, motor, (1.0 - scale) * signals.believed[:, motor] + turning * rotor)
+        found |= turned(signals, motor, (1 - side) * (scale - 1.0) * motor_velocity(signals, motor))
         if not side.any():
             return found
         found["motion"] = found["motion"] + _other_friction(signals, motor, side * (1 / scale - 1))

@@ -20,13 +20,13 @@ def altered(subject, alterations, target, duration=4.0, *, sees=("motor_torque",
         alterations: of its simulation.
         target: from time to targets `(n,)`.
         duration: [s].
-        sees: torque columns to log.
+        sees: columns of the motors to log.
         temperature: from time to [degC], of all motors.
         battery: from time to [V].
     """
     plant = Plant(subject, alterations, 1, TICK / SUBSTEPS, 1)
     plant.start(np.asarray(target(0.0), float)[None], np.zeros((1, len(subject.joints))), None, None)
-    rows = {k: [] for k in ("position", "position_target", "motor_torque", "motor_torque_command")}
+    rows = {k: [] for k in ("position", "position_target", "motor_torque", "motor_torque_command", "motor_velocity")}
     time = np.arange(round(duration / TICK)) * TICK
     for now in time:
         rows["position"].append(plant.measured()[0][0].copy())
@@ -38,6 +38,7 @@ def altered(subject, alterations, target, duration=4.0, *, sees=("motor_torque",
             if part == 0:
                 rows["motor_torque"].append(driven.believed[0].copy())
                 rows["motor_torque_command"].append(driven.command[0].copy())
+                rows["motor_velocity"].append(driven.motor_velocity[0].copy())
     kept = ("position", "position_target", *sees)
     names = {"position": subject.joints, "position_target": subject.joints}
     signals = {f"{kind}/{name}": np.array(rows[kind])[:, i] for kind in kept for i, name in enumerate(names.get(kind, subject.motors))}

@@ -89,7 +89,7 @@ def voltage(time: float) -> float:
 
 
 def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tuple[str, ...] = ("motor_torque",), gains=(STIFFNESS, DAMPING)) -> Log:
-    """Log at 200 Hz; `sees` of motor_torque, motor_torque_command, temperature, voltage. Targets and state always."""
+    """Log at 200 Hz; `sees` of motor_torque, motor_torque_command, motor_velocity, temperature, voltage. Targets and state always."""
     link = INERTIA + MASS * LENGTH**2
     rotor = ROTOR + wrong.rotor
     two = wrong.compliance > 0 or wrong.play > 0
@@ -116,7 +116,7 @@ def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tu
         wanted = max(-wrong.limit, min(wrong.limit, wanted))
         given = given + (wanted - given) * (1 - math.exp(-STEP / wrong.lag)) if wrong.lag and tick else wanted
         if tick % every == 0:
-            rows.append((time, told, told_speed, target(time), command, given))
+            rows.append((time, told, told_speed, target(time), command, given, speed))
         torque = given * wrong.constant * (1 - wrong.derating * (temperature(time) - 25))
         torque -= wrong.cosine * math.cos(wrong.order * angle) + wrong.sine * math.sin(wrong.order * angle)
         gravity = MASS * 9.81 * LENGTH * math.sin(q)
@@ -153,6 +153,8 @@ def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tu
         signals["motor_torque_command/swing"] = table[:, 4]
     if "motor_torque" in sees:
         signals["motor_torque/swing"] = table[:, 5]
+    if "motor_velocity" in sees:
+        signals["motor_velocity/swing"] = table[:, 6]
     if "temperature" in sees:
         signals["motor_temperature/swing"] = np.array([temperature(t) for t in time])
     if "voltage" in sees:

@@ -28,3 +28,8 @@ def test_simulation_with_it_leaves_its_trace(pendulum):
     added = BACKLASH.alteration("swing", np.array([0.02, 0.0, 1.0]), subject)
     signals = altered(subject, (added,), lambda time: [waves(time)])
     assert misfit(signals, BACKLASH.trace(signals, "swing", np.array([[0.02, 0.0, 1.0]]))) < 0.65
+
+
+def test_rotors_show_it_beside_their_joints(pendulum):
+    signals = pendulum(Wrong(play=0.02), gains=SOFT, sees=("motor_torque", "motor_velocity"))
+    assert misfit(signals, BACKLASH.trace(signals, "swing", np.array([[0.02, 0.0, 1.0]])), "transmission") < 0.6

@@ -14,7 +14,7 @@ def test_load_is_the_torque_of_the_link_alone(pendulum):
 def test_stretch_is_compliance_times_load_and_play_is_bounded(pendulum):
     signals = pendulum(Wrong())
     compliance = np.array([0.0, 0.01, 0.02])
-    found = belt.stretch(signals, 0, compliance, np.zeros(3))
+    found = belt.stretch(signals, belt.load(signals, 0), 0, compliance, np.zeros(3))
     np.testing.assert_allclose(found, compliance[:, None] * belt.load(signals, 0))
     slack = belt.slack(signals, 0, np.array([0.0, 0.02]), np.zeros(2), np.ones(2))
     assert np.abs(slack[0]).max() == 0
@@ -42,3 +42,16 @@ def test_a_rotor_that_does_not_coast_lies_where_the_load_pushes_it(pendulum):
     np.testing.assert_allclose(pushed[heavy], 0.01 * np.sign(load[heavy]), atol=0.002)
     coasts = belt.slack(signals, 0, np.full(1, 0.02), np.zeros(1), np.ones(1))[0]
     np.testing.assert_allclose(half, (pushed + coasts) / 2, atol=1e-12)
+
+
+def test_a_rotors_own_speed_tells_what_it_gives_its_belt(pendulum):
+    wrong, sees = Wrong(compliance=0.01), ("motor_torque", "motor_velocity")
+    blind, seeing = pendulum(wrong, gains=(8.0, 0.3)), pendulum(wrong, gains=(8.0, 0.3), sees=sees)
+    assert belt.transmitted(blind, 0) is belt.load(blind, 0)
+    stretched = np.cumsum(seeing.residual["transmission"][:, 0]) * seeing.step
+    away = slice(100, -100)
+    through, needed = (values[away] - values[away].mean() for values in (belt.transmitted(seeing, 0), belt.load(seeing, 0)))
+    stretched = stretched[away] - stretched[away].mean()
+    # compliance is what relates the two, all along
+    assert np.std(stretched - 0.01 * through) < 0.1 * np.std(stretched)
+    assert np.std(stretched - 0.01 * through) < np.std(stretched - 0.01 * needed)

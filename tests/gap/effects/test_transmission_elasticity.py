@@ -47,3 +47,18 @@ def test_simulation_with_encoders_at_the_rotor_leaves_the_trace_of_these(simulat
     right, wrong = (ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, side]])) for side in (1.0, 0.0))
     assert misfit(signals, right) < 0.2
     assert misfit(signals, wrong) > 1
+
+
+def test_rotors_show_it_beside_their_joints(pendulum):
+    values = np.array([[0.01, 0.05, 0.0]])
+    signals = pendulum(Wrong(compliance=0.01), gains=SOFT, sees=("motor_torque", "motor_velocity"))
+    assert misfit(signals, ELASTICITY.trace(signals, "swing", values), "transmission") < 0.1
+    from altered import altered
+
+    added = ELASTICITY.alteration("swing", values[0], signals.subject)
+    simulated = altered(signals.subject, (added,), lambda time: [waves(time)], sees=("motor_torque", "motor_velocity"))
+    assert misfit(simulated, ELASTICITY.trace(simulated, "swing", values), "transmission") < 0.1
+    # positions told by the rotor agree with it
+    rotor = pendulum(Wrong(compliance=0.01, motor_side=True), sees=("motor_torque", "motor_velocity"))
+    assert np.abs(rotor.residual["transmission"]).max() < 0.02 * np.abs(rotor.velocity).max()
+    assert not ELASTICITY.trace(rotor, "swing", np.array([[0.01, 0.05, 1.0]]))["transmission"].any()

@@ -43,3 +43,8 @@ def test_joints_told_from_rotors_stand_elsewhere(leg, motor):
 
     assert left(right) < 0.01  # 0.07 if friction were that of the joints as logged
     assert left(wrong) > 3 * left(right)
+
+
+def test_rotors_show_it_beside_their_joints(pendulum):
+    signals = pendulum(Wrong(ratio=1.1), sees=("motor_torque", "motor_velocity"))
+    assert misfit(signals, RATIO.trace(signals, "swing", np.array([[1.1, 0.0]])), "transmission") < 0.03
