@@ -2,17 +2,21 @@
 
 Each foot is judged by its whole force F, world frame, and by its pads:
 
-    sliding, |v_t| > SLIDING   tangential force -mu F_z v_t / |v_t|
+    sliding                    tangential force -mu F_z v_t / |v_t|
     sticking                   any tangential force within the cone mu F_z: the logged one, cut to the cone
     pressing                   F_z = sum over the pads below the floor of k(d) d + c(d) d', d the depth
 
-v_t is the velocity of the foot's loaded point. k and c are MuJoCo's of the foot's shapes: with i(d) the impedance of
-`solimp` and R = (1 - i) / i times the body's inverse weight, F = (i k' d + b' d') / R, k' = 1 / (i_max T r)^2 and b' = 2 /
-(i_max T) of `solref` (T, r), or the two given as they are where negative; a pyramid of friction makes it 2 / (mu^2 (1 +
-mu^2)) as stiff. The floor lies where the nominal ground bears the logged mean force, since no log knows a floor to a tenth
-of a millimetre. A base whose height nobody measured leaves the vertical rows unknown, one whose velocity nobody measured
-knows no sliding. MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no log tells a
-foot's acceleration so well; vertical rows of a standing foot are a few per cent of its load off by it.
+v_t is the velocity of what the foot touches the ground with: a pad that rolls does not slide. Soft contacts creep below the
+cone, in a simulation as in rubber, by F_t / c or less with c = b' i / (1 - i) over a pad's inverse weight, and more for a moment
+after each jerk; a foot slides for sure where its softest pad alone would be at the cone, away from where it lands and lifts off.
+k and c are MuJoCo's of the foot's shapes: with i(d) the impedance of `solimp` and R = (1 - i) / i times the body's inverse
+weight, F = (i k' d + b' d') / R, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of `solref` (T, r), or the two given as they are
+where negative; a pyramid of friction makes it 2 / (mu^2 (1 + mu^2)) as stiff. The floor lies where the nominal ground bears the
+logged mean force, since no log knows a floor to a tenth of a millimetre.
+
+A base whose height nobody measured leaves the vertical rows unknown, one whose velocity nobody measured knows no sliding.
+MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no log tells a foot's acceleration so
+well; vertical rows of a standing foot are a few per cent of its load off by it.
 """
 
 from __future__ import annotations
@@ -33,7 +37,9 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 SLIDING = 0.05
-"""Speed from which a foot slides [m/s] (assumed: above what creep of a soft contact and noise of encoders make)."""
+"""Speed from which a foot may slide [m/s] (assumed: above what noise of encoders makes)."""
+LANDING = 0.02
+"""Time around ticks without load, in which speed and force of a foot change too fast to go together [s] (assumed)."""
 HEIGHT = 0.001
 """Height of a pad is known so well [m]: offsets of a leg's encoders, and of what tells where the base is (assumed)."""
 KEPT = 32
@@ -56,6 +62,12 @@ class Law:
     """Inverse of the inertia that a pad stands for [1/kg], `(p,)`."""
     impedance: np.ndarray
     """MuJoCo's `solimp`: least, most, width, middle, power, `(p, 5)`."""
+
+    @property
+    def creep(self) -> float:
+        """Tangential force over speed of one pad below the cone, of the softest at its softest [Ns/m]."""
+        least = self.impedance[:, 0]
+        return float(np.min(self.damper * least / ((1 - least) * self.weight)))
 
     def force(self, depth: np.ndarray, sink: np.ndarray, spring: float = 1.0, damper: float = 1.0) -> np.ndarray:
         """Vertical force on all pads together `(t,)` [N]; pads push and never pull.
@@ -93,6 +105,8 @@ class Footing:
     """Of its pads."""
     judged: np.ndarray
     """Ticks by whose mean force the floor is found `(t,)`."""
+    settled: np.ndarray
+    """Ticks with load all around `(t,)`."""
     known: dict[tuple[float, float], np.ndarray] = field(default_factory=dict)
     """What `pressing` found already; most of what asks differs in friction alone."""
 
@@ -152,7 +166,7 @@ class Footing:
         cut = np.minimum(1.0, limit / np.maximum(size, 1e-9))[..., None] * tangential
         speed = np.linalg.norm(self.slide, axis=-1)
         along = self.slide / np.maximum(speed, 1e-9)[:, None]
-        sliding = (speed > SLIDING)[:, None]
+        sliding = (self.settled & (speed > np.maximum(SLIDING, self.friction * normal / self.law.creep)))[:, None]
         tangential = np.where(sliding, -limit[..., None] * along, cut)
         pressing = np.stack([self.pressing(1 / c, d / np.sqrt(c)) for c, d in zip(compliance, damping, strict=True)])
         found = np.concatenate([tangential, pressing[..., None]], -1)
@@ -179,12 +193,15 @@ def balance(signals: Signals) -> np.ndarray | None:
 
 
 def _footings(signals: Signals) -> tuple[Footing, ...]:
+    from scipy.ndimage import minimum_filter1d
+
     subject, base = signals.subject, signals.base
     if signals.contact is None or base is None or not subject.pads:
         return ()
-    points = base.position[:, None] + np.einsum("tij,tpj->tpi", base.rotation, rigid.pad_points(subject, signals.position, base.rotation))
     relative = np.einsum("tij,tpj->tpi", base.rotation, rigid.pad_points(subject, signals.position, base.rotation))
+    points = base.position[:, None] + relative
     velocity = np.einsum("tij,tj->ti", base.rotation, base.linear_velocity)[:, None] + np.gradient(relative, signals.step, axis=0)
+    velocity += rigid.pad_rolling(subject, signals.position, base.rotation, signals.step)
     of_foot = np.array([p.foot for p in subject.pads])
     found = []
     for index in range(len(subject.feet)):
@@ -196,7 +213,9 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
         height, sink = points[:, own, 2], -velocity[:, own, 2]
         friction, law = nominal_ground(subject, tuple(subject.tree.links[subject.pads[p].link] for p in own))
         loaded = np.isfinite(force[:, 2]) & (np.nan_to_num(force[:, 2]) > LOADED) & np.isfinite(height).all(1) & signals.valid
-        found.append(Footing(force, slide, height, sink, friction, law, loaded))
+        span = 2 * max(round(LANDING / signals.step), 1) + 1
+        settled = minimum_filter1d(np.nan_to_num(force[:, 2]) > LOADED, span)
+        found.append(Footing(force, slide, height, sink, friction, law, loaded, settled))
     return tuple(found)
 
 

@@ -359,6 +359,20 @@ def pad_points(subject: Subject, position: np.ndarray, rotation: np.ndarray) -> 
     return centre - np.array([p.radius for p in subject.pads])[:, None] * rotation[:, None, 2, :]
 
 
+def pad_rolling(subject: Subject, position: np.ndarray, rotation: np.ndarray, step: float) -> np.ndarray:
+    """Velocity of each pad's lowest point over that of its centre, world frame `(t, P, 3)` [m/s]: a pad that rolls does not slide.
+
+    Args:
+        subject: the robot.
+        position: of the joints `(t, n)` [rad].
+        rotation: world from base `(t, 3, 3)`.
+        step: between ticks [s].
+    """
+    axes = rotation[:, None] @ link_poses(subject, position, np.array([p.link for p in subject.pads], int))[0]
+    down = np.array([0.0, 0.0, -1.0]) * np.array([p.radius for p in subject.pads])[:, None]
+    return np.einsum("tpij,tpkj,pk->tpi", np.gradient(axes, step, axis=0), axes, down)
+
+
 def friction_torque(subject: Subject, position: np.ndarray, velocity: np.ndarray, swing: np.ndarray | None = None) -> np.ndarray:
     """Nominal friction and springs that a drive has to overcome `(..., n)` [Nm]; `swing` of `chatter.Chatter.speed`."""
     dry = subject.coulomb * turned(velocity, subject.friction_speed, swing)

@@ -114,3 +114,19 @@ def test_kept_regressors_are_bounded(robot_files, runs, monkeypatch):
     again = rigid.link_regressor(signals, "flange")
     assert again is not first
     np.testing.assert_array_equal(again, first)
+
+
+def test_a_pad_that_rolls_does_not_slide():
+    """The base turns to and fro over its feet: pads are spheres, whose lowest points lag their centres by radius times rate."""
+    from hyperleg_design.gap import show
+
+    biped = show._subject(None, True)
+    time = np.arange(401) * 0.005
+    angle = 0.2 * np.sin(4 * time)
+    rotation = np.zeros((401, 3, 3))
+    rotation[:, 0, 0] = rotation[:, 2, 2] = np.cos(angle)
+    rotation[:, 0, 2], rotation[:, 2, 0], rotation[:, 1, 1] = np.sin(angle), -np.sin(angle), 1.0
+    found = rigid.pad_rolling(biped, np.tile(biped.default, (401, 1)), rotation, 0.005)
+    radius = np.array([p.radius for p in biped.pads])
+    np.testing.assert_allclose(found[1:-1, :, 0], -np.gradient(angle, 0.005)[1:-1, None] * radius, atol=1e-4)
+    assert np.abs(found[1:-1, :, 1:]).max() < 1e-4
