@@ -1,4 +1,7 @@
-"""How a floating base moves, from whatever sensors a log has: gyro, accelerometer, orientation, velocity, position."""
+"""How a floating base moves, from whatever sensors a log has: gyro, accelerometer, orientation, velocity, position.
+
+All is smoothed without delay but the accelerometer, which needs no derivative.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ QUIET = 0.1
 
 
 def base_motion(log: Log, subject: Subject, ticks: np.ndarray) -> tuple[BaseMotion, tuple[str, ...]]:
-    """Motion of the base on the ticks, smoothed without delay; what was derived, as notes.
+    """Motion of the base on the ticks; what was derived, as notes.
 
     Specific force comes from the accelerometer, else from base velocity, else from base position; angular velocity from the
     gyro, else from orientation; orientation is logged, else integrated from gyro and accelerometer (heading then drifts).
@@ -49,7 +52,8 @@ def base_motion(log: Log, subject: Subject, ticks: np.ndarray) -> tuple[BaseMoti
     force = None
     if felt is not None:
         arm = subject.imu_position
-        force = smooth(log.time, felt @ subject.imu_rotation.T, ticks).value
+        # as it was felt: jerks are no noise, and who balances forces filters both sides alike
+        force = np.stack([np.interp(ticks, log.time[k], f[k]) for f in (felt @ subject.imu_rotation.T).T for k in [np.isfinite(f)]], -1)
         force = force - np.cross(angular_acceleration, arm) - np.cross(angular, np.cross(angular, arm))
     if turning is not None:
         rotation = quaternion_rotation(turning.value)

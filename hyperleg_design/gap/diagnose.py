@@ -354,7 +354,8 @@ class _Report:
             found.append("no reference logs: the floor is that of a robot known as well as robots usually are")
         samples = self.ready.base.samples
         for row, one in enumerate(samples.rows):
-            share = float(samples.episodic[samples.group[samples.row == row]].mean())
+            own = samples.episodic[samples.group[samples.row == row]]
+            share = float(own.mean()) if own.size else 0.0
             if share > 0.01:
                 found.append(f"{one.balance} of {one.name}: episodes of much larger residuals, {100 * share:.0f} % of the time, count for little")
         return tuple(dict.fromkeys(found))

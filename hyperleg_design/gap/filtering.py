@@ -38,6 +38,8 @@ KNOWN = 0.7
 """Share of known ticks around a sample from which it counts."""
 LEAST_MOVING = 0.08
 """Share of known ticks in which a joint moves from which its rest is left out."""
+SELDOM, STRETCH = 0.25, 0.2
+"""Share of known ticks in which a joint with dry friction moves up to which only stretches as long as this count [s]."""
 FEWEST = 40
 """Known ticks of a row below which it is left out."""
 
@@ -139,7 +141,7 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
         for column in range(residual.shape[1]):
             mask = signals.valid & np.isfinite(residual[:, column])
             if balance == "motion" and resting is not None:
-                mask = moving(mask, resting[:, column], rubs=bool(signals.subject.coulomb[column] > 0))
+                mask = moving(mask, resting[:, column], signals.step, rubs=bool(signals.subject.coulomb[column] > 0))
             if mask.sum() < FEWEST:
                 continue
             rows.append(Row(balance, column, row_name(signals, balance, column), _cutoff(signals, balance, column)))
@@ -149,16 +151,27 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
     return Sieve(signals, tuple(rows), np.array(masks).reshape(len(rows), len(signals.time)), bands, length)
 
 
-def moving(known: np.ndarray, resting: np.ndarray, *, rubs: bool) -> np.ndarray:
-    """Known ticks of a joint `(t,)` without its rest; one that hardly moves is worth its rest, too, unless its model `rubs` dry."""
+def moving(known: np.ndarray, resting: np.ndarray, step: float, *, rubs: bool) -> np.ndarray:
+    """Known ticks of a joint `(t,)` without its rest.
+
+    One that hardly moves is worth its rest, too, unless its model `rubs` dry: then only long stretches of its motion count,
+    as what smoothing leaves of jerks is no noise any more where the moments between them are cut out.
+    """
     found = known & ~resting
-    return found if rubs or found.sum() > LEAST_MOVING * known.sum() else known
+    if found.sum() > (SELDOM if rubs else LEAST_MOVING) * known.sum():
+        return found
+    if not rubs:
+        return known
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], found.astype(np.int8), [0]]))).reshape(-1, 2)
+    for start, stop in ends.tolist():
+        found[start:stop] &= stop - start >= STRETCH / step
+    return found
 
 
 def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np.ndarray:
     """`moving` of all joints `(t, n)`."""
     rubs = signals.subject.coulomb > 0
-    return np.stack([moving(k, r, rubs=bool(dry)) for k, r, dry in zip(known.T, resting.T, rubs, strict=True)], -1)
+    return np.stack([moving(k, r, signals.step, rubs=bool(dry)) for k, r, dry in zip(known.T, resting.T, rubs, strict=True)], -1)
 
 
 def row_name(signals: Signals, balance: str, column: int) -> str:

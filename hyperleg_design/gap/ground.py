@@ -2,7 +2,7 @@
 
 Each foot is judged by its whole force F, world frame, and by its pads:
 
-    sliding                    tangential force -mu F_z v_t / |v_t|
+    sliding                    tangential force -mu F_z v_t / |v_t|; of a pyramid of friction, between its sides and its edges
     sticking                   any tangential force within the cone mu F_z: the logged one, cut to the cone
     pressing                   F_z = sum over the pads below the floor of k(d) d + c(d) d', d the depth
 
@@ -16,7 +16,7 @@ logged mean force, since no log knows a floor to a tenth of a millimetre.
 
 A base whose height nobody measured leaves the vertical rows unknown, one whose velocity nobody measured knows no sliding.
 MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no log tells a foot's acceleration so
-well; vertical rows of a standing foot are a few per cent of its load off by it.
+well, and counts as doubt; vertical rows of a standing foot are a few per cent of its load off by it, those of one that lands all.
 """
 
 from __future__ import annotations
@@ -62,6 +62,8 @@ class Law:
     """Inverse of the inertia that a pad stands for [1/kg], `(p,)`."""
     impedance: np.ndarray
     """MuJoCo's `solimp`: least, most, width, middle, power, `(p, 5)`."""
+    weakest: float = 1.0
+    """Friction along the flat sides of its cone over that along the edges: a pyramid's holds less there, and nobody knows its edges."""
 
     @property
     def creep(self) -> float:
@@ -78,13 +80,21 @@ class Law:
             spring: scale of k'.
             damper: scale of b'.
         """
+        impedance = self._impedance(depth)
+        push = (spring * self.spring * impedance * depth + damper * self.damper * sink) * impedance / ((1 - impedance) * self.weight)
+        return np.asarray(np.where(depth > 0, np.maximum(push, 0.0), 0.0 * depth).sum(-1))
+
+    def mass(self, depth: np.ndarray) -> np.ndarray:
+        """1 / R of pads under the floor `(t, p)` [kg], by which contacts resist acceleration; arguments as of `force`."""
+        impedance = self._impedance(depth)
+        return np.asarray(np.where(depth > 0, impedance / ((1 - impedance) * self.weight), 0.0))
+
+    def _impedance(self, depth: np.ndarray) -> np.ndarray:
         least, most, width, middle, power = self.impedance.T
         x = np.clip(np.nan_to_num(depth) / width, 0.0, 1.0)
         rising = x**power / middle ** (power - 1)
         falling = 1 - (1 - x) ** power / (1 - middle) ** (power - 1)
-        impedance = least + (most - least) * np.where(x < middle, rising, falling)
-        push = (spring * self.spring * impedance * depth + damper * self.damper * sink) * impedance / ((1 - impedance) * self.weight)
-        return np.asarray(np.where(depth > 0, np.maximum(push, 0.0), 0.0 * depth).sum(-1))
+        return np.asarray(least + (most - least) * np.where(x < middle, rising, falling))
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +109,8 @@ class Footing:
     """Of its p pads over the origin `(t, p)` [m]; NaN where unknown."""
     sink: np.ndarray
     """Rate at which they go down `(t, p)` [m/s]."""
+    fall: np.ndarray
+    """Rate of that `(t, p)` [m/s^2]."""
     friction: float
     """mu, nominal."""
     law: Law
@@ -144,12 +156,13 @@ class Footing:
         return (low + high) / 2
 
     def doubt(self) -> np.ndarray:
-        """Change of the vertical force of a nominal ground with what nobody knows of its pads' height `(t,)` [N]."""
+        """What the vertical force of a nominal ground leaves open, by its pads' height and by their acceleration `(t,)` [N]."""
         if not self.judged.any():
             return np.zeros(len(self.force))
         floor = self._floor(1.0, 1.0)
         above, below = (self.law.force(floor + sign * HEIGHT - self.height, self.sink) for sign in (1, -1))
-        return np.asarray((above - below) / 2)
+        resisted = np.abs((self.law.mass(floor - self.height) * self.fall).sum(-1))
+        return np.asarray(np.hypot((above - below) / 2, np.nan_to_num(resisted)))
 
     def ground(self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray) -> np.ndarray:
         """Force of a ground with scaled properties at this motion `(k, t, 3)` [N].
@@ -167,7 +180,8 @@ class Footing:
         speed = np.linalg.norm(self.slide, axis=-1)
         along = self.slide / np.maximum(speed, 1e-9)[:, None]
         sliding = (self.settled & (speed > np.maximum(SLIDING, self.friction * normal / self.law.creep)))[:, None]
-        tangential = np.where(sliding, -limit[..., None] * along, cut)
+        slid = np.clip(size, self.law.weakest * limit, limit)
+        tangential = np.where(sliding, -slid[..., None] * along, cut)
         pressing = np.stack([self.pressing(1 / c, d / np.sqrt(c)) for c, d in zip(compliance, damping, strict=True)])
         found = np.concatenate([tangential, pressing[..., None]], -1)
         return np.where((normal > LOADED)[None, :, None], found, np.where(normal[None, :, None] <= 0, self.force[None], np.nan))
@@ -215,7 +229,8 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
         loaded = np.isfinite(force[:, 2]) & (np.nan_to_num(force[:, 2]) > LOADED) & np.isfinite(height).all(1) & signals.valid
         span = 2 * max(round(LANDING / signals.step), 1) + 1
         settled = minimum_filter1d(np.nan_to_num(force[:, 2]) > LOADED, span)
-        found.append(Footing(force, slide, height, sink, friction, law, loaded, settled))
+        fall = np.gradient(sink, signals.step, axis=0)
+        found.append(Footing(force, slide, height, sink, fall, friction, law, loaded, settled))
     return tuple(found)
 
 
@@ -285,4 +300,5 @@ def nominal_ground(subject: Subject, links: tuple[str, ...]) -> tuple[float, Law
         else:
             rows.append((-solref[0] / most**2, -solref[1] / most, weight, impedance))
     spring, damper, weights, impedances = (np.array(values) for values in zip(*rows, strict=True))
-    return coefficient, Law(spring, damper, weights, impedances)
+    pyramid = model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
+    return coefficient, Law(spring, damper, weights, impedances, float(np.sqrt(0.5)) if pyramid else 1.0)

@@ -15,7 +15,7 @@ import numpy as np
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects import EFFECTS, belt
 from hyperleg_design.gap.effects.friction import sliding
-from hyperleg_design.gap.effects.placing import driven_motors, joint_inertia, joint_strength, motor_strength, motor_velocity
+from hyperleg_design.gap.effects.placing import ROBOT, driven_motors, joint_inertia, joint_strength, motor_strength, motor_velocity
 from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.transmission import turned
 
@@ -74,6 +74,18 @@ OF_SPEED = 0.003
 STIFF, GIVES = 60.0, 0.001
 """Frequency of a rotor on a belt that nobody calls soft [Hz], and angle at a joint by which one gives under all of its torque [rad]; the
 softer of both is usual."""
+SOLE, SOLE_GIVES = "sole_height", "sole_gives"
+"""Where under a pad the ground's force acts, as soles wear, and give under load."""
+FORCES_LATE, TORQUES_LATE = "contact_told_late", "torque_told_late"
+"""How late forces and torques are told, or early."""
+STEPPED, OF_STEPPED = "friction_stepped", 0.5
+"""Friction as simulators step it, the damping f(v) / v of a tick's speed times the next one's, less friction as it is; a share of it."""
+SOLES = 0.004
+"""[m] (assumed)."""
+TINY = 1e-6
+"""Speed over that in which friction turns over, below which it is proportional."""
+UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, TORQUES_LATE, STEPPED)
+"""Usual errors that are no effects of the catalogue, each with one parameter."""
 WAYS = (0.0015, 0.006)
 """On which it turns over, half of each [rad]; assumed, beside that of `effects.friction`."""
 SWINGS, OF_SWING = (0.5, 2.0), 0.7
@@ -99,7 +111,7 @@ class Usual:
     @property
     def name(self) -> str:
         """For people."""
-        if self.effect in SPEEDS:
+        if self.effect in UNLISTED:
             return f"{self.effect} at {self.location}"
         parameter = "share" if self.effect in (TURNOVER, SWUNG) else EFFECTS[self.effect].parameters[self.parameter].name
         return f"{self.effect} at {self.location}: {parameter}"
@@ -126,7 +138,9 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             Usual("controller_gain", joint, 1, GAIN),
         ]
     late = LATE + LATE_TICKS * step
-    found.append(Usual("command_delay", "robot", 0, late))
+    found += [Usual(effect, "robot", 0, late) for effect in ("command_delay", TORQUES_LATE, FORCES_LATE)]
+    found.append(Usual(STEPPED, "robot", 0, OF_STEPPED))
+    found += [Usual(effect, foot, 0, SOLES) for foot in subject.feet for effect in (SOLE, SOLE_GIVES)]
     for m, motor in enumerate(subject.motors):
         column = np.abs(subject.joint_from_motor[:, m])
         main = int(np.argmax(column))
@@ -151,6 +165,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, BEARING)]
             found.append(Usual("ground_compliance", foot, 1, BEARING))
     places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
+    places |= {SOLE: set(subject.feet), SOLE_GIVES: set(subject.feet), FORCES_LATE: {ROBOT}, TORQUES_LATE: {ROBOT}, STEPPED: {ROBOT}}
     places |= {name: set(subject.joints) for name in (TURNOVER, SWUNG)} | {name: set(driven_motors(subject)) for name in SPEEDS}
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 
@@ -169,8 +184,8 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
             trace = (_turnover if one.effect == TURNOVER else _swung)(signals, one.location, one.parameter)
             found.append({b: v * one.spread for b, v in trace.items()})
             continue
-        if one.effect in SPEEDS:
-            found.append(_speeds(signals, one))
+        if one.effect in UNLISTED:
+            found.append((_speeds if one.effect in SPEEDS else _told)(signals, one))
             continue
         effect = EFFECTS[one.effect]
         if one.effect == "torque_constant" and one.parameter == READING:
@@ -217,6 +232,35 @@ def _speeds(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
     else:
         speed = first_derivative(belt.transmitted(signals, motor), signals.step)
     return {balance: rows[0] for balance, rows in turned(signals, motor, one.spread * speed[None]).items()}
+
+
+def _told(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
+    """Usual errors of what is told of forces and torques."""
+    subject = signals.subject
+    if one.effect == TORQUES_LATE:
+        known = signals.measured is not None
+        return {"motion": -one.spread * first_derivative(signals.rigid.T, signals.step).T} if known else {}
+    if one.effect == STEPPED:
+        half = signals.acceleration * signals.step / 2
+        before, after, width = signals.velocity - half, signals.velocity + half, subject.friction_speed
+        # tanh(v / w) / v, at v = 0 as well
+        damping = np.where(np.abs(before) < TINY * width, 1 / width, np.tanh(before / width) / np.where(before == 0, 1.0, before))
+        return {"motion": one.spread * subject.coulomb * (damping * after - np.tanh(signals.velocity / width))}
+    if signals.pad_force is None:
+        return {}
+    force, rotation = np.nan_to_num(signals.pad_force), None if signals.base is None else signals.base.rotation
+    if one.effect == FORCES_LATE:
+        torque, wrench = (
+            -one.spread * first_derivative(values.T, signals.step).T for values in rigid.contact_torque(subject, signals.position, rotation, force)
+        )
+    else:
+        own = np.array([subject.feet[p.foot] == one.location for p in subject.pads])
+        force = np.where(own[:, None], force, 0.0)
+        load = np.maximum(force[..., 2], 0.0)
+        share = load / max(float(load[load > 0].mean()), 1e-9) if one.effect == SOLE_GIVES and load.any() else 1.0
+        higher, lower = (rigid.contact_torque(subject, signals.position, rotation, force, lift) for lift in (one.spread * share, 0.0))
+        torque, wrench = (a - b for a, b in zip(higher, lower, strict=True))
+    return {"motion": torque} | ({"base": wrench} if "base" in signals.residual else {})
 
 
 def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:

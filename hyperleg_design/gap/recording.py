@@ -4,6 +4,8 @@ Each row is the state at the start of a simulation step and what acted during it
 controllers; the motor torque command is what they ask of the motors before any limit, `M^-1 (stiffness (target - position) -
 damping velocity)`; the joint torque is `M` times the motor torque, before friction. The accelerometer sits at the pelvis's
 origin and gives the mean over the step, the change of velocity that the simulation made of it; the last row has none.
+Velocities of the base are those at the time of its places, as sensors would give them; those of the joints are what the
+controller knows. Signals are the true ones, also where an overlay makes drives or sensors tell others.
 """
 
 from __future__ import annotations
@@ -175,11 +177,19 @@ def _base_signals(found: Mapping[str, np.ndarray], time_step: float) -> dict[str
     acceleration[:-1] = np.diff(velocity, axis=0) / time_step
     rotation = quaternion_matrix(np.roll(orientation, -1, axis=-1).T)  # (3, 3, t)
     felt = np.einsum("jit,tj->ti", rotation, acceleration + np.array([0.0, 0.0, GRAVITY]))
-    parts = {"accelerometer": felt, "base_position": found["base_position"], "base_velocity": velocity}
+    parts = {"accelerometer": felt, "base_position": found["base_position"], "base_velocity": _at_its_time(velocity)}
     if "base_angular_velocity" in found:
-        parts = {"gyro": found["base_angular_velocity"], **parts}
+        parts = {"gyro": _at_its_time(found["base_angular_velocity"]), **parts}
     signals = {f"{kind}/{axis}": values[:, i] for kind, values in parts.items() for i, axis in enumerate("xyz")}
     return signals | {f"base_orientation/{axis}": orientation[:, i] for i, axis in enumerate("wxyz")}
+
+
+def _at_its_time(velocity: np.ndarray) -> np.ndarray:
+    """Velocities `(t, k)` at the time of the places beside them: MuJoCo's are those of half a step before, as it steps them first."""
+    found = velocity.copy()
+    found[:-1] = (velocity[:-1] + velocity[1:]) / 2
+    found[-1] += (velocity[-1] - velocity[-2]) / 2
+    return found
 
 
 def _contact_signals(layout: Layout, pad_force: np.ndarray) -> dict[str, np.ndarray]:

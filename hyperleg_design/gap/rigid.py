@@ -323,14 +323,17 @@ def joint_frames(tree: Mechanism, position: np.ndarray) -> list[tuple[np.ndarray
     return frames
 
 
-def contact_torque(subject: Subject, position: np.ndarray, rotation: np.ndarray | None, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def contact_torque(
+    subject: Subject, position: np.ndarray, rotation: np.ndarray | None, force: np.ndarray, lift: np.ndarray | float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """What forces of the ground do at the joints and at the base.
 
     Args:
         subject: the robot, with P pads.
         position: `(t, n)` [rad].
         rotation: world from base `(t, 3, 3)`; none of a fixed base.
-        force: on each pad, in the world `(t, P, 3)` [N]; it acts where the pad's sphere is lowest.
+        force: on each pad, in the world `(t, P, 3)` [N]; it acts where the pad's sphere is lowest,
+        lift: or so far above that, `()` or `(t, P)` [m].
 
     Returns:
         Generalised torque J^T f `(t, n)` [Nm], and force and moment on the base in its own frame `(t, 6)`.
@@ -339,7 +342,7 @@ def contact_torque(subject: Subject, position: np.ndarray, rotation: np.ndarray 
     rotation = np.broadcast_to(np.eye(3), (len(position), 3, 3)) if rotation is None else rotation
     into = np.swapaxes(rotation, -1, -2)
     local = np.einsum("tij,tpj->tpi", into, force)
-    points = pad_points(subject, position, rotation)
+    points = pad_points(subject, position, rotation) + np.asarray(lift)[..., None] * rotation[:, None, 2, :]
     frames = joint_frames(tree, position)
     torque = np.zeros((len(position), tree.count))
     for row, pad in enumerate(subject.pads):

@@ -32,6 +32,8 @@ MOST_PER_SAMPLE = 0.9
 CONSISTENT = 0.03
 """Largest difference between a logged velocity and the derivative of the logged position, over its size, at which the logged one
 is believed; filtered or late velocities differ by more."""
+LATEST = 0.01
+"""By how much a logged velocity is late at most, or early [s] (assumed)."""
 
 
 @dataclass(frozen=True)
@@ -103,14 +105,25 @@ def _with_rate(
     size = float(np.sqrt(np.mean(fitted[1] ** 2)))
     if not np.sqrt(np.mean((compared - fitted[1]) ** 2)) < max(CONSISTENT * size, 2 * error):
         return fitted, noise
+    late = lateness(compared - fitted[1], fitted[2])
     jerk_of_rate = of_rate.level**2 * step * of_rate.crossover**4
     if of_rate.crossover > noise.crossover:
         jerk = jerk_of_rate
     weight = (noise.level / max(of_rate.level, 1e-12 * noise.level, 1e-300)) ** 2
     crossover = _joint_crossover(jerk, noise.level**2 * step, weight, np.pi / step * MOST_PER_SAMPLE)
     both = np.isfinite(value)
-    fitted = _fit(time[both], value[both], ticks, crossover, jerk / max(noise.level**2, 1e-300), (time[known], rate[known], weight))
+    fitted = _fit(time[both], value[both], ticks, crossover, jerk / max(noise.level**2, 1e-300), (time[known] - late, rate[known], weight))
     return fitted, Noise(noise.level, crossover)
+
+
+def lateness(beyond: np.ndarray, second: np.ndarray) -> float:
+    """How much later a logged derivative is than its log says [s]: drives filter and difference, simulators step speeds before places.
+
+    Args:
+        beyond: what it has over the derivative of the values `(t,)`.
+        second: second derivative of the values `(t,)`.
+    """
+    return float(np.clip(-(beyond @ second) / max(float(second @ second), 1e-300), -LATEST, LATEST))
 
 
 def _joint_crossover(jerk: float, density: float, weight: float, most: float) -> float:

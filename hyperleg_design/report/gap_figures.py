@@ -112,9 +112,7 @@ def rows_figure(shown: Sequence[Evidence]) -> Figure:
         import matplotlib.pyplot as plt
 
         names = shown[0].rows
-        before, after = (
-            np.sqrt(np.nanmean([rms(values) ** 2 for values in part], 0)) for part in ([s.before for s in shown], [s.after for s in shown])
-        )
+        before, after = (rms(np.concatenate(part)) for part in ([s.before for s in shown], [s.after for s in shown]))
         figure, panel = plt.subplots(figsize=(max(5.0, 0.55 * len(names) + 1.5), 3.2), layout="constrained")
         place = np.arange(len(names))
         panel.bar(place - 0.2, before, 0.38, color=_MEASURED, label="before")

@@ -67,11 +67,16 @@ def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target(signals):
 
 
 def test_the_rest_of_a_joint_that_hardly_moves_counts_only_without_dry_friction(signals):
-    known, resting = np.ones(100, bool), np.arange(100) >= 5
-    assert moving(known, resting, rubs=False).all()
-    np.testing.assert_array_equal(moving(known, resting, rubs=True), ~resting)
-    half = np.arange(100) >= 50
-    np.testing.assert_array_equal(moving(known, half, rubs=False), ~half)
+    known, resting, step = np.ones(1000, bool), np.arange(1000) >= 50, 0.005
+    assert moving(known, resting, step, rubs=False).all()
+    np.testing.assert_array_equal(moving(known, resting, step, rubs=True), ~resting)
+    # a tenth of the time, in pieces of 0.1 s: too short to be told from what smoothing leaves
+    pieces = np.arange(1000) % 200 >= 20
+    assert not moving(known, pieces, step, rubs=True).any()
+    np.testing.assert_array_equal(moving(known, pieces, step, rubs=False), ~pieces)
+    half = np.arange(1000) % 40 >= 20
+    for rubs in (False, True):
+        np.testing.assert_array_equal(moving(known, half, step, rubs=rubs), ~half)
 
     still = np.ones_like(signals.position, bool)
     still[:50] = False

@@ -4,7 +4,7 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.filtering import sieve
-from hyperleg_design.gap.nuisance import DAY, SPEEDS, TURNOVER, WIDE, columns, spreads, stop, traces, usual_errors
+from hyperleg_design.gap.nuisance import DAY, TURNOVER, UNLISTED, WIDE, columns, spreads, stop, traces, usual_errors
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +20,7 @@ def errors(signals):
 def test_every_error_belongs_to_the_catalogue_and_to_a_place_of_the_robot(signals, errors):
     for one in errors:
         assert one.spread > 0
-        assert one.effect in (TURNOVER, *SPEEDS) or one.location in EFFECTS[one.effect].locations(signals.subject)
+        assert one.effect in (TURNOVER, *UNLISTED) or one.location in EFFECTS[one.effect].locations(signals.subject)
     assert set(WIDE) == set(DAY) <= set(EFFECTS)
     assert np.all(spreads(errors, DAY) <= 1)
     assert np.all(spreads(errors, WIDE) >= 1)
@@ -28,7 +28,7 @@ def test_every_error_belongs_to_the_catalogue_and_to_a_place_of_the_robot(signal
 
 def test_usual_errors_are_smaller_than_usual_causes(signals, errors):
     for one in errors:
-        if one.effect not in (TURNOVER, *SPEEDS, "controller_gain"):
+        if one.effect not in (TURNOVER, *UNLISTED, "controller_gain"):
             usual = EFFECTS[one.effect].usual(one.location, signals.subject)[one.parameter]
             assert one.spread < 0.7 * abs(usual), one.name
 

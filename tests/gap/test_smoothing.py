@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.smoothing import bridged, estimate_noise, smooth
+from hyperleg_design.gap.smoothing import bridged, estimate_noise, lateness, smooth
 
 
 def chirp(time):
@@ -79,3 +79,17 @@ def test_unknown_ticks_are_bridged_and_ends_held():
     assert bridged(np.array([np.nan, 1.0, np.nan, 3.0, np.nan])).tolist() == [1.0, 1.0, 2.0, 3.0, 3.0]
     whole = np.arange(4.0)
     assert bridged(whole) is whole
+
+
+def test_a_late_velocity_is_taken_at_its_time():
+    """As simulators step speeds before places: half a step late, which differs little enough to be believed."""
+    time = np.arange(2000) * 0.005
+    place, speed = np.sin(3 * time) + 0.2 * np.sin(11 * time), 3 * np.cos(3 * time) + 2.2 * np.cos(11 * time)
+    felt = -9 * np.sin(3 * time) - 24.2 * np.sin(11 * time)
+    late = 3 * np.cos(3 * (time - 0.0025)) + 2.2 * np.cos(11 * (time - 0.0025))
+    assert lateness(late - speed, felt) == pytest.approx(0.0025, rel=0.02)
+    away = slice(100, -100)
+    for rate in (speed, late):
+        found = smooth(time, place[:, None], time, rate[:, None])
+        assert np.abs(found.first[away, 0] - speed[away]).max() < 2e-3
+        assert np.abs(found.second[away, 0] - felt[away]).max() < 0.1

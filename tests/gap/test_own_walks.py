@@ -1,0 +1,47 @@
+"""Walks of our own simulator against its own model: nothing is wrong, and what an overlay adds is found."""
+
+import pytest
+
+from hyperleg_design.evaluation.evaluate import evaluate
+from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
+from hyperleg_design.gap.conditioning import condition
+from hyperleg_design.gap.diagnose import diagnose
+from hyperleg_design.gap.log import read_log
+from hyperleg_design.gap.overlay import Overlay
+from hyperleg_design.gap.preparation import prepare
+from hyperleg_design.gap.recording import write_logs
+from hyperleg_design.gap.subject import load_subject
+from hyperleg_design.gap.thresholds import load_thresholds
+from hyperleg_design.robot.design import load_design
+
+
+def walked(folder, alterations=None, *, trials=1):
+    """Logs of a shipped policy's walks."""
+    short = WalkProtocol(distance=6.0, trials=trials, time_limit=12.0, steady=Steady(begin=2.0, end=6.0))
+    return [read_log(path) for path in write_logs(folder / "logs", [evaluate("walk-toe-0", short, threads=1, alterations=alterations)])]
+
+
+def left(folder, logs):
+    """Root mean square of each row that no calibration error explains, over its floor."""
+    from hyperleg_design.gap.judge import Judge
+
+    subject = load_subject(folder / "logs" / logs[0].metadata.robot, logs)
+    ready = prepare([condition(log, subject) for log in logs], [], load_thresholds())
+    judge = Judge(ready.base, load_thresholds(), 1)
+    rows = judge.rows(judge.nothing.held.bare)[: len(ready.base.samples.rows)]
+    return {(row.balance, row.name): float(rows[i]) ** 0.5 for i, row in enumerate(ready.base.samples.rows)}
+
+
+def test_a_simulated_walk_has_no_gap_to_its_own_model(tmp_path):
+    found = left(tmp_path, walked(tmp_path))
+    assert {balance for balance, _ in found} == {"base", "control", "drive", "ground", "motion", "transmission"}
+    assert max(found.values()) < 1.1, found
+
+
+@pytest.mark.slow
+def test_what_an_overlay_adds_is_found(tmp_path):
+    overlay = Overlay("hyperleg", {("viscous_friction", "left_knee"): {"damping": 2.0}}, {})
+    logs = walked(tmp_path, overlay.alterations(load_design("toe")), trials=2)
+    found = diagnose(tmp_path / "logs" / logs[0].metadata.robot, logs, threads=2)
+    assert (found.causes[0].effect, found.causes[0].location) == ("viscous_friction", "left_knee")
+    assert found.causes[0].parameters["damping"].value == pytest.approx(2.0, rel=0.1)
