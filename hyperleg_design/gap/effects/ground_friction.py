@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 
+ICE = 2.7
+"""Usual differences by which a ground is slippery enough for a standing robot's feet to slide: friction 0.2 instead of 1 (assumed)."""
+
+
 class GroundFriction(Effect):
     """The coefficient of sliding friction under one foot; shows where the foot slides, or holds beyond the nominal cone."""
 
@@ -38,8 +42,8 @@ class GroundFriction(Effect):
         return ground_trace(signals, location, scale, np.ones_like(scale), np.ones_like(scale))
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """Slippery, twice the usual difference, because a ground that holds better than needed does nothing."""
-        return np.maximum(self.nulls - 2 * size * self.usual(location, subject), self.parameters[0].low)
+        """As slippery as ice, because a ground that holds better than needed does nothing, and feet creep before they slide."""
+        return np.maximum(self.nulls - ICE * size * self.usual(location, subject), self.parameters[0].low)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
