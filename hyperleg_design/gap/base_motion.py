@@ -12,7 +12,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.mechanism import quaternion_rotation
 from hyperleg_design.gap.signals import BaseMotion
-from hyperleg_design.gap.smoothing import Smooth, smooth
+from hyperleg_design.gap.smoothing import Smooth, bridged, smooth
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
@@ -53,8 +53,8 @@ def base_motion(log: Log, subject: Subject, ticks: np.ndarray) -> tuple[BaseMoti
     if felt is not None:
         arm = subject.imu_position
         # as it was felt: jerks are no noise, and who balances forces filters both sides alike
-        force = np.stack([np.interp(ticks, log.time[k], f[k]) for f in (felt @ subject.imu_rotation.T).T for k in [np.isfinite(f)]], -1)
-        force = force - np.cross(angular_acceleration, arm) - np.cross(angular, np.cross(angular, arm))
+        raw = np.stack([np.interp(ticks, log.time, bridged(axis)) for axis in felt.T], -1)
+        force = raw @ subject.imu_rotation.T - np.cross(angular_acceleration, arm) - np.cross(angular, np.cross(angular, arm))
     if turning is not None:
         rotation = quaternion_rotation(turning.value)
     else:

@@ -27,6 +27,7 @@ from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.samples import BLOCKS, LOGS
 from hyperleg_design.gap.shaping import tells
+from hyperleg_design.gap.signals import BALANCES
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.gap.thresholds import Thresholds, load_thresholds
 
@@ -40,8 +41,6 @@ MOST_RIVALS, MOST_SHAPES, MOST_ERRORS = 8, 3, 12
 """Listed."""
 LEAST_SHARE = 0.02
 """Of the excess, below which a place is not listed."""
-KIND = {"motion": "joint", "drive": "motor", "control": "motor", "transmission": "motor", "base": "robot", "ground": "foot"}
-UNIT = {"motion": "Nm", "drive": "Nm", "control": "Nm", "transmission": "rad/s", "base": "N, Nm", "ground": "N"}
 
 
 def diagnose(
@@ -209,7 +208,7 @@ class _Report:
         shares = np.where(b > lowest, (b - a) / np.maximum(b - lowest, 1e-9), 0.0)
         closed = self.closed(model) if named else 0.0
         low, high = (float(v) for v in np.percentile(np.minimum(shares, 1.0), [2.5, 97.5])) if named else (0.0, 0.0)
-        units = dict.fromkeys(UNIT.get(samples.rows[r % len(samples.rows)].balance, "Nm") for r in np.flatnonzero(rows).tolist())
+        units = dict.fromkeys(BALANCES[samples.rows[r % len(samples.rows)].balance][1] for r in np.flatnonzero(rows).tolist())
         return Shrinkage(before * scale, after * scale, min(1.0, after) * scale, closed, (min(low, closed), max(high, closed)), ", ".join(units))
 
     def where(self) -> tuple[Place, ...]:
@@ -222,7 +221,7 @@ class _Report:
         for row, value in zip(samples.rows, excess, strict=True):
             key = (
                 row.name.rsplit("_", 1)[0] if row.balance == "ground" else "robot" if row.balance == "base" else row.name,
-                KIND.get(row.balance, "joint"),
+                BALANCES[row.balance][0],
             )
             shares[key] = shares.get(key, 0.0) + float(value)
         total = sum(shares.values())
@@ -246,7 +245,7 @@ class _Report:
         total: dict[str, float] = {}
         ticks: dict[str, float] = {}
         for row in samples.rows:
-            if row.name != name or KIND.get(row.balance) != kind:
+            if row.name != name or BALANCES[row.balance][0] != kind:
                 continue
             for one, sieve in enumerate(samples.sieves):
                 own = [i for i, r in enumerate(sieve.rows) if (r.balance, r.column) == (row.balance, row.column)]

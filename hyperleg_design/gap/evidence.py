@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.gap.filtering import moving_ticks, sticking
+from hyperleg_design.gap.signals import OF_MOTORS
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -74,7 +75,7 @@ def evidence(signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str
     rows: tuple[str, ...]
     if balance == "motion":
         rows, speed = subject.joints, signals.velocity
-    elif balance in ("drive", "control", "transmission"):
+    elif balance in OF_MOTORS:
         rows, speed = subject.motors, signals.velocity @ subject.joint_from_motor
     elif balance == "base":
         rows = tuple(f"base {part}" for part in ("force x", "force y", "force z", "torque x", "torque y", "torque z"))

@@ -32,7 +32,6 @@ SEGMENT = 16384
 """Most rows of which one spectrum is made."""
 NOISE_MARGIN = 1.5
 """Times the power of noise that does not count as motion."""
-BOTH_SPEEDS = "speeds of motors and joints"
 WARMING, SAGGING = 10.0, 0.03
 """Rise of a motor's temperature [K], and spread of the voltage over its mean, that change torque visibly."""
 
@@ -194,23 +193,19 @@ def _torque_constant(effect: str, log: Log, motion: _Motion) -> Excitation:
     return Excitation(effect, moved, motors if moved else (), "current or torque under a changing load" if moved else "the load hardly changes")
 
 
-def _between(test: Callable[[_Motion], np.ndarray], good: str, lacking: str) -> Rule:
-    """A rule for what sits between motors and joints: speeds of both tell it, else what passes."""
-    otherwise = _of_joints(test, good, lacking)
+def _by_speeds(otherwise: Rule) -> Rule:
+    """A rule for what sits between motors and joints: speeds of both tell it, else another rule."""
 
     def rule(effect: str, log: Log, motion: _Motion) -> Excitation:
         motors = tuple(m for m in log.motors if log.has("motor_velocity", m))
         if motors and (motion.reversals > 0).any():
-            return Excitation(effect, True, motors, BOTH_SPEEDS)
+            return Excitation(effect, True, motors, "speeds of motors and joints")
         return otherwise(effect, log, motion)
 
     return rule
 
 
-def _transmission_ratio(effect: str, log: Log, motion: _Motion) -> Excitation:
-    motors = tuple(m for m in log.motors if log.has("motor_velocity", m))
-    if motors and (motion.reversals > 0).any():
-        return Excitation(effect, True, motors, BOTH_SPEEDS)
+def _ratio_by_torque(effect: str, log: Log, motion: _Motion) -> Excitation:
     passed = motion.torque & (motion.swing > SWING)
     why = "through the torques only: it looks like controller_gain" if passed.any() else "no motor speeds, and joints hardly move"
     return Excitation(effect, bool(passed.any()), tuple(motion.joints[passed]), why)
@@ -285,11 +280,15 @@ RULES: dict[str, Rule] = {
         f"commands hold nothing above {BANDWIDTH:.0f} Hz: looks like delay",
     ),
     "rotor_inertia": _of_joints(lambda m: _reversing(m) & (m.content > 1.0), "motion accelerates", "hardly any acceleration"),
-    "transmission_elasticity": _between(
-        lambda m: m.content > RESONANCE, f"motion reaches past {RESONANCE:.0f} Hz", f"motion holds nothing above {RESONANCE:.0f} Hz: looks like delay"
+    "transmission_elasticity": _by_speeds(
+        _of_joints(
+            lambda m: m.content > RESONANCE,
+            f"motion reaches past {RESONANCE:.0f} Hz",
+            f"motion holds nothing above {RESONANCE:.0f} Hz: looks like delay",
+        )
     ),
-    "backlash": _between(_reversing, "motion reverses", _FEW),
-    "transmission_ratio": _transmission_ratio,
+    "backlash": _by_speeds(_of_joints(_reversing, "motion reverses", _FEW)),
+    "transmission_ratio": _by_speeds(_ratio_by_torque),
     "encoder_offset": _of_joints(_swinging, "several postures", _STILL),
     "controller_gain": _of_drive(_swinging, "targets, gains and motion", _STILL),
     "payload": _of_joints(_swinging, "several postures", _STILL),

@@ -162,10 +162,16 @@ def moving(known: np.ndarray, resting: np.ndarray, step: float, *, rubs: bool) -
         return found
     if not rubs:
         return known
-    ends = np.flatnonzero(np.diff(np.concatenate([[0], found.astype(np.int8), [0]]))).reshape(-1, 2)
-    for start, stop in ends.tolist():
-        found[start:stop] &= stop - start >= STRETCH / step
-    return found
+    long = np.zeros_like(found)
+    for part in stretches(found, STRETCH / step):
+        long[part] = True
+    return long
+
+
+def stretches(mask: np.ndarray, shortest: float) -> list[slice]:
+    """Unbroken stretches of a mask `(t,)` that are long enough, in ticks."""
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
+    return [slice(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= shortest]
 
 
 def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np.ndarray:

@@ -68,8 +68,7 @@ class Law:
     @property
     def creep(self) -> float:
         """Tangential force over speed of one pad below the cone, of the softest at its softest [Ns/m]."""
-        least = self.impedance[:, 0]
-        return float(np.min(self.damper * least / ((1 - least) * self.weight)))
+        return float(np.min(self.damper * self._mass(self.impedance[:, 0])))
 
     def force(self, depth: np.ndarray, sink: np.ndarray, spring: float = 1.0, damper: float = 1.0) -> np.ndarray:
         """Vertical force on all pads together `(t,)` [N]; pads push and never pull.
@@ -81,13 +80,15 @@ class Law:
             damper: scale of b'.
         """
         impedance = self._impedance(depth)
-        push = (spring * self.spring * impedance * depth + damper * self.damper * sink) * impedance / ((1 - impedance) * self.weight)
+        push = (spring * self.spring * impedance * depth + damper * self.damper * sink) * self._mass(impedance)
         return np.asarray(np.where(depth > 0, np.maximum(push, 0.0), 0.0 * depth).sum(-1))
 
     def mass(self, depth: np.ndarray) -> np.ndarray:
         """1 / R of pads under the floor `(t, p)` [kg], by which contacts resist acceleration; arguments as of `force`."""
-        impedance = self._impedance(depth)
-        return np.asarray(np.where(depth > 0, impedance / ((1 - impedance) * self.weight), 0.0))
+        return np.asarray(np.where(depth > 0, self._mass(self._impedance(depth)), 0.0))
+
+    def _mass(self, impedance: np.ndarray) -> np.ndarray:
+        return np.asarray(impedance / ((1 - impedance) * self.weight))
 
     def _impedance(self, depth: np.ndarray) -> np.ndarray:
         least, most, width, middle, power = self.impedance.T

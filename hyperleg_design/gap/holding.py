@@ -17,7 +17,7 @@ from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.series import band_limited
-from hyperleg_design.gap.filtering import CREEP, sticking
+from hyperleg_design.gap.filtering import CREEP, sticking, stretches
 from hyperleg_design.gap.rigid import turned
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def held(signals: Signals) -> np.ndarray:
     found = np.zeros(len(subject.joints))
     for joint in range(len(found)):
         torque = band_limited(motion[:, joint], signals.step, min(BAND, 0.3 / signals.step))
-        for part in _stretches(rest[:, joint], SHORTEST / signals.step):
+        for part in stretches(rest[:, joint], SHORTEST / signals.step):
             found[joint] = max(found[joint], _half(torque[part]) - OF_LOAD * _half(signals.rigid[part, joint]))
     return found
 
@@ -111,9 +111,3 @@ def _load(signals: Sequence[Signals], joint: str) -> float:
 def _half(values: np.ndarray) -> float:
     low, high = np.percentile(values, ENDS)
     return float(high - low) / 2
-
-
-def _stretches(mask: np.ndarray, shortest: float) -> list[slice]:
-    """Unbroken stretches of a mask that are long enough."""
-    ends = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
-    return [slice(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= shortest]

@@ -17,7 +17,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.replay import best_input, replay, short_windows
-from hyperleg_design.gap.signals import Signals
+from hyperleg_design.gap.signals import BALANCES, Signals
 
 BAND = 10.0
 """[Hz] Up to which torque residuals count (assumed; joints of legs and arms move below it)."""
@@ -31,14 +31,7 @@ SAME_TARGET = 0.002
 """Root-mean-square difference of targets up to which two logs are repeats [rad]."""
 WINDOW = 0.25
 """Of the predictions that give gaps of position and velocity [s]."""
-TORQUE_SIGNALS = {
-    "motion": ("torque", "joint", "Nm"),
-    "drive": ("drive", "motor", "Nm"),
-    "control": ("control", "motor", "Nm"),
-    "transmission": ("transmission", "motor", "rad/s"),
-    "base": ("base", "robot", "N, Nm"),
-    "ground": ("ground", "foot", "N"),
-}
+TORQUE_SIGNALS = {balance: ("torque" if balance == "motion" else balance, *told) for balance, told in BALANCES.items()}
 """Name, kind of place and unit of what each balance shows."""
 
 

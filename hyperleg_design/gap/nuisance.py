@@ -18,6 +18,7 @@ from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import ROBOT, driven_motors, joint_inertia, joint_strength, motor_strength, motor_velocity
 from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.transmission import turned
+from hyperleg_design.simulation.actuation import friction_damping
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -82,8 +83,6 @@ STEPPED, OF_STEPPED = "friction_stepped", 0.5
 """Friction as simulators step it, the damping f(v) / v of a tick's speed times the next one's, less friction as it is; a share of it."""
 SOLES = 0.004
 """[m] (assumed)."""
-TINY = 1e-6
-"""Speed over that in which friction turns over, below which it is proportional."""
 UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, TORQUES_LATE, STEPPED)
 """Usual errors that are no effects of the catalogue, each with one parameter."""
 WAYS = (0.0015, 0.006)
@@ -185,7 +184,7 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
             found.append({b: v * one.spread for b, v in trace.items()})
             continue
         if one.effect in UNLISTED:
-            found.append((_speeds if one.effect in SPEEDS else _told)(signals, one))
+            found.append((_speeds if one.effect in SPEEDS else _stepped if one.effect == STEPPED else _told)(signals, one))
             continue
         effect = EFFECTS[one.effect]
         if one.effect == "torque_constant" and one.parameter == READING:
@@ -234,18 +233,20 @@ def _speeds(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
     return {balance: rows[0] for balance, rows in turned(signals, motor, one.spread * speed[None]).items()}
 
 
+def _stepped(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
+    """Friction as simulators step it, less friction at once."""
+    subject, half = signals.subject, signals.acceleration * signals.step / 2
+    damping = friction_damping(subject.coulomb, np.zeros_like(subject.coulomb), signals.velocity - half, subject.friction_speed)
+    smooth = subject.coulomb * rigid.turned(signals.velocity, subject.friction_speed)
+    return {"motion": one.spread * (damping * (signals.velocity + half) - smooth)}
+
+
 def _told(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
     """Usual errors of what is told of forces and torques."""
     subject = signals.subject
     if one.effect == TORQUES_LATE:
         known = signals.measured is not None
         return {"motion": -one.spread * first_derivative(signals.rigid.T, signals.step).T} if known else {}
-    if one.effect == STEPPED:
-        half = signals.acceleration * signals.step / 2
-        before, after, width = signals.velocity - half, signals.velocity + half, subject.friction_speed
-        # tanh(v / w) / v, at v = 0 as well
-        damping = np.where(np.abs(before) < TINY * width, 1 / width, np.tanh(before / width) / np.where(before == 0, 1.0, before))
-        return {"motion": one.spread * subject.coulomb * (damping * after - np.tanh(signals.velocity / width))}
     if signals.pad_force is None:
         return {}
     force, rotation = np.nan_to_num(signals.pad_force), None if signals.base is None else signals.base.rotation

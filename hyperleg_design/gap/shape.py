@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects.friction import sliding
+from hyperleg_design.gap.effects.placing import motor_velocity
 from hyperleg_design.gap.nuisance import stop
+from hyperleg_design.gap.signals import OF_MOTORS
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.base import Base
@@ -135,7 +137,7 @@ class _Basis:
         self.row = samples.rows[shape.row]
         logs = [s.signals for s in samples.sieves]
         subject = logs[0].subject
-        of_motor = self.row.balance in ("drive", "control", "transmission")
+        of_motor = self.row.balance in OF_MOTORS
         self.motor = (
             self.row.column if of_motor else int(np.argmax(np.abs(subject.joint_from_motor[self.row.column]))) if self.row.balance == "motion" else 0
         )
@@ -182,7 +184,7 @@ class _Basis:
             # the phase starts anew in every log
             return np.concatenate([[np.cos(w * time), np.sin(w * time)] for w in 2 * np.pi * self.frequency * np.arange(1, RHYTHMS + 1)])
         if name == "ratio_over_position":
-            return self._pieces(q) * (signals.velocity @ signals.subject.joint_from_motor[:, self.motor])
+            return self._pieces(q) * motor_velocity(signals, self.motor)
         if name == "encoder_over_time":
             x = 2 * time / self.longest - 1
             return np.stack([x, x**2, x**3])

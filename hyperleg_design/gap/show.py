@@ -22,6 +22,7 @@ from hyperleg_design.gap.effects import EFFECTS, effect
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.metadata import Metadata
 from hyperleg_design.gap.replay import Plant
+from hyperleg_design.gap.signals import BALANCES
 from hyperleg_design.gap.subject import load_subject
 
 if TYPE_CHECKING:
@@ -387,7 +388,7 @@ def _largest(traces: dict[str, np.ndarray], signals: Signals) -> tuple[str, str,
         size = np.sqrt(np.where(np.isfinite(rows), rows, 0.0) ** 2).mean(0)
         place = int(np.argmax(size))
         if size[place] > NOTHING:
-            unit = "rad/s" if balance == "transmission" else "N" if balance == "ground" or (balance == "base" and place < 3) else "Nm"
+            unit = ("N" if place < 3 else "Nm") if balance == "base" else BALANCES[balance][1]
             residual = np.where(np.isfinite(rows[:, place]), signals.residual[balance][:, place], np.nan)
             return balance, names[balance][place], unit, rows[:, place], residual
     unknown = np.full(len(signals.time), np.nan)

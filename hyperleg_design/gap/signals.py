@@ -16,6 +16,15 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 
+BALANCES = {
+    "motion": ("joint", "Nm"), "drive": ("motor", "Nm"), "control": ("motor", "Nm"), "transmission": ("motor", "rad/s"),
+    "base": ("robot", "N, Nm"), "ground": ("foot", "N"),
+}  # fmt: skip
+"""Kind of place and unit of the rows of each of `Signals.residual`."""
+OF_MOTORS = tuple(balance for balance, (kind, _) in BALANCES.items() if kind == "motor")
+"""Balances with a row for each motor."""
+
+
 @dataclass(frozen=True, eq=False)
 class BaseMotion:
     """How the base moves; of a fixed base, there is none."""

@@ -25,7 +25,7 @@ import numpy as np
 
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.conditioning import applied
-from hyperleg_design.gap.effects.placing import at_motor, joint_inertia
+from hyperleg_design.gap.effects.placing import at_motor, joint_inertia, motor_velocity
 from hyperleg_design.gap.effects.series import band_limited, first_derivative, lagged, second_derivative
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.two_mass import LIGHTEST
@@ -67,7 +67,7 @@ def transmitted(signals: Signals, motor: int) -> np.ndarray:
         return load(signals, motor)
     kept = _GIVEN.setdefault(signals, {})
     if motor not in kept:
-        spin = signals.residual["transmission"][:, motor] + signals.velocity @ signals.subject.joint_from_motor[:, motor]
+        spin = signals.residual["transmission"][:, motor] + motor_velocity(signals, motor)
         given = signals.believed[:, motor] - rotor(signals.subject, motor) * first_derivative(spin, signals.step)
         kept[motor] = band_limited(given, signals.step, BAND / signals.step)
     return kept[motor]
@@ -164,9 +164,9 @@ def trace(signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray, see
         side: on which the positions were logged `(k,)`.
         seen: stretch in the balance of transmission, as the rotor's side tells it `(k, t)` [rad]; by default the same.
     """
-    own = (1 - side[:, None]) * moved
-    found = at_motor(signals, motor, rotor(signals.subject, motor) * second_derivative(own, signals.step))
-    found |= turned(signals, motor, first_derivative(own if seen is None else (1 - side[:, None]) * seen, signals.step))
+    at_joints = 1 - side[:, None]
+    found = at_motor(signals, motor, at_joints * rotor(signals.subject, motor) * second_derivative(moved, signals.step))
+    found |= turned(signals, motor, at_joints * first_derivative(moved if seen is None else seen, signals.step))
     if side.any():
         subject = signals.subject
         share = subject.motor_from_joint[motor]

@@ -47,7 +47,9 @@ class TransmissionElasticity(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         compliance, damping_ratio, side = np.atleast_2d(np.asarray(values, float)).T
-        moved, seen = (belt.stretch(signals, through(signals, motor), motor, compliance, damping_ratio) for through in (belt.load, belt.transmitted))
+        needed, given = belt.load(signals, motor), belt.transmitted(signals, motor)
+        moved = belt.stretch(signals, needed, motor, compliance, damping_ratio)
+        seen = None if given is needed else belt.stretch(signals, given, motor, compliance, damping_ratio)
         return belt.trace(signals, motor, moved, side, seen)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:

@@ -26,10 +26,9 @@ class TransmissionRatio(Effect):
 
     Where positions are the joints' own (`side` 0), the trace is (1 - scale) tau + (scale^2 - 1) J M^T q_ddot on the motor's side,
     the second part as the rotor turns faster too: apart from it, and from the rotor's speed where that is logged, this looks like
-    a torque constant. Where they are worked out from
-    rotors by the model (1), the joints stand elsewhere, at q + (1 / scale - 1) P M^T q, P the motor's row of the inverse of M, and
-    the trace is (1 - scale) (tau - J M^T q_ddot) and what that motion needs more than the logged one, friction included: of coupled
-    joints one may stand while its encoders say that it turns.
+    a torque constant. Where they are worked out from rotors by the model (1), the joints stand elsewhere, at q + (1 / scale - 1) P
+    M^T q, P the motor's row of the inverse of M, and the trace is (1 - scale) (tau - J M^T q_ddot) and what that motion needs more
+    than the logged one, friction included: of coupled joints one may stand while its encoders say that it turns.
     """
 
     identifier: ClassVar[str] = "transmission_ratio"
