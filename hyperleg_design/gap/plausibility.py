@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.finding import ERROR, NOTE, WARNING, Finding
+from hyperleg_design.gap.smoothing import bridged
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
@@ -131,7 +132,8 @@ def _magnitudes(log: Log) -> list[Finding]:
         if middle > limit or (kind == "gyro" and largest > 2 * limit):
             found.append(Finding(ERROR, column, f"reaches {largest:.4g}, no such thing in this unit", f"looks like {unit}"))
     if all(log.has("accelerometer", axis) for axis in "xyz"):
-        weight = float(np.nanmedian(np.linalg.norm(log.vector("accelerometer"), axis=1)))
+        # axes that are told in turn are each known all along
+        weight = float(np.median(np.linalg.norm([bridged(axis) for axis in log.vector("accelerometer").T], axis=0)))
         if not 5 < weight < 20:
             text = f"has a median length of {weight:.3g} m/s^2 where gravity makes 9.8"
             found.append(Finding(ERROR, "accelerometer", text, "convert from g, or leave gravity in: +9.81 upward at rest"))

@@ -120,3 +120,11 @@ def test_real_logs_hold_no_errors(real_logs):
     for folder in ("xl330_pendulum", "so101_arm", "go2_air"):
         for log in open_log(real_logs / folder):
             assert [f for f in implausible(log) if f.severity == ERROR] == [], log.name
+
+
+def test_axes_of_an_accelerometer_told_in_turn_are_no_wrong_unit():
+    log = rig_log()
+    ticks = np.arange(len(log.time))
+    turns = {f"accelerometer__{axis}": np.where(ticks % 3 == i, 9.81 * (axis == "z"), np.nan) for i, axis in enumerate("xyz")}
+    assert not errors(spoiled(log, **turns))
+    assert {s for s, _ in errors(spoiled(log, **{k: v / 9.81 for k, v in turns.items()}))} == {"accelerometer"}
