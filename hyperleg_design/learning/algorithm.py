@@ -12,6 +12,7 @@ from rsl_rl.models import MLPModel
 from rsl_rl.storage import RolloutStorage
 from tensordict import TensorDict
 
+from hyperleg_design.learning.rounding import multiplies_bfloat16, round_layers
 from hyperleg_design.learning.symmetry import HalfMirrored, Mirrors
 
 if TYPE_CHECKING:
@@ -64,6 +65,9 @@ def make_algorithm(preset: Preset, environment: Environment, observations: Tenso
     settings, network = preset.algorithm, preset.network
     actor = make_network(network, observations, "actor", environment.action_size)
     critic = make_network(network, observations, "critic", 1)
+    if settings.mixed_precision and not multiplies_bfloat16():
+        round_layers(actor)
+        round_layers(critic)
     storage = RolloutStorage("rl", environment.simulations, int(preset.rollout), observations, [environment.action_size])
     mirrors = Mirrors(environment.mirror_maps())
     once = settings.adapted == "iteration"
