@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, check_layout, checked_action, policy_name
 from hyperleg_design.simulation import terminations
 from hyperleg_design.simulation.layout import GRAVITY
+from hyperleg_design.simulation.told import TOLD
 
 if TYPE_CHECKING:
     import mujoco
@@ -78,6 +79,8 @@ class Trial:
     """Angles that the joint controllers were asked for [rad], `(t, J)`; None where nobody recorded them."""
     base_angular_velocity: np.ndarray | None = None
     """In the pelvis's frame [rad/s], `(t, 3)`; None where nobody recorded it."""
+    told: Mapping[str, np.ndarray] = field(default_factory=dict)
+    """What drives and sensors told, where alterations make that another thing; see `simulation.told.Told`."""
 
     @property
     def samples(self) -> int:
@@ -160,10 +163,11 @@ def record(
         signals = environment.signals()
         if not store:
             # pages of the part that is never reached are never claimed
-            store = {n: np.empty((count, limit * substeps, *signals[n].shape[2:])) for n in SIGNALS}
+            told = [n for n in signals if n.startswith(TOLD)]
+            store = {n: np.empty((count, limit * substeps, *signals[n].shape[2:])) for n in (*SIGNALS, *told)}
         now = slice(step_index * substeps, (step_index + 1) * substeps)
-        for name in SIGNALS:
-            store[name][:, now] = signals[name]
+        for name, kept in store.items():
+            kept[:, now] = signals[name]
         divergences.update({d.simulation: d for d in step.divergences if running[d.simulation]})
         ended = step.ended[running[step.ended]]
         for trial in ended:
@@ -189,6 +193,7 @@ def record(
             outcome=outcomes[i],
             end_time=float(ended_at[i]),
             divergence=divergences.get(i),
+            told={name: values[i, : length[i]] for name, values in store.items() if name.startswith(TOLD)},
             **{name: store[name][i, : length[i]] for name in SIGNALS},
         )
         for i in range(count)

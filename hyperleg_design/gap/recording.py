@@ -5,7 +5,8 @@ controllers; the motor torque command is what they ask of the motors before any 
 damping velocity)`; the joint torque is `M` times the motor torque, before friction. The accelerometer sits at the pelvis's
 origin and gives the mean over the step, the change of velocity that the simulation made of it; the last row has none.
 Velocities of the base are those at the time of its places, as sensors would give them; those of the joints are what the
-controller knows. Signals are the true ones, also where an overlay makes drives or sensors tell others.
+controller knows. With an overlay, joint states, motor torques and IMU are what encoders, drives and sensors tell of them, the
+motor torque command is that of the controller, and the joint torque is the model's `M` times what drives take themselves to give.
 """
 
 from __future__ import annotations
@@ -25,12 +26,14 @@ from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SIDES
 from hyperleg_design.simulation.actuation import actuation_model
 from hyperleg_design.simulation.layout import GRAVITY
+from hyperleg_design.simulation.told import TOLD
 from hyperleg_design.writing import output_folder, write_text
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
     from hyperleg_design.evaluation.rollout import Trial
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.actuation import ActuationModel
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
     from hyperleg_design.simulation.rollout import Recording
@@ -53,7 +56,7 @@ def log_of_trial(trial: Trial, *, name: str = "trial", metadata: Mapping[str, An
     Raises:
         InputError: a trial that ended at once.
     """
-    found = {n: getattr(trial, n) for n in TRIAL_SIGNALS}
+    found = {n: getattr(trial, n) for n in TRIAL_SIGNALS} | dict(trial.told)
     extra = {"outcome": trial.outcome, "end_time": trial.end_time}
     return _log(
         trial.design, trial.layout, trial.time_step, {n: v for n, v in found.items() if v is not None}, name, {"extra": extra, **(metadata or {})}
@@ -83,7 +86,7 @@ def log_of_recording(
         raise InputError("recording", "signals", missing[0], "was not kept; record with keep=None")
     design = environment.design.take(simulation) if environment.design.batch_shape else environment.design
     rows = int(recording.first_end[simulation]) * recording.substeps
-    found = {n: recording.signals[n][simulation, :rows] for n in TRIAL_SIGNALS}
+    found = {n: values[simulation, :rows] for n, values in recording.signals.items() if n in TRIAL_SIGNALS or n.startswith(TOLD)}
     return _log(design, environment.layout, recording.time_step, found, name, dict(metadata or {}))
 
 
@@ -138,13 +141,27 @@ def _log(design: Design, layout: Layout, time_step: float, found: Mapping[str, n
     rows = len(found["joint_position"])
     if rows < 2:
         raise InputError(name, "samples", rows, "ended at once: a log needs two samples at least")
+    model = actuation_model(design)
+    found = _as_told(model, found)
     signals = _joint_signals(design, layout, found) | _motor_signals(design, layout, found) | _base_signals(found, time_step)
     signals |= _contact_signals(layout, found["pad_force"])
-    model = actuation_model(design)
     gains = {j: (k, d) for j, k, d in zip(layout.joints, np.tile(model.stiffness, 2), np.tile(model.damping, 2), strict=True)}
     constants = dict(zip(layout.motors, _torque_constants(design, layout).tolist(), strict=True))
     known: dict[str, Any] = {"robot": design.name, "base": "floating", "gains": gains, "torque_constant": constants, "gravity": (0, 0, -GRAVITY)}
     return Log(name, np.arange(rows) * time_step, signals, Metadata(**(known | dict(said))))
+
+
+def _as_told(model: ActuationModel, found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Signals as drives and sensors tell them; `motor_command` and `acceleration_error` only where they tell something of their own."""
+    told = {name.removeprefix(TOLD): values for name, values in found.items() if name.startswith(TOLD)}
+    found = dict(found)
+    if not told:
+        return found
+    found["base_angular_velocity"] = told.pop("angular_velocity")
+    found |= told
+    legs = (len(told["motor_torque"]), 2, -1)
+    found["driven_joint_torque"] = (told["motor_torque"].reshape(legs) @ model.joint_from_motor.T).reshape(legs[0], -1)
+    return found
 
 
 def _joint_signals(design: Design, layout: Layout, found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -155,7 +172,9 @@ def _joint_signals(design: Design, layout: Layout, found: Mapping[str, np.ndarra
 def _motor_signals(design: Design, layout: Layout, found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     columns = {"motor_torque": found["motor_torque"], "motor_current": found["motor_torque"] / _torque_constants(design, layout)}
     columns["motor_velocity"] = found["motor_velocity"]
-    if "joint_target" in found:
+    if "motor_command" in found:
+        columns = {"motor_torque_command": found["motor_command"], **columns}
+    elif "joint_target" in found:
         model, legs = actuation_model(design), (len(found["joint_target"]), 2, -1)
         error = (found["joint_target"] - found["joint_position"]).reshape(legs)
         wanted = model.stiffness * error - model.damping * found["joint_velocity"].reshape(legs)
@@ -177,6 +196,7 @@ def _base_signals(found: Mapping[str, np.ndarray], time_step: float) -> dict[str
     acceleration[:-1] = np.diff(velocity, axis=0) / time_step
     rotation = quaternion_matrix(np.roll(orientation, -1, axis=-1).T)  # (3, 3, t)
     felt = np.einsum("jit,tj->ti", rotation, acceleration + np.array([0.0, 0.0, GRAVITY]))
+    felt += found.get("acceleration_error", 0.0)
     parts = {"accelerometer": felt, "base_position": found["base_position"], "base_velocity": _at_its_time(velocity)}
     if "base_angular_velocity" in found:
         parts = {"gyro": _at_its_time(found["base_angular_velocity"]), **parts}

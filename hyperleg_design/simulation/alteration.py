@@ -157,9 +157,9 @@ class Live:
         """Joint state that the controller and the policy are told, `(n, J)` each."""
         return position, velocity
 
-    def imu(self, angular_velocity: np.ndarray, gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Angular velocity and direction of gravity in the base's frame that the policy is told, `(n, 3)` each."""
-        return angular_velocity, gravity
+    def imu(self, angular_velocity: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Angular velocity [rad/s] and specific force [m/s^2] that gyro and accelerometer tell, in the base's frame, `(n, 3)` each."""
+        return angular_velocity, force
 
     def target(self, target: np.ndarray, tick: Tick) -> np.ndarray:
         """Position target that the controller follows `(n, J)` [rad]."""

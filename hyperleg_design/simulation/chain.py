@@ -93,12 +93,12 @@ class Chain:
             position, velocity = live.measured(position, velocity)
         return position, velocity
 
-    def imu(self, angular_velocity: np.ndarray, gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What the IMU tells of angular velocity and direction of gravity, `(n, 3)` each; copies."""
-        angular_velocity, gravity = angular_velocity.copy(), gravity.copy()
+    def imu(self, angular_velocity: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What the IMU tells of angular velocity [rad/s] and specific force [m/s^2], `(n, 3)` each; copies."""
+        angular_velocity, force = angular_velocity.copy(), force.copy()
         for live in self._hooks["imu"]:
-            angular_velocity, gravity = live.imu(angular_velocity, gravity)
-        return angular_velocity, gravity
+            angular_velocity, force = live.imu(angular_velocity, force)
+        return angular_velocity, force
 
     def drive(
         self,

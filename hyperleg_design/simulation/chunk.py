@@ -21,12 +21,13 @@ from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.commands import commander
 from hyperleg_design.simulation.drive import LEGS, Drive
-from hyperleg_design.simulation.layout import Layout
+from hyperleg_design.simulation.layout import GRAVITY, Layout
 from hyperleg_design.simulation.observations import observe
 from hyperleg_design.simulation.rewards import TERMS, Robot
 from hyperleg_design.simulation.state import Goal, Motion, Sensed, State, read_motion
 from hyperleg_design.simulation.tasks import Reward, Task
 from hyperleg_design.simulation.thermal import ThermalState
+from hyperleg_design.simulation.told import Told
 
 if TYPE_CHECKING:
     import mujoco
@@ -131,6 +132,7 @@ class Chunk:
         """MuJoCo's position and velocity before each substep, kept while `recording`."""
         self.altered = None if self.drive.chain is None else np.zeros((substeps, 2, count, joints))
         """Torque through the transmission and friction that alterations make of them, kept while `recording`."""
+        self.told = None if self.drive.chain is None else Told(self.drive.chain, substeps)
         self.target = np.zeros((count, joints))
         """Joint angles that the controller was asked for in the last policy step [rad]."""
         self.recording = False
@@ -213,8 +215,8 @@ class Chunk:
             if self.recording:
                 self.states[substep, :, : 7 + joints], self.states[substep, :, 7 + joints :] = self.drive.qpos, self.drive.qvel
             self.drive.apply(target, self.motor_torque[substep], self.motor_velocity[substep])
-            if self.altered is not None and self.recording:
-                self._keep_altered(self.altered[substep])
+            if self.recording:
+                self._keep_altered(substep)
             if assisted:
                 self._help()
             self._advance()
@@ -222,11 +224,12 @@ class Chunk:
         if assisted:
             self._push[:, self._pelvis] = 0.0
 
-    def _keep_altered(self, kept: np.ndarray) -> None:
-        chain, driven = self.drive.chain, self.drive.driven
-        assert chain is not None
-        assert driven is not None
-        matrix, velocity = chain.machine.joint_from_motor, self.drive.qvel[:, 6:]
+    def _keep_altered(self, substep: int) -> None:
+        if self.drive.chain is None or self.drive.driven is None or self.altered is None or self.told is None:
+            return
+        driven, kept = self.drive.driven, self.altered[substep]
+        matrix, velocity = self.drive.chain.machine.joint_from_motor, self.drive.qvel[:, 6:]
+        self.told.keep(substep, driven, self.drive.qpos[:, 7:], velocity, self.drive.qvel[:, 3:6])
         kept[0], kept[1] = applied(matrix, driven.transmitted), 0.0
         if driven.joint_damping is not None:
             kept[1] = driven.joint_damping * velocity
@@ -293,8 +296,9 @@ class Chunk:
         for place, values in zip(whole, given, strict=True):
             place[rows] = values
         position, velocity = chain.measured(*whole[:2])
-        angular_velocity, gravity = chain.imu(*whole[2:])
-        return Sensed(angular_velocity[rows], gravity[rows], position[rows], velocity[rows])
+        angular_velocity, force = chain.imu(whole[2], -GRAVITY * whole[3])
+        down = -force[rows]
+        return Sensed(angular_velocity[rows], down / np.linalg.norm(down, axis=-1, keepdims=True), position[rows], velocity[rows])
 
     def _started(self, ids: np.ndarray) -> State:
         """Start simulations and give the state of their rows; nothing has touched or moved yet."""
@@ -345,6 +349,8 @@ class Chunk:
             self._start(ids)
             for values in (self.motor_torque, self.motor_velocity, self.sensors, self.states):
                 values[:, ids] = 0.0
+            if self.told is not None:
+                self.told.forget(ids)
         return found
 
     def _sound(self) -> bool:
@@ -402,6 +408,8 @@ class Chunk:
             "pad_force": models.pad_forces(self.sensors),
             "pad_slip": models.pad_slip(self.sensors),
         }
+        if self.told is not None:
+            found |= self.told.signals
         return {name: np.moveaxis(values, 0, 1) for name, values in found.items()}
 
 

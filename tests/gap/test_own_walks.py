@@ -39,9 +39,23 @@ def test_a_simulated_walk_has_no_gap_to_its_own_model(tmp_path):
 
 
 @pytest.mark.slow
-def test_what_an_overlay_adds_is_found(tmp_path):
-    overlay = Overlay("hyperleg", {("viscous_friction", "left_knee"): {"damping": 2.0}}, {})
+@pytest.mark.parametrize(
+    ("effect", "location", "parameter", "value"),
+    [
+        ("viscous_friction", "left_knee", "damping", 2.0),
+        ("torque_constant", "left_knee", "scale", 0.8),
+        ("encoder_offset", "right_knee", "offset", 0.05),
+        ("payload", "pelvis", "mass", 3.0),
+        ("imu_bias", "imu", "accelerometer_x", 0.8),
+        ("controller_gain", "left_knee", "stiffness_scale", 0.6),
+        ("transmission_ratio", "left_knee", "scale", 1.1),
+        ("command_delay", "left_knee", "delay", 0.01),
+        ("link_mass", "left_thigh", "mass", 1.5),
+    ],
+)
+def test_what_an_overlay_adds_is_found(tmp_path, effect, location, parameter, value):
+    overlay = Overlay("hyperleg", {(effect, location): {parameter: value}}, {})
     logs = walked(tmp_path, overlay.alterations(load_design("toe")), trials=2)
     found = diagnose(tmp_path / "logs" / logs[0].metadata.robot, logs, threads=2)
-    assert (found.causes[0].effect, found.causes[0].location) == ("viscous_friction", "left_knee")
-    assert found.causes[0].parameters["damping"].value == pytest.approx(2.0, rel=0.1)
+    assert [(cause.effect, cause.location) for cause in found.causes] == [(effect, location)]
+    assert found.causes[0].parameters[parameter].value == pytest.approx(value, rel=0.1)

@@ -8,13 +8,16 @@ from hyperleg_design.evaluation.rollout import record
 from hyperleg_design.gap.check import check_log
 from hyperleg_design.gap.finding import ERROR
 from hyperleg_design.gap.log import read_log
+from hyperleg_design.gap.overlay import Overlay
 from hyperleg_design.gap.recording import log_of_recording, log_of_trial, write_logs
+from hyperleg_design.gap.subject import subject_of
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.models import quaternion_matrix, rigid_body_model
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.rollout import rollout
 from hyperleg_design.simulation.settings import Limits
 from hyperleg_design.simulation.tasks import load_task
+from hyperleg_design.simulation.told import TOLD
 
 
 def waving(seed=0, size=0.6):
@@ -176,3 +179,38 @@ def test_velocities_of_the_base_are_those_of_its_places(falling):
     log, _ = falling
     place, speed = log.vector("base_position"), log.vector("base_velocity")
     np.testing.assert_allclose((place[2:] - place[:-2])[5:-5] / (2 * log.step), speed[1:-1][5:-5], atol=1e-9)
+
+
+def test_with_an_overlay_a_log_says_what_drives_and_sensors_tell():
+    """Weak motor, wrong encoder, biased IMU: the log holds the believed torque, the read angle, the read rate and force."""
+    design = load_design()
+    change = {
+        ("torque_constant", "left_knee"): {"scale": 0.5},
+        ("encoder_offset", "right_knee"): {"offset": 0.05},
+        ("imu_bias", "imu"): {"gyro_y": 0.2, "accelerometer_z": 1.0},
+    }
+    task = load_task("walk").changed(limits=Limits(height=0.1, tilt=3.0))
+    made = Lifted(design, task, simulations=1, seed=1, threads=1, alterations=Overlay("hyperleg", change, {}).alterations(design))
+    recording = rollout(made, waving(size=0.2), 20)
+    log, true = log_of_recording(made, recording), recording.signals
+    joints, motors = made.layout.joints, made.layout.motors
+    knee, other = motors.index("left_knee"), joints.index("right_knee")
+    told = log.stack("motor_torque", motors)
+    np.testing.assert_allclose(told[:, knee] * 0.5, true["motor_torque"][0][:, knee], atol=1e-12)
+    rest = [i for i in range(len(motors)) if i != knee]
+    np.testing.assert_allclose(told[:, rest], true["motor_torque"][0][:, rest], atol=1e-12)
+    np.testing.assert_allclose(log.stack("motor_current", ["left_knee"])[:, 0] * log.metadata.torque_constant["left_knee"], told[:, knee])
+    matrix = subject_of(design).joint_from_motor
+    np.testing.assert_allclose(log.stack("joint_torque", joints), told @ matrix.T, atol=1e-9)
+    shift = log.stack("position", joints) - true["joint_position"][0]
+    np.testing.assert_allclose(shift, np.broadcast_to(np.where(np.arange(len(joints)) == other, 0.05, 0.0), shift.shape), atol=1e-12)
+    stiffness = np.array([log.metadata.gains[j][0] for j in joints])
+    damping = np.array([log.metadata.gains[j][1] for j in joints])
+    wanted = stiffness * (log.stack("position_target", joints) - log.stack("position", joints)) - damping * log.stack("velocity", joints)
+    np.testing.assert_allclose(log.stack("motor_torque_command", motors) @ matrix.T, wanted, atol=1e-9)
+    clean = log_of_recording(made, dataclasses.replace(recording, signals={n: v for n, v in true.items() if not n.startswith(TOLD)}))
+    assert not np.array_equal(clean.vector("gyro"), log.vector("gyro"))
+    np.testing.assert_allclose(log.vector("gyro") - clean.vector("gyro"), np.tile([0, 0.2, 0], (len(log.time), 1)), atol=1e-12)
+    np.testing.assert_allclose(
+        (log.vector("accelerometer") - clean.vector("accelerometer"))[:-1], np.tile([0, 0, 1.0], (len(log.time) - 1, 1)), atol=1e-9
+    )

@@ -17,6 +17,7 @@ from hyperleg_design.simulation.model import simulation_model
 from hyperleg_design.simulation.settings import Physics
 from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
 from hyperleg_design.simulation.tasks import load_task
+from hyperleg_design.simulation.told import TOLD
 from hyperleg_design.simulation.two_mass import Belt
 from hyperleg_design.sizing.envelope import clip_torque, motor_envelope
 
@@ -86,7 +87,8 @@ def walked(design, alterations, steps=40, **changes):
     seen = []
     for _ in range(steps):
         step = environment.step(0.4 * rng.normal(size=(6, environment.action_size)))
-        seen.append((step.observations["policy"], step.reward_terms, *environment.signals().values()))
+        truth = [values for name, values in environment.signals().items() if not name.startswith(TOLD)]
+        seen.append((step.observations["policy"], step.reward_terms, *truth))
     environment.close()
     return seen
 

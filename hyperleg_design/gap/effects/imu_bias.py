@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 IMU = "imu"
-GRAVITY = 9.81
-"""[m/s^2] by which an accelerometer's bias tilts what the policy takes for down."""
 _GYRO = "0.01 rad/s turn-on bias of consumer MEMS gyros (BMI088, ICM-42688 data sheets: 0.5-1 deg/s before calibration)"
 _ACCELEROMETER = "0.2 m/s^2, 20 mg zero-g offset of consumer MEMS accelerometers (BMI088, ICM-42688 data sheets)"
 
@@ -78,7 +76,7 @@ class ImuBias(Effect):
 
 @dataclass(frozen=True, eq=False)
 class BiasedImu(Alteration):
-    """What the policy is told of the base's turning and of gravity is off."""
+    """What gyro and accelerometer tell is off."""
 
     gyro: Any
     """In the base's axes [rad/s], `(3,)` or `(n, 3)`."""
@@ -89,9 +87,8 @@ class BiasedImu(Alteration):
 class _Imu(Live):
     alteration: BiasedImu
 
-    def imu(self, angular_velocity: np.ndarray, gravity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        down = GRAVITY * gravity - self.alteration.accelerometer
-        return angular_velocity + self.alteration.gyro, down / np.linalg.norm(down, axis=-1, keepdims=True)
+    def imu(self, angular_velocity: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return angular_velocity + self.alteration.gyro, force + self.alteration.accelerometer
 
 
 BiasedImu.live = _Imu

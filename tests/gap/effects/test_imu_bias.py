@@ -12,7 +12,10 @@ from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.subject import load_subject, subject_of
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.chain import Chain
+from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.machine import machine_of
+from hyperleg_design.simulation.settings import Start
+from hyperleg_design.simulation.tasks import load_task
 
 BIAS = np.array([0.03, -0.02, 0.05, 0.4, -0.3, 0.2])
 
@@ -49,13 +52,23 @@ def test_a_fixed_base_has_none(robot_files):
     assert effect("imu_bias").locations(load_subject(robot_files["arm"])) == ()
 
 
-def test_the_policy_is_told_a_wrong_rate_and_a_tilted_gravity():
+def test_gyro_and_accelerometer_tell_their_biases():
     design = load_design()
     subject = subject_of(design)
     values = np.stack([np.zeros(6), np.array([0.1, 0.2, 0.3, 9.81, 0.0, 0.0])])
     chain = Chain(machine_of(design), (effect("imu_bias").alteration("imu", values, subject),), 2, 0.005)
-    rate, gravity = chain.imu(np.ones((2, 3)), np.tile([0.0, 0.0, -1.0], (2, 1)))
+    rate, force = chain.imu(np.ones((2, 3)), np.tile([0.0, 0.0, 9.81], (2, 1)))
     np.testing.assert_allclose(rate, [[1, 1, 1], [1.1, 1.2, 1.3]])
-    # an accelerometer that reads one g more along x takes down to lie halfway between -x and -z
-    np.testing.assert_allclose(gravity, [[0, 0, -1], [-np.sqrt(0.5), 0, -np.sqrt(0.5)]], atol=1e-12)
-    np.testing.assert_allclose(np.linalg.norm(gravity, axis=1), 1.0)
+    np.testing.assert_allclose(force, [[0, 0, 9.81], [9.81, 0, 9.81]], atol=1e-12)
+
+
+def test_a_policy_is_told_a_tilted_gravity():
+    """An accelerometer that reads one g more along x takes down to lie halfway between -x and -z."""
+    values = np.array([0.0, 0.0, 0.0, 9.81, 0.0, 0.0])
+    design = load_design()
+    task = load_task("walk").changed(start=Start(tilt=0.0))
+    alterations = (effect("imu_bias").alteration("imu", values, subject_of(design)),)
+    environment = Environment(design, task, simulations=2, seed=1, threads=1, alterations=alterations)
+    told = environment.reset()["policy"]
+    columns = [i for i, name in enumerate(environment.observation_columns["policy"]) if "gravity" in name]
+    np.testing.assert_allclose(told[:, columns], np.tile([-np.sqrt(0.5), 0, -np.sqrt(0.5)], (2, 1)), atol=1e-6)
