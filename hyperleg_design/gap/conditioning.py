@@ -161,11 +161,11 @@ def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray, v
 
 
 def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
-    """A signal of the motors, under their names or those of their actuators `(s, m)`."""
+    """A signal of the motors, under their names or those of their actuators, on the subject's side of gears `(s, m)`."""
     own = log.stack(kind, subject.motors)
-    if subject.motor_aliases == subject.motors:
-        return own
-    return np.where(np.isfinite(own), own, log.stack(kind, subject.motor_aliases))
+    if subject.motor_aliases != subject.motors:
+        own = np.where(np.isfinite(own), own, log.stack(kind, subject.motor_aliases))
+    return own * subject.motor_scale[kind] if kind in subject.motor_scale else own
 
 
 def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:

@@ -33,6 +33,8 @@ class Drives:
     """Names of the actuators in the file, the motors' own where it has none `(m,)`."""
     matrix: np.ndarray
     """Joint torque of motor torque `(n, m)`."""
+    gear: np.ndarray
+    """Of the actuators over their joints where they are one to one, whose motors count at the joint; else 1 `(m,)`."""
     gains: np.ndarray
     """Stiffness and damping of the joint controllers, NaN where the file states none `(n, 2)` [Nm/rad, Nms/rad]."""
     limit: np.ndarray
@@ -205,9 +207,10 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
         total = np.array([sum(r * f for r, f in zip(row, limit, strict=True) if r) for row in reached]) if found else np.full(count, np.inf)
         rotor = armature + matrix**2 @ model.actuator_armature[usable]
         alias = [next((names[a] for a in np.flatnonzero(own[j])), joints[j]) for j in range(count)]
-        return Drives(joints, tuple(alias), np.eye(count), gains, np.minimum(total, effort), rotor, np.zeros(count), ~driven, tuple(notes))
+        gear = np.array([float(matrix[j, own[j]][0]) if own[j].sum() == 1 else 1.0 for j in range(count)])
+        return Drives(joints, tuple(alias), np.eye(count), gear, gains, np.minimum(total, effort), rotor, np.zeros(count), ~driven, tuple(notes))
     rotor = np.array([_tendon_armature(model, i) for i in usable]) + model.actuator_armature[usable]
-    return Drives(tuple(names), tuple(names), matrix, gains, limit, rotor, armature, np.zeros(count, bool), tuple(notes))
+    return Drives(tuple(names), tuple(names), matrix, np.ones(len(names)), gains, limit, rotor, armature, np.zeros(count, bool), tuple(notes))
 
 
 def strip_drives(spec: Any) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -62,6 +62,8 @@ class Subject:
     """Named as the joints where they are one to one."""
     motor_aliases: tuple[str, ...]
     """Other names under which logs may know the motors, those of the file's actuators `(m,)`."""
+    gear: np.ndarray
+    """Of each motor over its joint in the file, where they are one to one: motors count at the joint; 1 of others `(m,)`."""
     feet: tuple[str, ...]
     pads: tuple[Pad, ...]
     joint_from_motor: np.ndarray
@@ -112,6 +114,8 @@ class Subject:
     """The same before anything was declared."""
     voltage: float = float("nan")
     """Of the battery when all is well, where a design or reference logs tell [V]."""
+    motor_scale: Mapping[str, np.ndarray] = field(default_factory=dict)
+    """By kind of signal, what turns logged values into those of `motors`; see `gearing` `(m,)` each."""
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -172,6 +176,7 @@ def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, o
     if not robot:
         raise InputError("robot", "", None, "is not named: give --robot a design, an MJCF or a URDF, or name it in the logs' metadata")
     chosen = tuple(overrides) if overrides is not None else next((m.overrides for m in metadata if m.overrides), ())
+    from hyperleg_design.gap.gearing import on_the_joints_side
     from hyperleg_design.gap.subject_build import of_design, of_file
     from hyperleg_design.robot.design import load_design
 
@@ -186,6 +191,7 @@ def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, o
     for log in logs:
         _check_names(log, bare)
     bare = dataclasses.replace(bare, voltage=_healthy_voltage(logs)) if np.isnan(bare.voltage) else bare
+    bare = on_the_joints_side(bare, logs)
     return bare.declare(metadata[0]) if metadata else dataclasses.replace(bare, bare=bare)
 
 

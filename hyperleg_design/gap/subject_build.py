@@ -117,7 +117,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
         rotor=drives.rotor_inertia[used], armature=drives.armature, gains=drives.gains, limit=drives.limit[used], stall=unlimited, free=unlimited,
         coulomb=coulomb, viscous=viscous, width=FRICTION_SPEED, constant=np.full(len(names), np.nan), passive=drives.passive,
         default=tree.reference.copy(), feet=feet, pads=pads, held=held, notes=(*notes, *drives.notes), imu=robot_file.imu_place(model, imu_site),
-        spring=spring, rest=rest,
+        spring=spring, rest=rest, gear=drives.gear[used],
     )  # fmt: skip
 
 
@@ -131,6 +131,7 @@ def _assembled(*, path: Path, model: Any, tree: Mechanism, matrix: np.ndarray, r
     subject = Subject(
         name=v["name"], path=str(path), design=v["design"], base=v["base"], gravity=np.array(model.opt.gravity), joints=tree.joints,
         motors=v["motors"], motor_aliases=v["aliases"], feet=v["feet"], pads=v["pads"], joint_from_motor=matrix, gains=v["gains"],
+        gear=v.get("gear", np.ones(len(v["motors"]))),
         torque_limit=v["limit"], stall_torque=v["stall"], no_load_speed=v["free"], rotor_inertia=rotor,
         armature=(matrix * rotor) @ matrix.T + np.diag(armature), coulomb=v["coulomb"], viscous=v["viscous"],
         friction_speed=np.full(count, float(v["width"])), spring=v.get("spring", np.zeros(count)), spring_rest=v.get("rest", np.zeros(count)),
