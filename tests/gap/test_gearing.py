@@ -68,8 +68,8 @@ def test_a_log_tells_on_which_side_of_the_gear_it_is(robot, side, names, constan
     signals = condition(log, subject)
     joints = signals.believed
     wanted = GAINS[:, 0] * (signals.target - signals.position) - GAINS[:, 1] * signals.velocity
-    assert np.abs(joints - wanted)[100:-100].max() < 0.1
-    for balance, most in {"motion": 0.12, "control": 0.02, "transmission": 0.01}.items():
+    assert np.abs(joints - wanted)[100:-100].max() < 0.3
+    for balance, most in {"motion": 0.15, "control": 0.02, "transmission": 0.01}.items():
         found = signals.residual[balance][100:-100]
         assert np.sqrt(np.nanmean(found**2)) < most, balance
 
