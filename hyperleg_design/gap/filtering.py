@@ -253,6 +253,18 @@ STILL, AROUND = 0.06, 0.02
 """Time over which a joint that moves less than its friction takes to turn over may stick, and time around it that is left out [s]."""
 CREEP, ASTRAY = 0.1, 0.5
 """Speed below which friction may be smaller than it is in motion [rad/s], unless the joint follows its target to this share."""
+UNDERWAY = 30.0
+"""Way without rest or return from which friction is that of motion, over that on which it turns over (assumed)."""
+
+
+def travelled(position: np.ndarray, still: np.ndarray) -> np.ndarray:
+    """Way of joints since they last stood still or turned back `(t, n)` [rad]; positions and rest `(t, n)`."""
+    step = np.diff(position, axis=0, prepend=position[:1])
+    turned = np.zeros_like(still)
+    turned[1:] = step[1:] * step[:-1] < 0
+    ticks = np.arange(len(position))[:, None]
+    last = np.maximum.accumulate(np.where(still | turned, ticks, 0), 0)
+    return np.asarray(position - np.take_along_axis(position, last, 0))
 
 
 def sticking(signals: Signals) -> np.ndarray:
@@ -267,5 +279,6 @@ def sticking(signals: Signals) -> np.ndarray:
     if signals.target is not None:
         ahead = np.gradient(uniform_filter1d(signals.target, span, axis=0, mode="nearest"), signals.step, axis=0)
         led = np.abs(signals.velocity - ahead) <= ASTRAY * np.abs(ahead)
-        still |= (np.abs(signals.velocity) < CREEP) & ~led & np.isfinite(ahead) & ~shaken(signals)
+        begun = np.abs(travelled(signals.position, still)) < UNDERWAY * presliding(signals)
+        still |= (np.abs(signals.velocity) < CREEP) & ~led & np.isfinite(ahead) & ~shaken(signals) & begun
     return np.asarray(maximum_filter1d(still.astype(np.uint8), 2 * round(AROUND / signals.step) + 1, axis=0) > 0)

@@ -172,11 +172,12 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
 def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarray]]:
     """Trace of each error at one spread from its null, by balance `(t, columns)`.
 
-    Torque constants scale the torque that the motion needs, not the measured one: else all of them together could scale the noise
-    away, masses and loads along with it, which no motion contradicts.
+    Torque constants scale the torque that the motion needs, not the measured one, and so do gains where nobody measured any: else
+    all of them together could scale the noise away, masses and loads along with it, which no motion contradicts.
     """
     needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)
     modelled = replace(signals, believed=np.where(np.isfinite(needed), needed, signals.believed))
+    steered = _steered(signals)
     found = []
     for one in errors:
         if one.effect in (TURNOVER, SWUNG):
@@ -194,10 +195,20 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
         low, high = effect.bounds(one.location, signals.subject)[:, one.parameter]
         sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
         values[one.parameter] = np.clip(values[one.parameter] + sign * one.spread, low, high)
-        source = modelled if one.effect == "torque_constant" else signals
+        source = {"torque_constant": modelled, "controller_gain": steered}.get(one.effect, signals)
         moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
         found.append({b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()} if moved else {})
     return found
+
+
+def _steered(signals: Signals) -> Signals:
+    """With targets by which the controllers would ask for just what the motion needs, where its balance rests on them alone."""
+    if signals.target is None or signals.measured is not None or "control" in signals.residual:
+        return signals
+    stiffness, damping = signals.subject.gains.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        target = signals.position + (signals.rigid + damping * signals.velocity) / stiffness
+    return replace(signals, target=np.where(np.isfinite(target), target, signals.target))
 
 
 def _read(signals: Signals, motor: str, share: float) -> dict[str, np.ndarray]:

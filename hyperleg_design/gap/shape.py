@@ -65,6 +65,8 @@ KINDS = {
 }
 
 
+OF_LOAD = "load_over_position"
+"""Shape of a share of the torque that the motion needs."""
 OF_ENCODER = ("encoder_over_position", "encoder_over_time")
 """Shapes of a position error, which moves the load of other joints too."""
 
@@ -168,7 +170,7 @@ class _Basis:
             return np.stack([x, x**2, x**3, (x - 0.3) * (x > 0.3), (x + 0.3) * (x < -0.3)])
         if name == "memory":
             return np.stack([stop(q, width) for width in STOPS])
-        if name == "load_over_position":
+        if name == OF_LOAD:
             # of the torque that the motion needs: of the measured one, its own errors would come along
             needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)[:, self.motor]
             angle = signals.position @ signals.subject.joint_from_motor[:, self.motor]

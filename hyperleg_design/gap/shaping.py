@@ -119,6 +119,7 @@ def instead(judge: Judge, chosen: Model, rows: np.ndarray, single: float) -> tup
     """Shapes that predict more than the chosen causes do, without them: then the causes only stood for the shape.
 
     Several causes must each be worth it beside a shape, as they must beside each other; a shape must be worth more than one cause.
+    Causes that scale believed torques pay for it (`endogenous`), a share of the needed one does not: between these it does not count.
 
     Args:
         judge: of the models.
@@ -130,8 +131,12 @@ def instead(judge: Judge, chosen: Model, rows: np.ndarray, single: float) -> tup
         return ()
     rules = judge.thresholds
     needed = max(chosen.gain - rules.second_evident * (len(chosen.causes) - 1), single + rules.beyond_evident)
-    alone = beside(judge, judge.nothing, rows)
-    return tuple(t._replace(gain=max(t.gain - chosen.gain, PASSES * rules.beyond_evident)) for t in alone if t.gain > needed)
+    paid = max(0.0, -Design(judge.base, chosen.causes).scaled(chosen.fit.phi))
+    return tuple(
+        t._replace(gain=max(t.gain - chosen.gain, PASSES * rules.beyond_evident))
+        for t in beside(judge, judge.nothing, rows)
+        if t.gain > needed + (paid if t.shape.name == shape.OF_LOAD else 0.0)
+    )
 
 
 def tells(rules: Thresholds, chosen: Model, shaped: Sequence[Told]) -> bool:

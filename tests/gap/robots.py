@@ -203,3 +203,45 @@ def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
 def without(log: Log, *kinds: str) -> Log:
     """A log that lacks some signals."""
     return log.changed(signals={c: v for c, v in log.signals.items() if c.partition("/")[0] not in kinds})
+
+
+GEARS = np.array([9.0, -6.0])
+GAINS = np.array([[80.0, 3.0], [30.0, 1.0]])
+GEARED = """
+<mujoco model="geared"><compiler angle="radian"/><option timestep="0.001" integrator="implicitfast"/><worldbody>
+<body name="thigh" pos="0 0 1"><joint name="hip" axis="0 1 0" damping="0.3" frictionloss="0.3" armature="0.05"/>
+<inertial pos="0 0 -0.15" mass="3" diaginertia="0.03 0.03 0.004"/>
+<body name="shank" pos="0 0 -0.35"><joint name="knee" axis="0 1 0" damping="0.2" frictionloss="0.2" armature="0.02"/>
+<inertial pos="0 0 -0.15" mass="1.5" diaginertia="0.015 0.015 0.002"/></body></body></worldbody>
+<actuator><motor name="a" joint="hip" gear="9" ctrlrange="-12 12"/><motor name="b" joint="knee" gear="-6" ctrlrange="-8 8"/></actuator></mujoco>"""
+
+
+def geared_run(side, names, *, weak=1.0, load=0.0, constant=None, seed=0, **metadata):
+    """A log of `GEARED`, torques and speeds of the motors as of one side of their gears; a weak hip, a load on the shank [kg]."""
+    model = mujoco.MjModel.from_xml_string(GEARED)
+    shank = model.body("shank").id
+    model.body_mass[shank] += load  # at its centre of mass
+    data, rng = mujoco.MjData(model), np.random.default_rng(seed)
+    phase, rows = rng.uniform(0, 6, (3, 2)), []
+    for step in range(10000):
+        time = step * 0.001
+        waves = np.sin(2 * np.pi * np.array([[0.17], [0.6], [1.3]]) * time + phase) * np.array([[0.5], [0.3], [0.1]])
+        target = waves.sum(0) * min(time, 1.0)
+        if step % 5 == 0:
+            asked = GAINS[:, 0] * (target - data.qpos) - GAINS[:, 1] * data.qvel
+            rows.append(np.r_[time, target, data.qpos, data.qvel, asked])
+        data.ctrl[:] = asked / GEARS * np.array([weak, 1.0])
+        mujoco.mj_step(model, data)
+    table = np.array(rows)
+    table[:, 3:5] += 2e-5 * rng.normal(size=(len(table), 2))
+    gear = GEARS if side == "motor" else np.ones(2)
+    signals = {}
+    for i, joint in enumerate(("hip", "knee")):
+        signals |= {f"position_target/{joint}": table[:, 1 + i], f"position/{joint}": table[:, 3 + i], f"velocity/{joint}": table[:, 5 + i]}
+        torque = table[:, 7 + i] / gear[i]
+        signals |= {f"motor_torque_command/{names[i]}": torque, f"motor_velocity/{names[i]}": table[:, 5 + i] * gear[i]}
+        told = torque + 5e-3 * rng.normal(size=len(torque))
+        signals |= {f"motor_torque/{names[i]}": told} if constant is None else {f"motor_current/{names[i]}": told / constant}
+    gains = dict(zip(("hip", "knee"), map(tuple, GAINS), strict=True))
+    constants = {} if constant is None else dict.fromkeys(names, constant)
+    return Log(f"geared_{seed}", table[:, 0], signals, Metadata(gains=gains, torque_constant=constants, **metadata))

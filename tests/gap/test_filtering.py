@@ -4,7 +4,8 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.filtering import moving, moving_ticks, sieve, sticking, traced
+from hyperleg_design.gap.effects.friction import presliding
+from hyperleg_design.gap.filtering import UNDERWAY, moving, moving_ticks, sieve, sticking, traced, travelled
 
 
 @pytest.fixture(scope="module")
@@ -58,12 +59,25 @@ def test_a_joint_at_rest_may_stick_and_a_moving_one_does_not(signals):
     assert not first or found[2].all()
 
 
-def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target(signals):
+def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target_or_comes_far(signals):
     slow = 0.05 * signals.time[:, None] * np.ones(2)
     creeps = dataclasses.replace(signals, position=slow, velocity=np.full_like(slow, 0.05), chatter=None)
     assert not sticking(dataclasses.replace(creeps, target=slow + 0.01))[20:-20].any()
-    assert sticking(dataclasses.replace(creeps, target=np.ones_like(slow))).all()
+    astray = dataclasses.replace(creeps, target=np.ones_like(slow))
+    far = slow > UNDERWAY * presliding(astray)
+    assert sticking(astray)[~far].all()
+    assert not sticking(astray)[far][20:].any()
+    swing = 0.002 * np.sin(25 * signals.time)[:, None] * np.ones(2)  # to and fro at the same speed
+    assert sticking(dataclasses.replace(astray, position=swing, velocity=np.gradient(swing, signals.step, axis=0))).all()
     assert not sticking(dataclasses.replace(creeps, target=None))[20:-20].any()
+
+
+def test_way_begins_anew_at_rest_and_at_each_return():
+    position = np.array([0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 1.0, 2.0])[:, None]
+    rest = np.zeros_like(position, bool)
+    assert travelled(position, rest)[:, 0].tolist() == [0, 1, 2, 3, 0, -1, -1, 0]
+    rest[2] = True
+    assert travelled(position, rest)[:, 0].tolist() == [0, 1, 0, 1, 0, -1, -1, 0]
 
 
 def test_the_rest_of_a_joint_that_hardly_moves_counts_only_without_dry_friction(signals):

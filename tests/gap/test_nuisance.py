@@ -1,7 +1,9 @@
 import diagnosed
 import numpy as np
 import pytest
+import robots
 
+from hyperleg_design.gap.diagnose import diagnose
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.filtering import sieve
 from hyperleg_design.gap.nuisance import DAY, TURNOVER, UNLISTED, WIDE, columns, spreads, stop, traces, usual_errors
@@ -51,3 +53,35 @@ def test_the_stop_operator_stays_between_its_ends_and_turns_over_on_its_way():
     assert found[150] == 1
     turned = position[200 + np.argmax(found[200:] <= -1 + 1e-9)]
     assert turned == pytest.approx(0.1 - 2 * way, abs=2e-3)
+
+
+def targets_alone(seed, **given):
+    log = robots.geared_run("joint", ("hip", "knee"), seed=seed, **given)
+    kept = {c: v for c, v in log.signals.items() if not c.startswith("motor")}
+    return log.changed(signals=kept)
+
+
+@pytest.fixture
+def geared(tmp_path):
+    path = tmp_path / "geared.xml"
+    path.write_text(robots.GEARED)
+    return path
+
+
+def test_gains_take_a_share_of_what_motion_needs_where_nobody_measured_torques(geared):
+    signals = diagnosed.conditioned(geared, targets_alone(1))[0]
+    errors = usual_errors(signals.subject, signals.step)
+    place = next(i for i, e in enumerate(errors) if (e.effect, e.location, e.parameter) == ("controller_gain", "hip", 0))
+    found = traces(signals, errors)[place]["motion"][:, 0]
+    wanted = -errors[place].spread * (signals.rigid[:, 0] + robots.GAINS[0, 1] * signals.velocity[:, 0])
+    np.testing.assert_allclose(np.abs(found), np.abs(wanted), atol=1e-9)
+
+
+def test_a_load_is_weighed_by_targets_and_gains_alone(geared):
+    logs = [targets_alone(seed, load=0.5, session="today") for seed in (1, 2)]
+    healthy = [targets_alone(seed, session="before") for seed in (3, 4)]
+    found = diagnose(geared, logs, healthy, threads=1)
+    (cause,) = found.causes
+    assert cause.location == "shank"
+    assert cause.effect in {"payload", "link_mass"}
+    assert cause.parameters["mass"].value == pytest.approx(0.5, rel=0.04)
