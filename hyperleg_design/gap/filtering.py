@@ -267,8 +267,13 @@ def travelled(position: np.ndarray, still: np.ndarray) -> np.ndarray:
     return np.asarray(position - np.take_along_axis(position, last, 0))
 
 
-def sticking(signals: Signals) -> np.ndarray:
-    """Ticks at which a joint may stick, so that its friction is whatever the other torques ask for `(t, n)` of bool."""
+def sticking(signals: Signals, underway: float = UNDERWAY) -> np.ndarray:
+    """Ticks at which a joint may stick, so that its friction is whatever the other torques ask for `(t, n)` of bool.
+
+    Args:
+        signals: a conditioned log.
+        underway: way without rest or return from which a slow joint slides, over that on which friction turns over.
+    """
     from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
     from hyperleg_design.gap.effects.friction import presliding, shaken
@@ -279,6 +284,6 @@ def sticking(signals: Signals) -> np.ndarray:
     if signals.target is not None:
         ahead = np.gradient(uniform_filter1d(signals.target, span, axis=0, mode="nearest"), signals.step, axis=0)
         led = np.abs(signals.velocity - ahead) <= ASTRAY * np.abs(ahead)
-        begun = np.abs(travelled(signals.position, still)) < UNDERWAY * presliding(signals)
+        begun = np.abs(travelled(signals.position, still)) < underway * presliding(signals)
         still |= (np.abs(signals.velocity) < CREEP) & ~led & np.isfinite(ahead) & ~shaken(signals) & begun
     return np.asarray(maximum_filter1d(still.astype(np.uint8), 2 * round(AROUND / signals.step) + 1, axis=0) > 0)

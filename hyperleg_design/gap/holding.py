@@ -33,6 +33,8 @@ BAND = 10.0
 """Of the torque on a joint at rest [Hz]; below a third of the log's rate."""
 ENDS = (3.0, 97.0)
 """Percentiles between which a torque ranges."""
+WITHIN = 1.88
+"""Standard deviations between which noise lies as often as between `ENDS`."""
 OF_LOAD = 0.15
 """Share of the range of the load, as other joints move, that the model may have wrong (assumed)."""
 BEYOND, LEAST = 0.25, 0.01
@@ -47,12 +49,15 @@ def held(signals: Signals) -> np.ndarray:
     """Friction at rest that a log shows at least, by joint `(n,)` [Nm]."""
     subject = signals.subject
     motion = signals.residual["motion"] + subject.coulomb * turned(signals.velocity, subject.friction_speed)
-    rest = sticking(signals) & (np.abs(signals.velocity) < CREEP) & signals.valid[:, None] & np.isfinite(motion)
+    rest = sticking(signals, np.inf) & (np.abs(signals.velocity) < CREEP) & signals.valid[:, None] & np.isfinite(motion)
     found = np.zeros(len(subject.joints))
+    band = min(BAND, 0.3 / signals.step)
     for joint in range(len(found)):
-        torque = band_limited(motion[:, joint], signals.step, min(BAND, 0.3 / signals.step))
+        torque = band_limited(motion[:, joint], signals.step, band)
+        noise = _noise(motion[rest[:, joint], joint]) * np.sqrt(2 * band * signals.step)
         for part in stretches(rest[:, joint], SHORTEST / signals.step):
-            found[joint] = max(found[joint], _half(torque[part]) - OF_LOAD * _half(signals.rigid[part, joint]))
+            range_of_load = OF_LOAD * _half(signals.rigid[part, joint])
+            found[joint] = max(found[joint], _half(torque[part]) - range_of_load - WITHIN * noise)
     return found
 
 
@@ -106,6 +111,11 @@ def _load(signals: Sequence[Signals], joint: str) -> float:
     place = signals[0].subject.joints.index(joint)
     sent = [applied(s.subject.joint_from_motor, s.believed)[:, place] for s in signals]
     return float(np.nanpercentile(np.abs(np.concatenate(sent)), 90))
+
+
+def _noise(values: np.ndarray) -> float:
+    """Standard deviation of white noise on a slow signal, by the median of its second differences."""
+    return float(np.median(np.abs(np.diff(values, 2)))) / (0.6745 * np.sqrt(6)) if len(values) > 2 else 0.0
 
 
 def _half(values: np.ndarray) -> float:

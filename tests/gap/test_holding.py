@@ -60,3 +60,11 @@ def test_a_joint_that_sticks_is_never_called_healthy(servo):
     assert torque.low < 0.66
     assert torque.high > 0.5
     assert "it sticks" in found.mapping()["at_rest"][0]["says"]
+
+
+def test_noise_of_a_slow_log_is_no_friction(servo):
+    healthy, rng = log(), np.random.default_rng(4)
+    rough = {c: v[::4] + (rng.normal(0, 0.2, len(v[::4])) if c.startswith("motor_torque") else 0.0) for c, v in healthy.signals.items()}
+    signals = conditioned(servo, healthy.changed(time=healthy.time[::4], signals=rough))
+    assert noticed(signals, ()) == {}
+    assert float(held(signals[0])[0]) < 0.12
