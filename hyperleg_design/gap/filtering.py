@@ -272,7 +272,7 @@ def sticking(signals: Signals, underway: float = UNDERWAY) -> np.ndarray:
 
     Args:
         signals: a conditioned log.
-        underway: way without rest or return from which a slow joint slides, over that on which friction turns over.
+        underway: way without rest or return from which a slow joint slides, over that on which friction turns over; where torques are measured.
     """
     from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
@@ -284,6 +284,7 @@ def sticking(signals: Signals, underway: float = UNDERWAY) -> np.ndarray:
     if signals.target is not None:
         ahead = np.gradient(uniform_filter1d(signals.target, span, axis=0, mode="nearest"), signals.step, axis=0)
         led = np.abs(signals.velocity - ahead) <= ASTRAY * np.abs(ahead)
-        begun = np.abs(travelled(signals.position, still)) < underway * presliding(signals)
+        # without a measured torque, whatever a servo's firmware does while it slows down would look like friction
+        begun = True if signals.measured is None else np.abs(travelled(signals.position, still)) < underway * presliding(signals)
         still |= (np.abs(signals.velocity) < CREEP) & ~led & np.isfinite(ahead) & ~shaken(signals) & begun
     return np.asarray(maximum_filter1d(still.astype(np.uint8), 2 * round(AROUND / signals.step) + 1, axis=0) > 0)

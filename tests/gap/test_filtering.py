@@ -67,6 +67,7 @@ def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target_or_comes_
     far = slow > UNDERWAY * presliding(astray)
     assert sticking(astray)[~far].all()
     assert not sticking(astray)[far][20:].any()
+    assert sticking(dataclasses.replace(astray, measured=None)).all()
     swing = 0.002 * np.sin(25 * signals.time)[:, None] * np.ones(2)  # to and fro at the same speed
     assert sticking(dataclasses.replace(astray, position=swing, velocity=np.gradient(swing, signals.step, axis=0))).all()
     assert not sticking(dataclasses.replace(creeps, target=None))[20:-20].any()
