@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -77,10 +77,11 @@ class Robot:
     swing: tuple[float, ...]
 
 
+LEG_ROBOT = Robot(LEG, (150, 180, 150, 40), (5, 6, 5, 1.2), (0, -0.4, 0.8, -0.2), (0.25, 0.5, 0.6, 0.4))
 ROBOTS = {
     "arm": Robot(ARM, (60, 120, 70, 12), (3, 6, 3, 0.5), (0, 0.5, 0.7, 0), (0.9, 0.7, 0.8, 0.6)),
-    "leg": Robot(LEG, (150, 180, 150, 40), (5, 6, 5, 1.2), (0, -0.4, 0.8, -0.2), (0.25, 0.5, 0.6, 0.4)),
-    "coupled": Robot(COUPLED, (150, 180, 150, 40), (5, 6, 5, 1.2), (0, -0.4, 0.8, -0.2), (0.25, 0.5, 0.6, 0.4)),
+    "leg": LEG_ROBOT,
+    "coupled": replace(LEG_ROBOT, xml=COUPLED),
 }
 
 
@@ -97,7 +98,7 @@ class Case:
     """Names of the effect, any of which is right; none of what the catalogue lacks."""
     where: tuple[str, ...] = ()
     body: str = ""
-    at: tuple[float, float, float] = field(default=(0.0, 0.0, 0.0))
+    at: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 KT = ("torque_constant", "transmission_ratio", "controller_gain")

@@ -17,6 +17,7 @@ from hyperleg_design.errors import InputError
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
+    from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
 
 KINDS = ("motor_torque", "motor_torque_command", "motor_current", "motor_velocity")
@@ -32,21 +33,28 @@ def on_the_joints_side(subject: Subject, logs: Sequence[Log]) -> Subject:
     """The subject with `motor_scale` and a note, where its file has gears."""
     if not subject.one_to_one or np.all(subject.gear == 1):
         return subject
-    scales, said = {}, []
-    for kind in KINDS:
-        if any(log.names(kind) for log in logs) and _before_gear(subject, logs, kind):
-            scales[kind] = 1 / subject.gear if kind == "motor_velocity" else subject.gear
-            said.append(kind)
-    if not said:
+    told = [kind for kind in KINDS if any(log.names(kind) for log in logs)]
+    ready = [signals for log in logs if (signals := _conditioned(log, subject)) is not None] if told else []
+    scales = {k: 1 / subject.gear if k == "motor_velocity" else subject.gear for k in told if _before_gear(subject, logs, ready, k)}
+    if not scales:
         return subject
-    note = f"{', '.join(said)}: of the motors, before the gears of the robot's file; told at the joints here"
+    note = f"{', '.join(scales)}: of the motors, before the gears of the robot's file; told at the joints here"
     return dataclasses.replace(subject, motor_scale=scales, notes=(*subject.notes, note))
 
 
-def _before_gear(subject: Subject, logs: Sequence[Log], kind: str) -> bool:
+def _conditioned(log: Log, subject: Subject) -> Signals | None:
+    from hyperleg_design.gap.conditioning import condition
+
+    try:
+        return condition(log, subject)
+    except InputError:  # whoever conditions it next says why
+        return None
+
+
+def _before_gear(subject: Subject, logs: Sequence[Log], ready: Sequence[Signals], kind: str) -> bool:
     at_joint = at_motor = 0.0
-    for log in logs:
-        slopes = _slopes(subject, log, kind)
+    for signals in ready:
+        slopes = _slopes(signals, kind)
         known = np.isfinite(slopes) & ((np.abs(np.log(np.abs(subject.gear))) > np.log(PLAIN)) | (subject.gear < 0))
         at_joint += float(_misfit(slopes[known]).sum())
         at_motor += float(_misfit(slopes[known] / subject.gear[known]).sum())
@@ -60,18 +68,15 @@ def _misfit(ratio: np.ndarray) -> np.ndarray:
     return np.abs(np.log(np.abs(ratio))) + np.where(ratio < 0, BACKWARDS, 0.0)
 
 
-def _slopes(subject: Subject, log: Log, kind: str) -> np.ndarray:
+def _slopes(signals: Signals, kind: str) -> np.ndarray:
     """What the motion of the joints needs over what a log tells, by least squares; the gear where that is before it `(m,)`."""
-    from hyperleg_design.gap.conditioning import condition, of_motors, resampled
+    from hyperleg_design.gap.conditioning import of_motors, resampled
 
+    log, subject = signals.log, signals.subject
     found = np.full(len(subject.motors), np.nan)
-    try:
-        signals = condition(log, subject)
-    except InputError:  # whoever conditions it next says why
-        return found
     told = resampled(log.time, of_motors(log, kind, subject), signals.time)
     if kind == "motor_current":
-        told = told * signals.subject.torque_constant
+        told = told * subject.torque_constant
     needed = signals.velocity if kind == "motor_velocity" else signals.rigid
     for motor in range(len(subject.motors)):
         known = np.isfinite(told[:, motor]) & np.isfinite(needed[:, motor]) & signals.valid

@@ -19,6 +19,7 @@ from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.series import band_limited
 from hyperleg_design.gap.filtering import CREEP, sticking, stretches
 from hyperleg_design.gap.rigid import turned
+from hyperleg_design.gap.sampling import noise
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.judge import Model
@@ -54,10 +55,10 @@ def held(signals: Signals) -> np.ndarray:
     band = min(BAND, 0.3 / signals.step)
     for joint in range(len(found)):
         torque = band_limited(motion[:, joint], signals.step, band)
-        noise = _noise(motion[rest[:, joint], joint]) * np.sqrt(2 * band * signals.step)
+        level = noise(motion[rest[:, joint], joint]) * np.sqrt(2 * band * signals.step)
         for part in stretches(rest[:, joint], SHORTEST / signals.step):
             range_of_load = OF_LOAD * _half(signals.rigid[part, joint])
-            found[joint] = max(found[joint], _half(torque[part]) - range_of_load - WITHIN * noise)
+            found[joint] = max(found[joint], _half(torque[part]) - range_of_load - WITHIN * level)
     return found
 
 
@@ -111,11 +112,6 @@ def _load(signals: Sequence[Signals], joint: str) -> float:
     place = signals[0].subject.joints.index(joint)
     sent = [applied(s.subject.joint_from_motor, s.believed)[:, place] for s in signals]
     return float(np.nanpercentile(np.abs(np.concatenate(sent)), 90))
-
-
-def _noise(values: np.ndarray) -> float:
-    """Standard deviation of white noise on a slow signal, by the median of its second differences."""
-    return float(np.median(np.abs(np.diff(values, 2)))) / (0.6745 * np.sqrt(6)) if len(values) > 2 else 0.0
 
 
 def _half(values: np.ndarray) -> float:

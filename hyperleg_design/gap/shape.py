@@ -49,13 +49,15 @@ class Shape:
     """For people."""
 
 
+OF_LOAD = "load_over_position"
+"""Shape of a share of the torque that the motion needs."""
 KINDS = {
     "position": "a torque that depends on the joint's position",
     "speed": "a torque that depends on the joint's speed, not in proportion",
     "friction_over_position": "friction that depends on where the joint is",
     "time": "a torque that drifts with time",
     "memory": "a torque that depends on the way the joint came (hysteresis)",
-    "load_over_position": "a share of the load that varies with the joint's position",
+    OF_LOAD: "a share of the load that varies with the joint's position",
     "other_joints": "a torque that depends on other joints' positions and speeds",
     "rhythm": "a torque that repeats in time, whatever the motion",
     "gravity": "gravity from another direction than the model's",
@@ -65,8 +67,6 @@ KINDS = {
 }
 
 
-OF_LOAD = "load_over_position"
-"""Shape of a share of the torque that the motion needs."""
 OF_ENCODER = ("encoder_over_position", "encoder_over_time")
 """Shapes of a position error, which moves the load of other joints too."""
 
@@ -84,7 +84,7 @@ def shapes(samples: Samples, rows: np.ndarray) -> list[Shape]:
         if one.balance == "motion":
             kinds = [k for k in KINDS if k not in ("gravity", "ratio_over_position")]
         elif one.balance in ("drive", "control"):
-            kinds = ["time", "rhythm", "speed", "load_over_position"]
+            kinds = ["time", "rhythm", "speed", OF_LOAD]
         elif one.balance == "transmission":
             kinds = ["ratio_over_position"]
         else:

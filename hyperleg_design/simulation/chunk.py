@@ -215,8 +215,8 @@ class Chunk:
             if self.recording:
                 self.states[substep, :, : 7 + joints], self.states[substep, :, 7 + joints :] = self.drive.qpos, self.drive.qvel
             self.drive.apply(target, self.motor_torque[substep], self.motor_velocity[substep])
-            if self.recording:
-                self._keep_altered(substep)
+            if self.told is not None and self.recording:
+                self._keep_altered(self.told, substep)
             if assisted:
                 self._help()
             self._advance()
@@ -224,12 +224,12 @@ class Chunk:
         if assisted:
             self._push[:, self._pelvis] = 0.0
 
-    def _keep_altered(self, substep: int) -> None:
-        if self.drive.chain is None or self.drive.driven is None or self.altered is None or self.told is None:
-            return
-        driven, kept = self.drive.driven, self.altered[substep]
-        matrix, velocity = self.drive.chain.machine.joint_from_motor, self.drive.qvel[:, 6:]
-        self.told.keep(substep, driven, self.drive.qpos[:, 7:], velocity, self.drive.qvel[:, 3:6])
+    def _keep_altered(self, told: Told, substep: int) -> None:
+        driven, altered = self.drive.driven, self.altered
+        assert driven is not None
+        assert altered is not None
+        matrix, velocity, kept = told.chain.machine.joint_from_motor, self.drive.qvel[:, 6:], altered[substep]
+        told.keep(substep, driven, self.drive.qpos[:, 7:], velocity, self.drive.qvel[:, 3:6])
         kept[0], kept[1] = applied(matrix, driven.transmitted), 0.0
         if driven.joint_damping is not None:
             kept[1] = driven.joint_damping * velocity

@@ -11,10 +11,8 @@ from hyperleg_design.gap.subject import load_subject
 
 
 @pytest.fixture
-def robot(tmp_path):
-    path = tmp_path / "geared.xml"
-    path.write_text(robots.GEARED)
-    return path
+def robot(robot_files):
+    return robot_files["geared"]
 
 
 @pytest.mark.parametrize("side", ["motor", "joint"])

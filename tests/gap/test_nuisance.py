@@ -62,10 +62,8 @@ def targets_alone(seed, **given):
 
 
 @pytest.fixture
-def geared(tmp_path):
-    path = tmp_path / "geared.xml"
-    path.write_text(robots.GEARED)
-    return path
+def geared(robot_files):
+    return robot_files["geared"]
 
 
 def test_gains_take_a_share_of_what_motion_needs_where_nobody_measured_torques(geared):
