@@ -136,7 +136,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             Usual("controller_gain", joint, 0, GAIN),
             Usual("controller_gain", joint, 1, GAIN),
         ]
-    late = LATE + LATE_TICKS * step
+    late, driven = LATE + LATE_TICKS * step, set(driven_motors(subject))
     found += [Usual(effect, "robot", 0, late) for effect in ("command_delay", TORQUES_LATE, FORCES_LATE)]
     found.append(Usual(STEPPED, "robot", 0, OF_STEPPED))
     found += [Usual(effect, foot, 0, SOLES) for foot in subject.feet for effect in (SOLE, SOLE_GIVES)]
@@ -151,8 +151,9 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             Usual("actuator_bandwidth", motor, 0, 0.5 * late),
             Usual(GEARED, motor, 0, OF_SPEED),
             Usual(TOLD_LATE, motor, 0, late),
-            Usual(GIVING, motor, 0, _give(subject, m)),
         ]
+        if motor in driven:
+            found.append(Usual(GIVING, motor, 0, _give(subject, m)))
     for link in EFFECTS["link_mass"].locations(subject):
         own = subject.tree.link_inertial[subject.tree.link(link)]
         arm = max(float(np.linalg.norm(own[1:4] / own[0])), SHORTEST)
@@ -165,7 +166,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             found.append(Usual("ground_compliance", foot, 1, BEARING))
     places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
     places |= {SOLE: set(subject.feet), SOLE_GIVES: set(subject.feet), FORCES_LATE: {ROBOT}, TORQUES_LATE: {ROBOT}, STEPPED: {ROBOT}}
-    places |= {name: set(subject.joints) for name in (TURNOVER, SWUNG)} | {name: set(driven_motors(subject)) for name in SPEEDS}
+    places |= {name: set(subject.joints) for name in (TURNOVER, SWUNG)} | dict.fromkeys(SPEEDS, driven)
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 
 

@@ -83,3 +83,13 @@ def test_a_load_is_weighed_by_targets_and_gains_alone(geared):
     assert cause.location == "shank"
     assert cause.effect in {"payload", "link_mass"}
     assert cause.parameters["mass"].value == pytest.approx(0.5, rel=0.04)
+
+
+def test_a_joint_without_a_drive_has_no_belt(tmp_path):
+    path = tmp_path / "passive.xml"
+    path.write_text(robots.GEARED.replace('<motor name="b" joint="knee" gear="-6" ctrlrange="-8 8"/>', ""))
+    log = robots.geared_run("joint", ("hip", "knee"))
+    signals = diagnosed.conditioned(path, robots.without(log, "motor_velocity"))[0]
+    assert signals.subject.passive.tolist() == [False, True]
+    belts = [one.location for one in usual_errors(signals.subject, signals.step) if one.effect == "stiff_belt"]
+    assert belts == ["hip"]
