@@ -83,6 +83,8 @@ def test_list_speaks_json(capsys):
         (["evaluate", "no/such/policy.onnx", "--out", "x"], ["no/such/policy.onnx"]),
         (["campaign", "start"], ["start", "status"]),
         (["campaign", "status", "no-campaign"], ["no-campaign", "campaign"]),
+        (["train", "--seed", "-1", "--out", "x"], ["seed", "-1", "from 0 on"]),
+        (["gap", "blind", "--cases", "2", "--seed", "-1", "--out", "x"], ["seed", "-1", "from 0 on"]),
     ],
 )
 def test_bad_input_is_one_clear_line_and_exit_code_two(capsys, arguments, words):

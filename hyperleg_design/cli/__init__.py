@@ -51,13 +51,18 @@ def _parse(arguments: list[str]) -> Any:
         arguments = arguments[1:] or ["--help"]
     try:
         with contextlib.redirect_stderr(errors):
-            return tyro.extras.subcommand_cli_from_dict(verbs, prog=prog, description=about, args=arguments, config=(tyro.conf.FlagCreatePairsOff,))
+            command = tyro.extras.subcommand_cli_from_dict(
+                verbs, prog=prog, description=about, args=arguments, config=(tyro.conf.FlagCreatePairsOff,)
+            )
     except SystemExit as stop:
         if not stop.code:
             raise
         text = re.sub(r"[╭╮╰╯│─]+", " ", errors.getvalue())
         text = re.sub(r"\s+", " ", text).strip()
         raise InputError("arguments", "", None, text or "see hyperleg --help") from None
+    if (seed := getattr(command, "seed", None)) is not None and seed < 0:
+        raise InputError("arguments", "seed", seed, "expects a whole number from 0 on")
+    return command
 
 
 def main(arguments: list[str] | None = None) -> int:
