@@ -19,6 +19,7 @@ from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Cause, Design, Fit, parts
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
+from hyperleg_design.gap.loose import Loose, loose
 from hyperleg_design.gap.subject import FULL
 
 if TYPE_CHECKING:
@@ -65,7 +66,9 @@ class Decision:
     together: float
     """Share of the time in which most drives at once do not do what they were told, beside the causes; 0 where that is little."""
     chatter: tuple[str, ...]
-    """Joints that chatter though none of the causes can make them."""
+    """Joints that chatter though none of the causes can make them, and no belt does."""
+    belt: Loose | None
+    """That makes joints chatter; then it is what is named."""
     not_judged: tuple[screen.NotJudged, ...]
 
 
@@ -91,10 +94,11 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     swung += [screen.NotJudged(*name, "its voltage is that of the reference logs") for name in supplied]
-    verdict = "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
+    belt = loose([sieve.signals for sieve in base.samples.sieves]) if shaken and not lost else None
+    verdict = "ambiguous" if belt else "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
     if verdict == "none" and (_fails(base.samples, thresholds) or any(judge.held(chosen, joint) < HELD for joint in judge.holds)):
         verdict = "unknown"
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, (*not_judged, *swung))
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, () if belt else shaken, belt, (*not_judged, *swung))
 
 
 def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> Model:

@@ -153,7 +153,7 @@ class _Report:
         """All of it."""
         judge, found = self.judge, self.found
         verdict = found.verdict
-        named = found.model.causes if verdict in NAMING else ()
+        named = found.model.causes if verdict in NAMING and found.belt is None else ()
         doubts = self.doubts()
         sets: list[list[Model]] = []
         if named:
@@ -164,11 +164,16 @@ class _Report:
         if named and self.doubtful(probabilities[0], sets[0]):
             verdict, named, sets = "none", (), []
         causes, rivals = self.named(probabilities) if verdict != "none" else ((), self.rivals_of_none())
-        if verdict == "unknown":
+        if verdict == "unknown" or found.belt:
             rivals, causes = (*causes, *rivals), ()
         equivalent = tuple(
             (found.model.causes[place].name, *(m.causes[self._differs(m)].name for m in group)) for place, group in enumerate(sets) if group
         )
+        if found.belt:
+            likely = 1 - sum(c.probability for c in rivals)
+            first, second = (replace(c, probability=likely * c.probability) for c in found.belt.causes)
+            causes, rivals = (first,), (second, *rivals)
+            equivalent = (((first.effect, first.location), (second.effect, second.location)),)
         trial = experiment.separating(equivalent[0]) if equivalent else None
         return Diagnosis(
             verdict=verdict, gap=self.gap(bool(named)), where=self.where(), causes=tuple(causes), rivals=tuple(rivals[:MOST_RIVALS]),
@@ -196,7 +201,9 @@ class _Report:
 
     def gap(self, named: bool) -> Shrinkage:
         """Before, after and floor over the rows that count, in their unit."""
-        judge, rows = self.judge, self.found.rows
+        judge, rows, belt = self.judge, self.found.rows, self.found.belt
+        if belt is not None:
+            return Shrinkage(belt.missed, (1 - belt.closed) * belt.missed, 0.0, belt.closed, belt.closed_interval, "Nm")
         samples = judge.base.samples
         model = self.found.model if named else judge.nothing
         scale = float(np.sqrt(judge.row_floor[rows].mean()))
@@ -275,7 +282,7 @@ class _Report:
             models = list({m.names: m for m in [*slot, *([found.model] if found.slots else [])]}.values())
             other = found.model.gain if place == len(slots) - 1 and found.slots else max((m.gain for m in models), default=0.0)
             none = 0.0 if place == 0 else _without(found, place)
-            unlisted = other + (CHATTERS if found.chatter else shaped - rules.unlisted)
+            unlisted = other + (CHATTERS if found.chatter or found.belt else shaped - rules.unlisted)
             scores = np.array([*(rank(m) for m in models), none, unlisted])
             weights = np.exp(rules.temperature * (scores - scores.max()))
             weights /= weights.sum()
@@ -317,6 +324,8 @@ class _Report:
         """What the residual beside the causes looks like."""
         samples = self.judge.base.samples
         found: list[dict[str, Any]] = []
+        if (belt := self.found.belt) is not None:
+            found.append({"shape": "ringing", "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0})
         if self.found.together:
             says = f"for {100 * self.found.together:.1f} % of the time most joints at once do not follow their commands: these get lost or come late"
             found.append({"shape": "lost_commands", "location": "robot", "says": says, "closed_beyond": 0.0, "gain": 0.0})

@@ -174,10 +174,14 @@ def _sized(rig: _Rig, effect: str, wanted: float, rng: np.random.Generator, take
         traces = rig.traces(jobs)
         quiet = replace(rig.recorder, dropped=0.0)
         found = [residual(rig.log(t, j, quiet, 0), rig.chain) if calm(t) else None for t, j in zip(traces, jobs, strict=True)]
+        clean = [f for f in found[:2] if f is not None]
+        if len(clean) < 2:  # motions that shake even the healthy rig to pieces say nothing of sizes
+            best = best or (0.0, replace(draft, size=float(sizes[0])))
+            continue
         ratios = []
         for row in range(1, PROBED + 1):
-            pair = [found[2 * row], found[2 * row + 1]]
-            ratios.append(multiple(pair, found[:2]) if all(p is not None for p in pair) else np.inf)  # type: ignore[arg-type]
+            pair = [f for f in found[2 * row : 2 * row + 2] if f is not None]
+            ratios.append(multiple(pair, clean) if len(pair) == 2 else np.inf)
         size, reached = size_at(np.abs(sizes), np.array(ratios), wanted, SIZES[effect].smallest)
         wrong = replace(draft, size=float(size * np.sign(draft.size)))
         if best is None or reached > best[0]:

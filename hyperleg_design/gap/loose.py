@@ -1,0 +1,236 @@
+"""Belts that give, seen in a joint that chatters: at the chatter's frequency it takes torque that its motor does not give.
+
+On a rigid transmission a motor's torque is what its rotor and joints need, at any frequency: their ratio H is 1, e^(i w T) where
+the true torque is late by T, and 1 / g under gains g times those declared. A belt between them, soft or in its play, makes it small. With
+the joints' inertia I at the motor and the rotor's J on a spring k, H = 1 - w^2 / w_a^2, w_a^2 = k (I + J) / (I J): the loop rings on the
+belt. By how far the rotor then moves beyond its joints, s = (need - torque) / (J w^2), the spring and the play follow. A spring's
+swing is a sine; a rotor that knocks about in its play has harmonics, and the play is at least as wide as it moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap import rigid
+from hyperleg_design.gap.conditioning import applied, resampled
+from hyperleg_design.gap.diagnosis import Named, Value
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.belt import rotor
+from hyperleg_design.gap.smoothing import bridged
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
+
+HALF_WIDTH = 6 / 256
+"""Of the chatter's line, over the log's rate; its frequency wanders with posture and load."""
+LARGEST_RATIO = 0.75
+"""|H| up to which a belt is to blame; gains as wrong as they get, and rotors as light, leave more."""
+COHERENT = 0.95
+"""Least coherence of need and torque; that of noise is small."""
+WORST = 0.5
+"""Torque that is missed, over that of the worst log, from which a log counts."""
+CLEARLY = 2.0
+"""Torque that the motor misses, over that of any other, each over its limit."""
+FOLDS, UNLIKE = 3, 1.35
+"""Multiples of a log's rate that frequencies are looked for beside; frequency by speed over swing, over the true one or its inverse, at most:
+drives filter the speeds that they tell."""
+HARMONIC = 0.05
+"""Third harmonic of the swing over its first, from which play is likelier than a spring."""
+LIKELIER = 0.6
+"""Probability of the likelier of the two (assumed)."""
+UNCERTAIN = 0.2
+"""Of the rotor's inertia and the frequency together, for the interval of a spring (assumed)."""
+WIDTH = 1.5
+"""Play over how far the rotor swings to one side: to and fro, it passes both its ends by a third (measured on simulated belts)."""
+THIRD = 3
+PLAY, SPRING = "backlash", "transmission_elasticity"
+
+
+@dataclass(frozen=True)
+class Loose:
+    """A belt that gives."""
+
+    motor: str
+    frequency: float
+    """Of the chatter in the log where most torque is missed [Hz]."""
+    missed: float
+    """Torque that the joints take and the motor does not give, root mean square [Nm]."""
+    closed: float
+    """Share of it that the ratio of torque to need explains in data that it was not taken from: other logs, or the other half of one."""
+    closed_interval: tuple[float, float]
+    """Of the logs, or halves."""
+    causes: tuple[Named, Named]
+    """Play and a spring, the likelier first."""
+
+    @property
+    def says(self) -> str:
+        """For people."""
+        return (
+            f"rings at {self.frequency:.0f} Hz on its belt: its joints take {self.missed:.2g} Nm (rms) there that it does not give; "
+            "the belt is soft or has play"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Line:
+    """Chatter of one log, as amplitudes in time, `m` motors."""
+
+    frequency: float
+    need: np.ndarray
+    """Torque that joints and rotors need `(t, m)` [Nm], complex."""
+    joints: np.ndarray
+    """The joints alone `(t, m)` [Nm]."""
+    torque: np.ndarray
+    """That is believed of the motors `(t, m)` [Nm]."""
+    turn: np.ndarray
+    """Of the motors with their joints `(t, m)` [rad]."""
+    third: np.ndarray
+    """At three times the frequency `(t, m)` [rad]."""
+
+
+def loose(signals: Sequence[Signals]) -> Loose | None:
+    """The belt that makes joints chatter; None where none does, or it is not clear which."""
+    subject = signals[0].subject
+    lines = _worst([line for line in map(_line, signals) if line is not None], subject)
+    if not lines:
+        return None
+    need, torque = (np.concatenate([getattr(line, name) for line in lines]) for name in ("need", "torque"))
+    both, own, given = (np.einsum("tm,tm->m", a.conj(), b) for a, b in ((need, torque), (need, need), (torque, torque)))
+    size = np.maximum(own.real, 1e-300)
+    ratio = np.abs(both) / size
+    coherence = np.abs(both) / np.sqrt(size * np.maximum(given.real, 1e-300))
+    missed = _rms(need - torque)
+    share = coherence * missed / _limit(subject, torque)
+    first, second = (*np.argsort(-share, kind="stable").tolist(), -1)[:2]
+    beaten = second >= 0 and share[first] < CLEARLY * share[second]
+    if ratio[first] > LARGEST_RATIO or coherence[first] < COHERENT or beaten or not missed[first] > 0:
+        return None
+    most = max(lines, key=lambda one: float(_rms((one.need - one.torque)[:, first])))
+    closed, interval = _closed(lines, first)
+    return Loose(subject.motors[first], most.frequency, float(missed[first]), closed, interval, _causes(subject, first, most, closed))
+
+
+def _worst(lines: Sequence[_Line], subject: Subject) -> list[_Line]:
+    """Those logs in which about as much torque is missed as in the worst."""
+    missed = [float((_rms(line.need - line.torque) / _limit(subject, line.torque)).max()) for line in lines]
+    return [line for line, one in zip(lines, missed, strict=True) if one >= WORST * max(missed)]
+
+
+def _line(signals: Signals) -> _Line | None:
+    if signals.chatter is None or not signals.chatter.joints.any():
+        return None
+    subject, step = signals.subject, signals.step
+    shaken = np.flatnonzero(signals.chatter.joints)
+    strongest = int(shaken[np.argmax(np.mean(signals.chatter.speed[:, shaken] ** 2, 0))])
+    seen = float(signals.chatter.frequency[strongest])
+    apart, faster = _apart(signals, "position", signals.position), _apart(signals, "velocity", signals.velocity)
+    swing, speed = _band(apart, step, seen), float(_rms(_band(faster, step, seen)[:, strongest]))
+    frequency = seen if speed == 0 else _unfolded(seen, 1 / step, speed / float(_rms(swing[:, strongest])))
+    if frequency is None:
+        return None
+    acceleration = -((2 * np.pi * frequency) ** 2) * swing
+    rest = np.zeros_like(signals.position)
+    weight = rigid.inverse_dynamics(subject, signals.position, rest, rest)
+    parts = [rigid.inverse_dynamics(subject, signals.position, rest, part) - weight for part in (acceleration.real, acceleration.imag)]
+    need = applied(subject.motor_from_joint, parts[0]) + 1j * applied(subject.motor_from_joint, parts[1])
+    inertias = np.array([rotor(subject, m) for m in range(len(subject.motors))])
+    third = _folded(THIRD * frequency, 1 / step)
+    return _Line(
+        frequency, need, need - inertias * (acceleration @ subject.joint_from_motor), _band(_filled(signals.believed), step, seen),
+        swing @ subject.joint_from_motor, _band(apart, step, third, HALF_WIDTH / 2) @ subject.joint_from_motor,
+    )  # fmt: skip
+
+
+def _folded(frequency: float, rate: float) -> float:
+    """Where a log's rate shows a frequency [Hz]."""
+    return min(frequency % rate, -frequency % rate)
+
+
+def _unfolded(seen: float, rate: float, told: float) -> float | None:
+    """The frequency that a log's rate may show as another, by speed over swing [rad/s]; None where that fits none."""
+    able = [abs(turn * rate + sign * seen) for turn in range(FOLDS) for sign in (1, -1)]
+    nearest = min(able, key=lambda one: abs(np.log(told / (2 * np.pi * one))))
+    return nearest if 1 / UNLIKE < told / (2 * np.pi * nearest) < UNLIKE else None
+
+
+def _apart(signals: Signals, kind: str, smooth: np.ndarray) -> np.ndarray:
+    """Logged motion less the smoothed, on the ticks `(t, n)`; 0 where it is unknown."""
+    found = resampled(signals.log.time, signals.log.stack(kind, signals.subject.joints), signals.time) - smooth
+    return np.where(np.isfinite(found), found, 0.0)
+
+
+def _filled(values: np.ndarray) -> np.ndarray:
+    """Torques without gaps; 0 where nothing is known."""
+    return np.stack([bridged(column) if np.isfinite(column).any() else np.zeros(len(column)) for column in values.T], -1)
+
+
+def _band(values: np.ndarray, step: float, frequency: float, width: float = HALF_WIDTH) -> np.ndarray:
+    """Amplitude and phase of a line `(t, k)`, complex: the signal about a frequency, those below 0 left out."""
+    about = np.abs(np.fft.fftfreq(len(values), step) - frequency) <= width / step
+    return np.asarray(np.fft.ifft(2 * about[:, None] * np.fft.fft(values, axis=0), axis=0))
+
+
+def _limit(subject: Subject, torque: np.ndarray) -> np.ndarray:
+    """What torques of the motors are measured by `(m,)` [Nm]: their limits, else the largest that was seen."""
+    largest = np.maximum(np.abs(torque).max(0), 1e-9)
+    return np.where(np.isfinite(subject.torque_limit), subject.torque_limit, np.maximum(largest, largest.max()))
+
+
+def _closed(lines: Sequence[_Line], motor: int) -> tuple[float, tuple[float, float]]:
+    """Share of the missed torque that the ratio of torque to need explains in data that it was not taken from; all, and least and most."""
+    parts = [(line.need[:, motor], line.torque[:, motor]) for line in lines]
+    if len(parts) == 1:
+        half = len(parts[0][0]) // 2
+        parts = [(parts[0][0][cut], parts[0][1][cut]) for cut in (slice(None, half), slice(half, None))]
+    both, own = (np.array([np.vdot(need, x) for need, x in pairs]) for pairs in (parts, [(need, need) for need, _ in parts]))
+    ratios = (both.sum() - both) / (own.sum() - own)
+    left = np.array([float(np.sum(np.abs(t - r * n) ** 2)) for (n, t), r in zip(parts, ratios, strict=True)])
+    before = np.array([float(np.sum(np.abs(t - n) ** 2)) for n, t in parts])
+    each = 1 - np.sqrt(left / before)
+    return float(1 - np.sqrt(left.sum() / before.sum())), (float(each.min()), float(each.max()))
+
+
+def _causes(subject: Subject, motor: int, line: _Line, closed: float) -> tuple[Named, Named]:
+    """Play and spring, the likelier first, with what the swing of a log says of their sizes."""
+    place, radians = subject.motors[motor], 2 * np.pi * line.frequency
+    swings = (line.need - line.torque)[:, motor] / (rotor(subject, motor) * radians**2)
+    lines = (line.joints, line.torque, line.need, line.turn, line.third)
+    apart, through, given, need, turned, third = (_rms(x) for x in (swings, *(x[:, motor] for x in lines)))
+    # the phase of a believed torque is uncertain, so that all of it may be missed beside the need, or none
+    missed = apart * rotor(subject, motor) * radians**2
+    compliance = apart / through
+    spring = compliance, compliance * abs(need - given) / missed / (1 + UNCERTAIN), compliance * (need + given) / missed * (1 + UNCERTAIN)
+    seen = float(np.percentile(np.abs(swings), 95)) / float(np.abs(subject.joint_from_motor[:, motor]).max())
+    play = WIDTH * seen, seen, 2 * seen * (1 + UNCERTAIN)
+    likely = LIKELIER if third > HARMONIC * turned else 1 - LIKELIER
+    named = [
+        Named(effect, place, share, closed, _values(effect, subject, place, *size))
+        for effect, share, size in ((PLAY, likely, play), (SPRING, 1 - likely, spring))
+    ]
+    first, second = sorted(named, key=lambda one: -one.probability)
+    return first, second
+
+
+def _rms(values: np.ndarray) -> np.ndarray:
+    """Of complex rows `(t, ...)`, `(...)`."""
+    return np.asarray(np.sqrt(np.mean(np.abs(values) ** 2, 0)))
+
+
+def _values(effect: str, subject: Subject, place: str, *size: float) -> dict[str, Value]:
+    """The first parameter as found, the others as the effect's example has them, and what people call it."""
+    one = EFFECTS[effect]
+    low, high = one.bounds(place, subject)
+    value, least, most = np.clip(size, low[0], high[0])
+    example = one.example(place, subject)
+    found = {p.name: Value(float(v), float(v), float(v), p.unit) for p, v in zip(one.parameters, example, strict=True)}
+    found[one.parameters[0].name] = Value(float(value), float(least), float(most), one.parameters[0].unit)
+    ends = [one.derived(place, np.r_[end, example[1:]], subject) for end in (value, least, most)]
+    for name, (told, unit) in ends[0].items():
+        others = [end[name][0] for end in ends[1:]]
+        found[name] = Value(told, min(others), max(others), unit)
+    return found
