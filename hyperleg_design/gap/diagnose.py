@@ -219,7 +219,10 @@ class _Report:
         return Shrinkage(before * scale, after * scale, min(1.0, after) * scale, closed, (min(low, closed), max(high, closed)), ", ".join(units))
 
     def where(self) -> tuple[Place, ...]:
-        """Shares of the excess, and the regime of each place in which it is most."""
+        """Shares of the excess, and the regime of each place in which it is most; of what rings, if that is what is named."""
+        if (belt := self.found.belt) is not None:
+            ordered = sorted(belt.shares.items(), key=lambda item: (-item[1], item[0]))
+            return tuple(Place(motor, "motor", "all", share) for motor, share in ordered if share >= LEAST_SHARE)
         judge, samples = self.judge, self.judge.base.samples
         whole = np.where(self.found.rows, judge.rows(self.found.model.held.bare), 0.0)
         calm = judge.rows(self.found.model.held.bare)[: len(samples.rows)]

@@ -9,7 +9,7 @@ swing is a sine; a rotor that knocks about in its play has harmonics, and the pl
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -47,6 +47,8 @@ UNCERTAIN = 0.2
 """Of the rotor's inertia and the frequency together, for the interval of a spring (assumed)."""
 WIDTH = 1.5
 """Play over how far the rotor swings to one side: to and fro, it passes both its ends by a third (measured on simulated belts)."""
+SHOWN_PERIODS = 10
+"""Of chatter, for the eye."""
 THIRD = 3
 PLAY, SPRING = "backlash", "transmission_elasticity"
 
@@ -64,6 +66,8 @@ class Loose:
     """Share of it that the ratio of torque to need explains in data that it was not taken from: other logs, or the other half of one."""
     closed_interval: tuple[float, float]
     """Of the logs, or halves."""
+    shares: Mapping[str, float]
+    """Of all motors, in the squares of the torque that is missed, each over its limit."""
     causes: tuple[Named, Named]
     """Play and a spring, the likelier first."""
 
@@ -112,7 +116,24 @@ def loose(signals: Sequence[Signals]) -> Loose | None:
         return None
     most = max(lines, key=lambda one: float(_rms((one.need - one.torque)[:, first])))
     closed, interval = _closed(lines, first)
-    return Loose(subject.motors[first], most.frequency, float(missed[first]), closed, interval, _causes(subject, first, most, closed))
+    shares = dict(zip(subject.motors, (share**2 / np.sum(share**2)).tolist(), strict=True))
+    return Loose(subject.motors[first], most.frequency, float(missed[first]), closed, interval, shares, _causes(subject, first, most, closed))
+
+
+def ringing(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Where a log chatters most: time [s], torque that a motor's joints and rotor need, and its own `(t,)` [Nm], about that frequency.
+
+    None where the log does not chatter.
+    """
+    line = _line(signals)
+    if line is None:
+        return None
+    column = signals.subject.motors.index(motor)
+    need, torque = line.need[:, column], line.torque[:, column]
+    half = round(SHOWN_PERIODS / 2 / line.frequency / signals.step)
+    middle = min(max(int(np.argmax(np.abs(need))), half), len(need) - 1 - half)
+    part = slice(max(middle - half, 0), middle + half + 1)
+    return signals.time[part], need[part].real, torque[part].real
 
 
 def _worst(lines: Sequence[_Line], subject: Subject) -> list[_Line]:

@@ -106,6 +106,21 @@ def trace_figure(shown: Evidence, title: str = "") -> Figure:
         return figure
 
 
+def ringing_figure(motor: str, log: str, time: np.ndarray, need: np.ndarray, torque: np.ndarray) -> Figure:
+    """A motor that rings on its belt: torque that its joints take beside the one that it gives, some periods of it [s], [Nm]."""
+    with figure_style():
+        import matplotlib.pyplot as plt
+
+        figure, panel = plt.subplots(figsize=(10.5, 3.0), layout="constrained")
+        panel.plot(time, need, color=_MEASURED, marker=".", label="joints and rotor take, by their motion")
+        panel.plot(time, torque, color=_EXPLAINED, marker=".", label="the motor gives")
+        panel.set_xlabel("time [s]")
+        panel.set_ylabel("torque [Nm]")
+        panel.set_title(f"{motor}, {log}")
+        panel.legend(ncols=2, loc="upper center", bbox_to_anchor=(0.5, -0.2))
+        return figure
+
+
 def rows_figure(shown: Sequence[Evidence]) -> Figure:
     """Size of the residual of every row before and after."""
     with figure_style():

@@ -6,8 +6,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from hyperleg_design import provenance
 from hyperleg_design.gap.evidence import Evidence, evidence
+from hyperleg_design.gap.loose import ringing
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_text import chosen
 from hyperleg_design.report.page import Cell, Details, Heading, Page, Picture, Section, Table, render
@@ -39,10 +42,11 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     """
     (folder / FIGURES).mkdir(exist_ok=True)
     causes, rivals, gap = list(diagnosis["causes"]), list(diagnosis["rivals"]), diagnosis["gap"]
-    shown = [evidence(one, causes, _balance(one, causes)) for one in signals]
+    traced = [] if _rings(diagnosis) else causes
+    shown = [evidence(one, traced, _balance(one, traced)) for one in signals]
     sections = [
         Section("Where the gap lies", _where(folder, diagnosis, signals, shown)),
-        Section("Measured against predicted", _traces(folder, shown, causes)),
+        Section("Measured against predicted", _ringing(folder, diagnosis, signals) or _traces(folder, shown, causes)),
         Section("Which effect, and how far the gap shrinks", _causes(folder, gap, causes, rivals)),
         Section("What would tell the rivals apart", _next_steps(diagnosis)),
         Section("What these data can show", _limits(diagnosis)),
@@ -66,10 +70,12 @@ def _meaning(diagnosis: Mapping[str, Any]) -> str:
 
 
 def _chatter(diagnosis: Mapping[str, Any]) -> str:
-    """Joints that swing to and fro, if that is what is left."""
-    joints = [one["location"] for one in diagnosis.get("residual_shape", ()) if one["shape"] == "chatter"]
+    """Joints that swing to and fro, if that is what is named, or what is left."""
+    shapes = diagnosis.get("residual_shape", ())
+    said = [f"{one['location']} {one['says']}. " for one in shapes if one["shape"] == "ringing"]
+    joints = [one["location"] for one in shapes if one["shape"] == "chatter"]
     if not joints:
-        return ""
+        return "".join(f" {one}" for one in said)
     return f"What is left first of all: {', '.join(joints)} chatter{'s' if len(joints) == 1 else ''}, as of a loop that is hardly stable."
 
 
@@ -128,7 +134,7 @@ def _where(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals
         save(gap_figures.robot_figure(signals[0].subject, shares), folder / FIGURES / "where.png")
         pictures = [Picture(f"{FIGURES}/where.png", "The robot at rest, its joints coloured by their share of the gap.", wide=False)]
         alike = [one for one in shown if one.balance == shown[0].balance]
-        if len(alike[0].rows) > 1:
+        if len(alike[0].rows) > 1 and not _rings(diagnosis):
             save(gap_figures.rows_figure(alike), folder / FIGURES / "rows.png")
             pictures.append(Picture(f"{FIGURES}/rows.png", "Size of the gap, each joint or motor, before and after.", wide=False))
         content.append(pictures)
@@ -150,6 +156,25 @@ def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[st
                 f"{one.rows[one.worst]} in {one.log}: torque that the model lacks, {says}, but for its rest; right, against speed.",
             )
         )
+    return content
+
+
+def _rings(diagnosis: Mapping[str, Any]) -> str:
+    """The motor that rings on its belt, if that is what is named."""
+    return next((str(one["location"]) for one in diagnosis.get("residual_shape", ()) if one["shape"] == "ringing"), "")
+
+
+def _ringing(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals]) -> list[Any]:
+    """Torque that joints take beside the one that their motor gives, where it rings on its belt."""
+    motor = _rings(diagnosis)
+    content: list[Any] = []
+    found = [(one, shown) for one in signals if motor and (shown := ringing(one, motor)) is not None]
+    found.sort(key=lambda pair: -float(np.abs(pair[1][1] - pair[1][2]).max()))
+    for i, (one, shown) in enumerate(found[:2]):
+        name = f"ringing-{i + 1}.png"
+        save(gap_figures.ringing_figure(motor, one.log.name, *shown), folder / FIGURES / name)
+        says = "on a rigid transmission the two are one; the difference is the rotor's, which moves on its belt."
+        content.append(Picture(f"{FIGURES}/{name}", f"{motor} in {one.log.name} about the frequency at which it chatters: {says}"))
     return content
 
 
