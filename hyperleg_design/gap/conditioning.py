@@ -14,11 +14,12 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import contact, rigid, transmission
 from hyperleg_design.gap.base_motion import base_motion
+from hyperleg_design.gap.channels import GAP, applied, of_motors, resampled, resampled_or_none
 from hyperleg_design.gap.chatter import chatter
 from hyperleg_design.gap.control import control_residual
 from hyperleg_design.gap.ground import balance as ground_balance
 from hyperleg_design.gap.plausibility import frozen
-from hyperleg_design.gap.signals import BaseMotion, Signals
+from hyperleg_design.gap.signals import Signals
 from hyperleg_design.gap.smoothing import smooth
 from hyperleg_design.gap.supply import over_nominal
 
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.smoothing import Smooth
     from hyperleg_design.gap.subject import Subject
 
-GAP = 2.5
-"""Ticks between two samples from which there is a gap."""
 EDGE = 4.0
 """Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a log."""
 STOP = 0.003
@@ -129,16 +128,6 @@ def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
     return np.asarray(beyond & ~wrong_limits(subject, position))
 
 
-def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Rows `(t, k)` through a matrix `(l, k)`, `(t, l)`; NaN only where something unknown is really needed."""
-    unknown = ~np.isfinite(values)
-    if not unknown.any():
-        return np.asarray(values @ matrix.T)
-    product = np.where(unknown, 0.0, values) @ matrix.T
-    product[(unknown.astype(float) @ np.abs(matrix).T) > 0] = np.nan
-    return np.asarray(product)
-
-
 def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray, voltage: np.ndarray | None = None) -> np.ndarray:
     """Motor torques within peak torque and DC-motor line of the nominal motors `(t, m)` [Nm].
 
@@ -158,36 +147,6 @@ def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray, v
         peak = subject.torque_limit[line]
         torque[:, line] = np.clip(np.maximum(np.minimum(torque[:, line], stall - droop), -stall - droop), -peak, peak)
     return torque
-
-
-def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
-    """A signal of the motors, under their names or those of their actuators, on the subject's side of gears `(s, m)`."""
-    own = log.stack(kind, subject.motors)
-    if subject.motor_aliases != subject.motors:
-        own = np.where(np.isfinite(own), own, log.stack(kind, subject.motor_aliases))
-    return own * subject.motor_scale[kind] if kind in subject.motor_scale else own
-
-
-def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Channels `(s, k)` interpolated onto ticks `(t, k)`; NaN where a channel is unknown for more than `GAP` of its own steps."""
-    out = np.full((len(ticks), values.shape[1]), np.nan)
-    for column in range(values.shape[1]):
-        known = np.isfinite(values[:, column])
-        if known.sum() < 2:
-            continue
-        at = time[known]
-        found = np.interp(ticks, at, values[known, column])
-        reach = GAP * float(np.median(np.diff(at)))
-        after = np.clip(np.searchsorted(at, ticks), 0, len(at) - 1)
-        before = np.clip(after - 1, 0, len(at) - 1)
-        near = np.minimum(np.abs(at[after] - ticks), np.abs(ticks - at[before]))
-        out[:, column] = np.where(near <= reach / 2, found, np.nan)
-    return out
-
-
-def resampled_or_none(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray | None:
-    """`resampled`, None where nothing is known."""
-    return resampled(time, values, ticks) if np.isfinite(values).any() else None
 
 
 def _command(
@@ -279,6 +238,3 @@ def _valid(log: Log, ticks: np.ndarray, position: np.ndarray, edge: float) -> np
 
 def _names(names: tuple[str, ...], which: np.ndarray) -> str:
     return ", ".join(n for n, w in zip(names, which, strict=True) if w)
-
-
-__all__ = ["BaseMotion", "applied", "at_stop", "condition", "limited_torque", "of_motors", "resampled", "resampled_or_none", "wrong_limits"]

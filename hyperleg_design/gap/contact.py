@@ -52,7 +52,7 @@ def contacts(
     Raises:
         InputError: a force on a foot that the robot does not have.
     """
-    from hyperleg_design.gap.conditioning import resampled
+    from hyperleg_design.gap.channels import resampled
 
     feet, pads = subject.feet, subject.pads
     pad_names = [p.name for p in pads]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import is_measured
 from hyperleg_design.gap.effects.thermal_derating import rise

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
 from hyperleg_design.gap.ground import footings
 from hyperleg_design.gap.nuisance import stop

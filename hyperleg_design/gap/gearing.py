@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.channels import of_motors, resampled
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
@@ -70,8 +71,6 @@ def _misfit(ratio: np.ndarray) -> np.ndarray:
 
 def _slopes(signals: Signals, kind: str) -> np.ndarray:
     """What the motion of the joints needs over what a log tells, by least squares; the gear where that is before it `(m,)`."""
-    from hyperleg_design.gap.conditioning import of_motors, resampled
-
     log, subject = signals.log, signals.subject
     found = np.full(len(subject.motors), np.nan)
     told = resampled(log.time, of_motors(log, kind, subject), signals.time)

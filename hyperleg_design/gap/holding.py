@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.chatter import chattering
-from hyperleg_design.gap.conditioning import applied
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.series import band_limited

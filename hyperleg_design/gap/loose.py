@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap import rigid
-from hyperleg_design.gap.conditioning import applied, resampled
+from hyperleg_design.gap.channels import applied, resampled
 from hyperleg_design.gap.diagnosis import Named, Value
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.belt import rotor

@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, fields
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.replay import best_input, replay, short_windows
 from hyperleg_design.gap.signals import BALANCES, Signals
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.channels import applied, of_motors
 from hyperleg_design.gap.finding import ERROR, NOTE, WARNING, Finding
 from hyperleg_design.gap.smoothing import bridged
 
@@ -42,7 +43,7 @@ STUCK = 0.5
 
 def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
     """All that does not fit."""
-    found = [*_motion(log), *_targets(log), *_magnitudes(log), *_torques(log), *_stuck(log)]
+    found = [*_motion(log), *_targets(log), *_magnitudes(log), *_torques(log, subject), *_stuck(log)]
     return found + (_robot(log, subject) if subject is not None else [])
 
 
@@ -144,26 +145,23 @@ def _magnitudes(log: Log) -> list[Finding]:
     return found
 
 
-def _torques(log: Log) -> list[Finding]:
+def _torques(log: Log, subject: Subject | None) -> list[Finding]:
     """Measured torque against what the declared gains ask for, and current against torque: units of gains and currents."""
     found: list[Finding] = []
-    gains = log.metadata.gains
-    for joint in log.joints:
-        if joint not in gains or not log.has("position_target", joint):
+    told: set[str] = set()
+    for column, asked, torque in _asked(log, subject):
+        place = column.partition("/")[2]
+        if place in told:
             continue
-        stiffness, damping = gains[joint]
-        error = log.column(f"position_target/{joint}") - log.column(f"position/{joint}")
-        speed = log.column(f"velocity/{joint}") if log.has("velocity", joint) else np.gradient(log.column(f"position/{joint}"), log.time)
-        asked = stiffness * error - damping * speed
-        for kind in ("joint_torque", "motor_torque_command", "motor_torque"):
-            if log.has(kind, joint):
-                slope, fit = _slopes(asked[:, None], log.column(f"{kind}/{joint}")[:, None])
-                if fit[0] < -FITS:
-                    found.append(Finding(WARNING, f"{kind}/{joint}", "runs against what target and gains ask for", "check its sign"))
-                elif fit[0] > STRANGE and any(abs(slope[0] / v - 1) < TOLERANCE for v in (DEGREES, 1 / DEGREES)):
-                    text = f"is {slope[0]:.3g} times what the declared gains ask for: the gains look like Nm/deg, or the torque is off"
-                    found.append(Finding(ERROR, f"{kind}/{joint}", text, "declare gains in Nm/rad and Nms/rad"))
-                break
+        told.add(place)
+        slope, fit = _slopes(asked[:, None], torque[:, None])
+        if fit[0] < -FITS:
+            found.append(Finding(WARNING, column, "runs against what target and gains ask for", "check its sign"))
+        elif fit[0] > STRANGE and any(abs(slope[0] / v - 1) < TOLERANCE for v in (DEGREES, 1 / DEGREES)):
+            text = f"is {slope[0]:.3g} times what the declared gains ask for: the gains look like Nm/deg, or the torque is off"
+            geared = subject is None and not column.startswith("joint_torque")
+            remedy = "declare gains in Nm/rad and Nms/rad" + (", unless a gear of that ratio lies between" if geared else "")
+            found.append(Finding(WARNING if geared else ERROR, column, text, remedy))
     for motor in log.motors:
         if not log.has("motor_current", motor):
             continue
@@ -175,6 +173,29 @@ def _torques(log: Log) -> list[Finding]:
                     text = f"makes {slope[0]:.3g} times the torque with the declared torque constant: it is in mA"
                     found.append(Finding(ERROR, f"motor_current/{motor}", text, "convert to A"))
                 break
+    return found
+
+
+def _asked(log: Log, subject: Subject | None) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Columns of torques, what targets and declared gains ask for there, and what they hold `(t,)` each [Nm].
+
+    Motors are asked through the robot's transmission; of an unknown robot they are taken to sit at the joints that they are called after.
+    """
+    gains = log.metadata.gains
+    joints = subject.joints if subject is not None else tuple(log.joints)
+    asked = np.full((len(log.time), len(joints)), np.nan)
+    for i, joint in enumerate(joints):
+        if joint in gains and joint in log.joints and log.has("position_target", joint):
+            stiffness, damping = gains[joint]
+            error = log.column(f"position_target/{joint}") - log.column(f"position/{joint}")
+            speed = log.column(f"velocity/{joint}") if log.has("velocity", joint) else np.gradient(log.column(f"position/{joint}"), log.time)
+            asked[:, i] = stiffness * error - damping * speed
+    motors = joints if subject is None else subject.motors
+    of_motor = asked if subject is None else applied(subject.motor_from_joint, asked)
+    found = []
+    for kind, names, wanted in (("joint_torque", joints, asked), ("motor_torque_command", motors, of_motor), ("motor_torque", motors, of_motor)):
+        held = log.stack(kind, names) if subject is None or kind == "joint_torque" else of_motors(log, kind, subject)
+        found += [(f"{kind}/{name}", wanted[:, i], held[:, i]) for i, name in enumerate(names) if np.isfinite(held[:, i]).any()]
     return found
 
 

@@ -9,7 +9,8 @@ from hyperleg_design.gap.plausibility import implausible
 class Robot:
     """As much of a subject as this looks at."""
 
-    joints = ("hip", "knee")
+    joints = motors = motor_aliases = ("hip", "knee")
+    motor_from_joint, motor_scale = np.eye(2), {}
     position_low, position_high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
 
 
@@ -45,8 +46,22 @@ def test_everything_in_degrees():
 
 
 def test_gains_in_degrees():
-    found = errors(rig_log(gains={"hip": (20 * np.pi / 180, np.pi / 180), "knee": (20.0, 1.0)}))
-    only(found, "motor_torque_command/hip", "gains look like Nm/deg")
+    log = rig_log(gains={"hip": (20 * np.pi / 180, np.pi / 180), "knee": (20.0, 1.0)})
+    only(errors(log, Robot()), "motor_torque_command/hip", "gains look like Nm/deg")
+    unknown = [f for f in implausible(log) if "Nm/deg" in f.what]
+    assert [f.severity for f in unknown] == [WARNING]
+    assert "gear" in unknown[0].remedy
+
+
+def test_a_gear_of_57_is_no_wrong_unit_and_a_motor_that_is_mounted_the_other_way_is_no_wrong_sign():
+    class Geared(Robot):
+        motor_from_joint = np.diag([1 / 57.3, -1.0])
+
+    turned = {f"{kind}__hip": lambda v: v / 57.3 for kind in ("motor_torque", "motor_torque_command")}
+    turned |= {f"{kind}__knee": np.negative for kind in ("motor_torque", "motor_torque_command")}
+    log = spoiled(rig_log(), **{key: change for key, change in turned.items() if rig_log().has(*key.split("__"))})
+    assert not [f for f in implausible(log, Geared()) if "gains ask for" in f.what]
+    assert {f.severity for f in implausible(log, Robot()) if "gains ask for" in f.what} == {ERROR, WARNING}
 
 
 def test_milliamps():

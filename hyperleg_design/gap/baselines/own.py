@@ -23,7 +23,8 @@ from hyperleg_design.gap import rigid
 from hyperleg_design.gap.baselines.drive_set import KINDS, Fitted, check_logs
 from hyperleg_design.gap.baselines.population import held_targets
 from hyperleg_design.gap.baselines.rollout import Rollout
-from hyperleg_design.gap.conditioning import applied, limited_torque
+from hyperleg_design.gap.channels import applied
+from hyperleg_design.gap.conditioning import limited_torque
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.series import delayed
 

@@ -24,7 +24,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from hyperleg_design.gap import rigid
-from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.placing import at_motor, joint_inertia, motor_velocity
 from hyperleg_design.gap.effects.series import band_limited, first_derivative, lagged, second_derivative
 from hyperleg_design.gap.transmission import turned

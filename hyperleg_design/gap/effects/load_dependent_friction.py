@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.friction import JointFriction, sliding
 from hyperleg_design.gap.effects.placing import at_joint

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.conditioning import applied
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, limited, motor_strength
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
