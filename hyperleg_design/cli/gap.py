@@ -96,7 +96,7 @@ class Apply:
     """Write the causes of a diagnosis as an overlay that simulator, training and evaluation accept; say what it changes."""
 
     diagnosis: Annotated[Path, tyro.conf.Positional]
-    """`diagnosis.json`, or an overlay that was written before."""
+    """`diagnosis.json` or its folder, or an overlay that was written before."""
     out: Path = Path("overlay.yaml")
     """File to write; with `--logs` or `--policy`, what they tell goes to a JSON file of the same name."""
     robot: str = ""

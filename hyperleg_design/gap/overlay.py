@@ -136,13 +136,14 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     """The causes that a `diagnosis.json` names, all of them.
 
     Args:
-        path: of the file.
+        path: of the file, or of the folder that holds it.
         robot: name to write down.
 
     Raises:
         InputError: it cannot be read, or names no cause.
     """
     path = Path(path)
+    path = path / "diagnosis.json" if path.is_dir() else path
     where = short_name(path)
     content = read_json(path)
     if not isinstance(content, dict) or content.get("schema") != 1 or not isinstance(content.get("causes"), list):

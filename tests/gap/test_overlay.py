@@ -104,6 +104,7 @@ def test_a_diagnosis_becomes_an_overlay(tmp_path):
     found = overlay_of_diagnosis(path, "hyperleg")
     assert found.robot == "hyperleg"
     assert found.change == {("coulomb_friction", "left_knee"): {"torque": 1.9}}
+    assert overlay_of_diagnosis(tmp_path, "hyperleg").change == found.change
     assert found.source == {"diagnosis": str(path), "verdict": "explained", "closed": 0.93}
     for broken, message in (
         ({**content, "causes": [], "verdict": "none"}, "nothing to add: the verdict is none"),
