@@ -34,10 +34,10 @@ class Chosen:
 
 @dataclass(frozen=True, kw_only=True)
 class List:
-    """What is shipped: designs, motors, sweeps."""
+    """What is shipped: designs, motors, sweeps, policies."""
 
     kind: Annotated[str, tyro.conf.Positional] = "all"
-    """designs, variants, motors, sweeps, parameters, or all."""
+    """designs, variants, motors, sweeps, policies, parameters, or all."""
     json: bool = False
     """Print JSON."""
 

@@ -12,11 +12,12 @@ A folder of finished trainings (`results/campaign`) has the same form and more f
 
 from __future__ import annotations
 
+import difflib
 import json
 import math
 import re
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -114,8 +115,21 @@ def find_policy(name: str | Path) -> Path:
     named = shipped_folder() / path / POLICY
     if len(path.parts) == 1 and named.is_file():
         return named
-    known = dict.fromkeys(one.training for one in shipped_policies(late=False))
-    raise InputError("policy", "", str(name), f"no such file; shipped: {', '.join(known) or 'none'}")
+    known = shipped_policies(late=False)
+    near = difflib.get_close_matches(str(name), [one.training for one in known], 1)
+    meant = f"did you mean {near[0]}? " if near else ""
+    raise InputError("policy", "", str(name), f"no such file; {meant}Shipped, with their seeds: {_briefly(known) or 'none'}")
+
+
+def _briefly(policies: Sequence[Shipped]) -> str:
+    """Names of trainings, seeds together: `walk-toe-0..4`."""
+    seeds: dict[str, list[int]] = {}
+    for one in policies:
+        seeds.setdefault(f"{one.group}-{one.design}", []).append(one.seed)
+    return ", ".join(
+        f"{name}-{min(own)}..{max(own)}" if len(own) == max(own) - min(own) + 1 > 1 else ", ".join(f"{name}-{s}" for s in own)
+        for name, own in seeds.items()
+    )
 
 
 def learning_curve(training: str | Path, rows: int = CURVE_ROWS) -> list[dict[str, float]]:

@@ -13,7 +13,7 @@ from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.motors import catalogue
 
-KINDS = ("designs", "variants", "motors", "sweeps", "parameters")
+KINDS = ("designs", "variants", "motors", "sweeps", "policies", "parameters")
 
 
 def listing(kind: str = "all") -> dict[str, Any]:
@@ -24,7 +24,14 @@ def listing(kind: str = "all") -> dict[str, Any]:
     """
     if kind != "all" and kind not in KINDS:
         raise InputError("list", "", kind, f"expects one of all, {', '.join(KINDS)}")
-    makers = {"designs": _designs, "variants": lambda: DESCRIPTION, "motors": _motors, "sweeps": _sweeps, "parameters": _parameters}
+    makers = {
+        "designs": _designs,
+        "variants": lambda: DESCRIPTION,
+        "motors": _motors,
+        "sweeps": _sweeps,
+        "policies": _policies,
+        "parameters": _parameters,
+    }
     chosen = KINDS[:-1] if kind == "all" else (kind,)
     return {k: makers[k]() for k in chosen}
 
@@ -64,6 +71,15 @@ def _sweeps() -> dict[str, Any]:
     return {n: {"description": str(read_yaml(resources.find("sweeps", n)).get("description", ""))} for n in resources.names("sweeps")}
 
 
+def _policies() -> dict[str, Any]:
+    from hyperleg_design.evaluation.shipped import shipped_policies
+
+    found: dict[str, Any] = {}
+    for one in shipped_policies():
+        found.setdefault(one.training, {"group": one.group, "design": one.design, "seed": one.seed, "files": []})["files"].append(one.path.name)
+    return found
+
+
 def _parameters() -> dict[str, Any]:
     design = load_design("hyperleg")
     found = {}
@@ -91,6 +107,9 @@ def listing_text(found: dict[str, Any]) -> str:
             parts.append(table(heads, [[n, e["vendor"], e["kind"], *(e[c] for c in columns)] for n, e in entries.items()]))
         elif kind == "designs":
             parts.append(table(["design", "variant", "kg"], [[n, e["variant"], e["total_mass"]] for n, e in entries.items()]))
+        elif kind == "policies":
+            rows = [[n, e["group"], e["design"], str(e["seed"]), str(len(e["files"]) - 1)] for n, e in entries.items()]
+            parts.append(table(["policy", "task", "design", "seed", "late ones"], rows))
         elif kind == "parameters":
             rows = [
                 [n, str(e["value"]), e["unit"], "" if e["low"] is None else f"{e['low']:g} .. {e['high']:g}", e["label"]] for n, e in entries.items()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -74,8 +75,15 @@ def test_a_training_of_a_name_is_found(campaign, tmp_path, monkeypatch):
     monkeypatch.setattr(shipped, "shipped_folder", lambda: campaign)
     assert shipped.find_policy("walk-toe-0") == campaign / "walk-toe-0" / "policy.onnx"
     assert load_policy("walk-toe-0").seed == 3
-    with pytest.raises(InputError, match=r"walk-toe-7.*shipped: t_test-toe_removed_matched-11, walk-toe-0"):
+    with pytest.raises(
+        InputError, match=r"walk-toe-7.*did you mean walk-toe-0\? Shipped, with their seeds: t_test-toe_removed_matched-11, walk-toe-0$"
+    ):
         shipped.find_policy("walk-toe-7")
+
+
+def test_seeds_of_a_name_are_told_together():
+    names = [shipped.Shipped("walk", design, seed, 0, Path()) for design, seed in (("a", 0), ("a", 1), ("a", 2), ("b", 0), ("b", 2), ("c", 4))]
+    assert shipped._briefly(names) == "walk-a-0..2, walk-b-0, walk-b-2, walk-c-4"
 
 
 def test_no_shipped_policy_is_no_error_but_a_wrong_folder_is(tmp_path, monkeypatch):
