@@ -4,7 +4,8 @@ On a rigid transmission a motor's torque is what its rotor and joints need, at a
 the true torque is late by T, and 1 / g under gains g times those declared. A belt between them, soft or in its play, makes it small. With
 the joints' inertia I at the motor and the rotor's J on a spring k, H = 1 - w^2 / w_a^2, w_a^2 = k (I + J) / (I J): the loop rings on the
 belt. By how far the rotor then moves beyond its joints, s = (need - torque) / (J w^2), the spring and the play follow. A spring's
-swing is a sine; a rotor that knocks about in its play has harmonics, and the play is at least as wide as it moves.
+swing is a sine; a rotor that knocks about in its play has harmonics, and the play is at least as wide as it moves. What is missed
+must be more than friction: the bristles of a joint that hardly moves are a spring, too.
 """
 
 from __future__ import annotations
@@ -112,7 +113,8 @@ def loose(signals: Sequence[Signals]) -> Loose | None:
     share = coherence * missed / _limit(subject, torque)
     first, second = (*np.argsort(-share, kind="stable").tolist(), -1)[:2]
     beaten = second >= 0 and share[first] < CLEARLY * share[second]
-    if ratio[first] > LARGEST_RATIO or coherence[first] < COHERENT or beaten or not missed[first] > 0:
+    held = float(np.abs(subject.motor_from_joint[first]) @ subject.coulomb)
+    if ratio[first] > LARGEST_RATIO or coherence[first] < COHERENT or beaten or missed[first] <= held:
         return None
     most = max(lines, key=lambda one: float(_rms((one.need - one.torque)[:, first])))
     closed, interval = _closed(lines, first)

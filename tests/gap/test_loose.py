@@ -113,6 +113,14 @@ def test_nothing_rings_on_a_stiff_belt(robot):
     assert belt(robot, recorded()) is None
 
 
+def test_what_friction_may_hold_is_no_belts(robot, tmp_path):
+    sticky = tmp_path / "sticky.xml"
+    sticky.write_text(MJCF.replace('frictionloss="0.05"', 'frictionloss="500"'))
+    rows = recorded(spring=2000.0)
+    assert belt(robot, rows).missed < 500
+    assert belt(sticky, rows) is None
+
+
 def test_what_rang_before_is_no_news(robot):
     signals = condition(log(recorded(spring=2000.0)), load_subject(robot, [log(recorded(spring=2000.0))]))
     known = replace(signals, chatter=replace(signals.chatter, joints=np.zeros(1, bool)))
