@@ -99,8 +99,10 @@ class _Line:
 
 
 def loose(signals: Sequence[Signals]) -> Loose | None:
-    """The belt that makes joints chatter; None where none does, or it is not clear which."""
+    """The belt that makes joints chatter; None where none does, or it is not clear which, and of robots that stand on their feet."""
     subject = signals[0].subject
+    if subject.floating:  # what a foot on the ground feels at such frequencies nobody knows
+        return None
     lines = _worst([line for line in map(_line, signals) if line is not None], subject)
     if not lines:
         return None

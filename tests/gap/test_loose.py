@@ -124,7 +124,9 @@ def test_what_friction_may_hold_is_no_belts(robot, tmp_path):
 def test_what_rang_before_is_no_news(robot):
     signals = condition(log(recorded(spring=2000.0)), load_subject(robot, [log(recorded(spring=2000.0))]))
     known = replace(signals, chatter=replace(signals.chatter, joints=np.zeros(1, bool)))
+    assert loose([signals]) is not None
     assert loose([known]) is None
+    assert loose([replace(signals, subject=replace(signals.subject, base="floating"))]) is None  # on its feet, nothing is known
 
 
 def test_a_diagnosis_names_the_belt_and_how_to_tell_play_from_softness(robot, tmp_path):
