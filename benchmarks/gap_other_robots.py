@@ -103,6 +103,8 @@ class Case:
 
 KT = ("torque_constant", "transmission_ratio", "controller_gain")
 """Of a weak motor: logs without rotor speeds or measured torques cannot tell them apart, and say so."""
+BELT = ("transmission_elasticity", "backlash")
+"""Of a belt that gives: without rotor speeds a spring and play may look alike."""
 LOAD = ("payload", "link_mass")
 CASES = [
     *(Case(robot, "nothing") for robot in ROBOTS),
@@ -136,6 +138,10 @@ CASES = [
     Case("arm", "tilt", size=0.1), Case("arm", "drag", 1, 1.5), Case("arm", "hysteresis", 1, 3.0), Case("arm", "push", 2, 3.0),
     Case("arm", "patch", 1, 3.0), Case("arm", "lost commands", size=0.3), Case("arm", "ripple", 1, 0.25),
     Case("leg", "hysteresis", 2, 3.0), Case("leg", "patch", 2, 3.0), Case("coupled", "hysteresis", 2, 3.0), Case("coupled", "ripple", 3, 0.3),
+    Case("arm", "soft", 1, 12.0, BELT, ("shoulder", "m_shoulder")),
+    Case("arm", "play", 2, 0.03, BELT, ("elbow", "m_elbow")),
+    Case("leg", "soft", 2, 14.0, BELT, ("knee", "m_knee")),
+    Case("leg", "play", 1, 0.02, BELT, ("hip_pitch", "m_pitch")),
 ]  # fmt: skip
 
 
@@ -175,10 +181,15 @@ def simulate(robot: Robot, case: Case, seed: int, build: int) -> np.ndarray:
     gains[j] *= x if case.wrong == "gain" else 1.0
     weak[j] = x if case.wrong == "weak" else 1.0
     limit[j] = x if case.wrong == "limit" else limit[j]
+    belt = _Belt(case, float(model.dof_armature[j])) if case.wrong in ("soft", "play") else None
+    if belt is not None:
+        model.dof_armature[j] = 0.0
     mujoco.mj_setConst(model, mujoco.MjData(model))
     rng, data, bristle = np.random.default_rng(seed), mujoco.MjData(model), 0.0
     target, middle, past, rows = motion(robot, rng), np.array(robot.middle), [], []
     data.qpos[:] = target[0]
+    if belt is not None:
+        belt.angle = float(target[0, j])
     late = round(x / STEP / TICKS) if case.wrong == "late" else 0
     for tick, wanted in enumerate(target):
         q, v = data.qpos, data.qvel
@@ -204,12 +215,36 @@ def simulate(robot: Robot, case: Case, seed: int, build: int) -> np.ndarray:
             "push": x * float(np.sin(2 * np.pi * 0.9 * tick * STEP + 1) > 0.8),
             "patch": -x * np.exp(-(((q[j] - middle[j] - 0.1) / 0.08) ** 2)) * rubs,
         }.get(case.wrong, 0.0)
+        if belt is not None:
+            data.ctrl[j], data.qfrc_applied[j] = 0.0, belt.pull(float((moment.T @ torque)[j]), float(q[j]), float(v[j]))
         mujoco.mj_step(model, data)
     table, noise = np.array(rows), np.random.default_rng(seed + 1)
     table[:, 5:9] += 5e-5 * noise.normal(size=(len(table), 4))
     table[:, 9:13] += 4e-3 * noise.normal(size=(len(table), 4))
     table[:, 17:21] += 0.004 * model.actuator_ctrlrange[:, 1] * noise.normal(size=(len(table), 4))
     return table
+
+
+class _Belt:
+    """A rotor between its torque and its joint, on a spring of `size` Hz (the joint held) or with a play of `size` rad, at the joint."""
+
+    def __init__(self, case: Case, inertia: float) -> None:
+        self.angle, self.speed, self.inertia = 0.0, 0.0, inertia
+        frequency, self.half = (case.size, 0.0) if case.wrong == "soft" else (60.0, case.size / 2)
+        self.stiffness = inertia * (2 * np.pi * frequency) ** 2
+        self.damping = 0.1 * np.sqrt(self.stiffness * inertia)
+
+    def pull(self, torque: float, place: float, speed: float) -> float:
+        """Mean torque on the joint over a step of the simulation [Nm]."""
+        total, parts = 0.0, 20
+        for part in range(parts):
+            stretch = self.angle - place - speed * STEP * part / parts
+            taut = stretch - min(max(stretch, -self.half), self.half)
+            given = self.stiffness * taut + (self.damping * (self.speed - speed) if taut or not self.half else 0.0)
+            self.speed += STEP / parts * (torque - given) / self.inertia
+            self.angle += STEP / parts * self.speed
+            total += given / parts
+        return total
 
 
 def _moment(model: mujoco.MjModel) -> np.ndarray:
@@ -245,10 +280,13 @@ def main() -> None:
     parser.add_argument("--logs", choices=("all", "torques", "targets"), default="all")
     parser.add_argument("--references", action="store_true")
     parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--only", default="", help="cases whose `wrong` this is")
     options = parser.parse_args()
     counts: dict[str, list[bool]] = {}
     print("| robot | wrong | size | said | right | s |\n|---|---|---|---|---|---|")
     for number, case in enumerate(CASES):
+        if options.only not in ("", case.wrong):
+            continue
         robot, healthy = ROBOTS[case.robot], Case(case.robot, "nothing")
         with TemporaryDirectory() as folder:
             path = Path(folder) / f"{case.robot}.xml"
