@@ -48,6 +48,8 @@ UNCERTAIN = 0.2
 """Of the rotor's inertia and the frequency together, for the interval of a spring (assumed)."""
 WIDTH = 1.5
 """Play over how far the rotor swings to one side: to and fro, it passes both its ends by a third (measured on simulated belts)."""
+BLOCK = 100
+"""Ticks that are held out together where there is one log."""
 SHOWN_PERIODS = 10
 """Of chatter, for the eye."""
 THIRD = 3
@@ -64,9 +66,9 @@ class Loose:
     missed: float
     """Torque that the joints take and the motor does not give, root mean square [Nm]."""
     closed: float
-    """Share of it that the ratio of torque to need explains in data that it was not taken from: other logs, or the other half of one."""
+    """Share of it that the ratio of torque to need explains in data that it was not taken from: other logs, or the other blocks of one."""
     closed_interval: tuple[float, float]
-    """Of the logs, or halves."""
+    """Of the logs, or of odd and even blocks."""
     shares: Mapping[str, float]
     """Of all motors, in the squares of the torque that is missed, each over its limit."""
     causes: tuple[Named, Named]
@@ -154,8 +156,9 @@ def _line(signals: Signals) -> _Line | None:
     strongest = int(shaken[np.argmax(np.mean(signals.chatter.speed[:, shaken] ** 2, 0))])
     seen = float(signals.chatter.frequency[strongest])
     apart, faster = _apart(signals, "position", signals.position), _apart(signals, "velocity", signals.velocity)
-    swing, speed = _band(apart, step, seen), float(_rms(_band(faster, step, seen)[:, strongest]))
-    frequency = seen if speed == 0 else _unfolded(seen, 1 / step, speed / float(_rms(swing[:, strongest])))
+    swing = _band(apart, step, seen)
+    size, speed = (float(_rms(x[:, strongest])) for x in (swing, _band(faster, step, seen)))
+    frequency = seen if speed == 0 else _unfolded(seen, 1 / step, speed / size) if size > 0 else None
     if frequency is None:
         return None
     acceleration = -((2 * np.pi * frequency) ** 2) * swing
@@ -210,8 +213,8 @@ def _closed(lines: Sequence[_Line], motor: int) -> tuple[float, tuple[float, flo
     """Share of the missed torque that the ratio of torque to need explains in data that it was not taken from; all, and least and most."""
     parts = [(line.need[:, motor], line.torque[:, motor]) for line in lines]
     if len(parts) == 1:
-        half = len(parts[0][0]) // 2
-        parts = [(parts[0][0][cut], parts[0][1][cut]) for cut in (slice(None, half), slice(half, None))]
+        odd = np.arange(len(parts[0][0])) // BLOCK % 2 == 1
+        parts = [(parts[0][0][cut], parts[0][1][cut]) for cut in (odd, ~odd)]
     both, own = (np.array([np.vdot(need, x) for need, x in pairs]) for pairs in (parts, [(need, need) for need, _ in parts]))
     ratios = (both.sum() - both) / (own.sum() - own)
     left = np.array([float(np.sum(np.abs(t - r * n) ** 2)) for (n, t), r in zip(parts, ratios, strict=True)])
