@@ -165,18 +165,23 @@ def _sized(rig: _Rig, effect: str, wanted: float, rng: np.random.Generator, take
         draft = draw(rig.chain, effect, rng, taken)
         moves = rig.motions(2, min(PROBE, rig.plan.duration), rng)
         seeds = [int(s) for s in rng.integers(2**31, size=2)]
-        if rig.reach is None:
-            rig.reach = reach_of(rig.traces([((), moves[k], seeds[k]) for k in range(2)]))
         sizes = np.geomspace(SIZES[effect].smallest, SIZES[effect].largest, PROBED) * np.sign(draft.size)
         if effect == "controller_gain" and draft.size < 0:
             sizes = np.maximum(sizes, -0.6)
+        smallest = 0.0, replace(draft, size=float(sizes[0]))
+        if rig.reach is None:
+            healthy = rig.traces([((), moves[k], seeds[k]) for k in range(2)])
+            if not all(calm(trace) for trace in healthy):
+                best = best or smallest
+                continue
+            rig.reach = reach_of(healthy)
         jobs = [((replace(draft, size=float(s)),) if s else (), moves[k], seeds[k]) for s in (0.0, *sizes) for k in range(2)]
         traces = rig.traces(jobs)
         quiet = replace(rig.recorder, dropped=0.0)
         found = [residual(rig.log(t, j, quiet, 0), rig.chain) if calm(t) else None for t, j in zip(traces, jobs, strict=True)]
         clean = [f for f in found[:2] if f is not None]
         if len(clean) < 2:  # motions that shake even the healthy rig to pieces say nothing of sizes
-            best = best or (0.0, replace(draft, size=float(sizes[0])))
+            best = best or smallest
             continue
         ratios = []
         for row in range(1, PROBED + 1):

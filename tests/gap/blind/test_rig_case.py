@@ -5,8 +5,9 @@ import pytest
 
 from hyperleg_design.gap.blind.chain import ROBOTS, chain
 from hyperleg_design.gap.blind.nuisance import of_day, of_robot, perfect
+from hyperleg_design.gap.blind.recorder import Recorder
 from hyperleg_design.gap.blind.rig_build import Reach, build_rig
-from hyperleg_design.gap.blind.rig_case import CALMED, _referred, calm, draw, size_at
+from hyperleg_design.gap.blind.rig_case import ATTEMPTS, CALMED, _referred, _sized, calm, draw, size_at
 from hyperleg_design.gap.blind.truth import parameters, places
 from hyperleg_design.gap.blind.wrong import SIZES, Wrong
 
@@ -51,6 +52,24 @@ def test_reference_logs_are_of_a_rig_that_stays_whole(wild, logs):
     )  # fmt: skip
     assert len(_referred(rig, np.random.default_rng(0))) == logs
     assert len(tries) == min(wild + 1, CALMED)
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_where_even_the_healthy_rig_goes_to_pieces_the_smallest_size_is_taken(known):
+    broken = SimpleNamespace(position=np.full((5, 2), np.nan), velocity=np.zeros((5, 2)))
+    tries = []
+
+    def traces(jobs):
+        tries.append(len(jobs))
+        return [broken] * len(jobs)
+
+    rig = SimpleNamespace(
+        chain=chain("servo"), reach=Reach(np.ones(1), np.ones(1)) if known else None, plan=SimpleNamespace(duration=5.0), traces=traces,
+        recorder=Recorder(), motions=lambda count, duration, rng: [np.zeros((3, 1))] * count,
+    )  # fmt: skip
+    wrong = _sized(rig, "coulomb_friction", 3.0, np.random.default_rng(0), [])
+    assert wrong.size == SIZES["coulomb_friction"].smallest
+    assert len(tries) == ATTEMPTS
 
 
 @pytest.mark.parametrize("name", ROBOTS)
