@@ -66,9 +66,9 @@ class Decision:
     together: float
     """Share of the time in which most drives at once do not do what they were told, beside the causes; 0 where that is little."""
     chatter: tuple[str, ...]
-    """Joints that chatter though none of the causes can make them, and no belt does."""
+    """Joints that chatter though none of the causes can make them."""
     belt: Loose | None
-    """That makes joints chatter; then it is what is named."""
+    """That makes them chatter."""
     not_judged: tuple[screen.NotJudged, ...]
 
 
@@ -95,10 +95,10 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     swung += [screen.NotJudged(*name, "its voltage is that of the reference logs") for name in supplied]
     belt = loose([sieve.signals for sieve in base.samples.sieves]) if shaken and not lost else None
-    verdict = "ambiguous" if belt else "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
+    verdict = "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
     if verdict == "none" and (_fails(base.samples, thresholds) or any(judge.held(chosen, joint) < HELD for joint in judge.holds)):
         verdict = "unknown"
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, () if belt else shaken, belt, (*not_judged, *swung))
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, belt, (*not_judged, *swung))
 
 
 def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> Model:

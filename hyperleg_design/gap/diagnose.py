@@ -34,6 +34,7 @@ from hyperleg_design.gap.thresholds import Thresholds, load_thresholds
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
+    from hyperleg_design.gap.loose import Loose
     from hyperleg_design.gap.signals import Signals
 
 DRAWS = 400
@@ -154,7 +155,7 @@ class _Report:
         """All of it."""
         judge, found = self.judge, self.found
         verdict = found.verdict
-        named = found.model.causes if verdict in NAMING and found.belt is None else ()
+        named = found.model.causes if verdict in NAMING else ()
         doubts = self.doubts()
         sets: list[list[Model]] = []
         if named:
@@ -165,24 +166,20 @@ class _Report:
         if named and self.doubtful(probabilities[0], sets[0]):
             verdict, named, sets = "none", (), []
         causes, rivals = self.named(probabilities) if verdict != "none" else ((), self.rivals_of_none())
-        if verdict == "unknown" or found.belt:
+        if verdict == "unknown":
             rivals, causes = (*causes, *rivals), ()
         equivalent = tuple(
             (found.model.causes[place].name, *(m.causes[self._differs(m)].name for m in group)) for place, group in enumerate(sets) if group
         )
-        if found.belt:
-            likely = 1 - sum(c.probability for c in rivals)
-            first, second = (replace(c, probability=likely * c.probability) for c in found.belt.causes)
-            causes, rivals = (first,), (second, *rivals)
-            equivalent = (((first.effect, first.location), (second.effect, second.location)),)
         trial = experiment.separating(equivalent[0]) if equivalent else None
-        return Diagnosis(
+        told = Diagnosis(
             verdict=verdict, gap=self.gap(bool(named)), where=self.where(), causes=tuple(causes), rivals=tuple(rivals[:MOST_RIVALS]),
             equivalent=equivalent, separating_experiment=None if trial is None else experiment.as_mapping(trial, equivalent[0]),
             not_judged=tuple({"effect": n.effect, "location": n.location, "reason": n.reason} for n in found.not_judged),
             residual_shape=self.shape(), checks=doubts, nuisance=self.nuisance(), provenance=self.provenance(),
             at_rest=tuple({"location": j, "torque": t, "says": sticks(j, t)} for j, t in judge.holds.items()),
         )  # fmt: skip
+        return told if found.belt is None else _of_belt(told, found.belt)
 
     def doubtful(self, table: dict[tuple[tuple[str, str], ...], float], alike_first: Sequence[Model]) -> bool:
         """Whether the first cause and what is like it are rather not it, with a gap that the floor's own doubt may be."""
@@ -202,9 +199,7 @@ class _Report:
 
     def gap(self, named: bool) -> Shrinkage:
         """Before, after and floor over the rows that count, in their unit."""
-        judge, rows, belt = self.judge, self.found.rows, self.found.belt
-        if belt is not None:
-            return Shrinkage(belt.missed, (1 - belt.closed) * belt.missed, 0.0, belt.closed, belt.closed_interval, "Nm")
+        judge, rows = self.judge, self.found.rows
         samples = judge.base.samples
         model = self.found.model if named else judge.nothing
         scale = float(np.sqrt(judge.row_floor[rows].mean()))
@@ -220,10 +215,7 @@ class _Report:
         return Shrinkage(before * scale, after * scale, min(1.0, after) * scale, closed, (min(low, closed), max(high, closed)), ", ".join(units))
 
     def where(self) -> tuple[Place, ...]:
-        """Shares of the excess, and the regime of each place in which it is most; of what rings, if that is what is named."""
-        if (belt := self.found.belt) is not None:
-            ordered = sorted(belt.shares.items(), key=lambda item: (-item[1], item[0]))
-            return tuple(Place(motor, "motor", "all", share) for motor, share in ordered if share >= LEAST_SHARE)
+        """Shares of the excess, and the regime of each place in which it is most."""
         judge, samples = self.judge, self.judge.base.samples
         whole = np.where(self.found.rows, judge.rows(self.found.model.held.bare), 0.0)
         calm = judge.rows(self.found.model.held.bare)[: len(samples.rows)]
@@ -256,7 +248,7 @@ class _Report:
             models = list({m.names: m for m in [*slot, *([found.model] if found.slots else [])]}.values())
             other = found.model.gain if place == len(slots) - 1 and found.slots else max((m.gain for m in models), default=0.0)
             none = 0.0 if place == 0 else _without(found, place)
-            unlisted = other + (CHATTERS if found.chatter or found.belt else shaped - rules.unlisted)
+            unlisted = other + (CHATTERS if found.chatter else shaped - rules.unlisted)
             scores = np.array([*(rank(m) for m in models), none, unlisted])
             weights = np.exp(rules.temperature * (scores - scores.max()))
             weights /= weights.sum()
@@ -298,8 +290,6 @@ class _Report:
         """What the residual beside the causes looks like."""
         samples = self.judge.base.samples
         found: list[dict[str, Any]] = []
-        if (belt := self.found.belt) is not None:
-            found.append({"shape": "ringing", "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0})
         if self.found.together:
             says = f"for {100 * self.found.together:.1f} % of the time most joints at once do not follow their commands: these get lost or come late"
             found.append({"shape": "lost_commands", "location": "robot", "says": says, "closed_beyond": 0.0, "gain": 0.0})
@@ -354,3 +344,21 @@ class _Report:
 def _without(found: Decision, place: int) -> float:
     """Gain of the model before a cause was added, for slots after the first."""
     return max((m.gain for m in found.slots[place - 1] if len(m.causes) == place), default=0.0)
+
+
+def _of_belt(told: Diagnosis, belt: Loose) -> Diagnosis:
+    """A diagnosis that knows no cause of its chatter, with the belt that makes it: of what rings, not of what the balances show."""
+    names = tuple((c.effect, c.location) for c in belt.causes)
+    rivals = [r for r in told.rivals if (r.effect, r.location) not in names]
+    likely = max(1 - sum(r.probability for r in rivals), 0.0)
+    first, second = (replace(c, probability=likely * c.probability) for c in belt.causes)
+    trial = experiment.separating(names)
+    ordered = sorted(belt.shares.items(), key=lambda item: (-item[1], item[0]))
+    rings = {"shape": "ringing", "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0}
+    return replace(
+        told, verdict="ambiguous", gap=Shrinkage(belt.missed, (1 - belt.closed) * belt.missed, 0.0, belt.closed, belt.closed_interval, "Nm"),
+        where=tuple(Place(motor, "motor", "all", share) for motor, share in ordered if share >= LEAST_SHARE),
+        causes=(first,), rivals=(second, *rivals)[:MOST_RIVALS], equivalent=(names,),
+        separating_experiment=None if trial is None else experiment.as_mapping(trial, names),
+        residual_shape=(rings, *(s for s in told.residual_shape if s["shape"] != "chatter")),
+    )  # fmt: skip

@@ -42,11 +42,11 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     """
     (folder / FIGURES).mkdir(exist_ok=True)
     causes, rivals, gap = list(diagnosis["causes"]), list(diagnosis["rivals"]), diagnosis["gap"]
-    traced = [] if _rings(diagnosis) else causes
-    shown = [evidence(one, traced, _balance(one, traced)) for one in signals]
+    motor = _ringing_motor(diagnosis)  # what rings is in no balance
+    shown = [] if motor else [evidence(one, causes, _balance(one, causes)) for one in signals]
     sections = [
         Section("Where the gap lies", _where(folder, diagnosis, signals, shown)),
-        Section("Measured against predicted", _ringing(folder, diagnosis, signals) or _traces(folder, shown, causes)),
+        Section("Measured against predicted", _ringing(folder, motor, signals) if motor else _traces(folder, shown, causes)),
         Section("Which effect, and how far the gap shrinks", _causes(folder, gap, causes, rivals)),
         Section("What would tell the rivals apart", _next_steps(diagnosis)),
         Section("What these data can show", _limits(diagnosis)),
@@ -72,10 +72,9 @@ def _meaning(diagnosis: Mapping[str, Any]) -> str:
 def _chatter(diagnosis: Mapping[str, Any]) -> str:
     """Joints that swing to and fro, if that is what is named, or what is left."""
     shapes = diagnosis.get("residual_shape", ())
-    said = [f"{one['location']} {one['says']}. " for one in shapes if one["shape"] == "ringing"]
     joints = [one["location"] for one in shapes if one["shape"] == "chatter"]
     if not joints:
-        return "".join(f" {one}" for one in said)
+        return "".join(f" {one['location']} {one['says']}." for one in shapes if one["shape"] == "ringing")
     return f"What is left first of all: {', '.join(joints)} chatter{'s' if len(joints) == 1 else ''}, as of a loop that is hardly stable."
 
 
@@ -134,7 +133,7 @@ def _where(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals
         save(gap_figures.robot_figure(signals[0].subject, shares), folder / FIGURES / "where.png")
         pictures = [Picture(f"{FIGURES}/where.png", "The robot at rest, its joints coloured by their share of the gap.", wide=False)]
         alike = [one for one in shown if one.balance == shown[0].balance]
-        if len(alike[0].rows) > 1 and not _rings(diagnosis):
+        if alike and len(alike[0].rows) > 1:
             save(gap_figures.rows_figure(alike), folder / FIGURES / "rows.png")
             pictures.append(Picture(f"{FIGURES}/rows.png", "Size of the gap, each joint or motor, before and after.", wide=False))
         content.append(pictures)
@@ -159,16 +158,15 @@ def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[st
     return content
 
 
-def _rings(diagnosis: Mapping[str, Any]) -> str:
+def _ringing_motor(diagnosis: Mapping[str, Any]) -> str:
     """The motor that rings on its belt, if that is what is named."""
     return next((str(one["location"]) for one in diagnosis.get("residual_shape", ()) if one["shape"] == "ringing"), "")
 
 
-def _ringing(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals]) -> list[Any]:
+def _ringing(folder: Path, motor: str, signals: Sequence[Signals]) -> list[Any]:
     """Torque that joints take beside the one that their motor gives, where it rings on its belt."""
-    motor = _rings(diagnosis)
     content: list[Any] = []
-    found = [(one, shown) for one in signals if motor and (shown := ringing(one, motor)) is not None]
+    found = [(one, shown) for one in signals if (shown := ringing(one, motor)) is not None]
     found.sort(key=lambda pair: -float(np.abs(pair[1][1] - pair[1][2]).max()))
     for i, (one, shown) in enumerate(found[:2]):
         name = f"ringing-{i + 1}.png"
