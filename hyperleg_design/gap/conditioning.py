@@ -99,7 +99,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     if (spin := resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)) is not None:
         spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
         if np.isfinite(spin).any():
-            residual["transmission"], refused = transmission.balance(subject, spin, motion.first)
+            residual["transmission"], refused = transmission.balance(subject, spin, motion.first, step)
             notes += refused
     if others:
         notes.append(f"motors whose logged commands are not those of a controller with stiffness and damping: {', '.join(others)}")

@@ -18,15 +18,18 @@ FARTHEST = 1.6
 """Ratio of a motor's speed to that of its joints over the model's, or its inverse, from which it is of another gear or unit."""
 LEAST = 0.02
 """Speed of a motor, root mean square, below which its ratio is not asked for [rad/s]."""
+SPAN = 0.5
+"""Time over which a motor turns as far as its joints, however its belt swings between [s]."""
 
 
-def balance(subject: Subject, spin: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
+def balance(subject: Subject, spin: np.ndarray, velocity: np.ndarray, step: float) -> tuple[np.ndarray, tuple[str, ...]]:
     """Logged speeds of the motors less those of their joints' motion.
 
     Args:
         subject: the robot.
         spin: logged speed of the motors `(t, m)` [rad/s]; NaN where unknown.
         velocity: of the joints `(t, n)` [rad/s].
+        step: of the ticks [s].
 
     Returns:
         `(t, m)` [rad/s], NaN where unknown; and what was wrong with motors that are left out.
@@ -34,12 +37,13 @@ def balance(subject: Subject, spin: np.ndarray, velocity: np.ndarray) -> tuple[n
     expected = velocity @ subject.joint_from_motor
     residual = spin - expected
     refused = []
+    starts = np.arange(0, len(spin), max(round(SPAN / step), 1))
     for motor, name in enumerate(subject.motors):
         known = np.isfinite(residual[:, motor])
-        own = expected[known, motor]
-        if not known.any() or np.sqrt(np.mean(own**2)) < LEAST:
+        if not known.any() or np.sqrt(np.mean(expected[known, motor] ** 2)) < LEAST:
             continue
-        ratio = float(own @ spin[known, motor] / (own @ own))
+        own, turns = (np.add.reduceat(np.where(known, x[:, motor], 0.0), starts) for x in (expected, spin))
+        ratio = float(own @ turns / (own @ own))
         if not 1 / FARTHEST < ratio < FARTHEST:
             residual[:, motor] = np.nan
             says = f"{ratio:.3g} times what its joints' motion gives: of another gear, unit or sign than the model's, not used"

@@ -29,11 +29,25 @@ def subject(robot_files):
 def test_rotors_that_turn_with_their_joints_leave_nothing(subject):
     velocity = np.random.default_rng(0).normal(size=(50, 2))
     spin = velocity @ subject.joint_from_motor
-    residual, refused = balance(subject, spin, velocity)
+    residual, refused = balance(subject, spin, velocity, 0.005)
     np.testing.assert_allclose(residual, 0, atol=1e-12)
     assert refused == ()
     spin[:10, 1] = np.nan
-    assert np.isnan(balance(subject, spin, velocity)[0]).sum() == 10
+    assert np.isnan(balance(subject, spin, velocity, 0.005)[0]).sum() == 10
+
+
+def test_a_rotor_that_swings_on_its_belt_ends_where_its_joints_do_and_is_used(subject):
+    time = np.arange(0, 5, 0.005)
+    swing = 40 * np.cos(2 * np.pi * 31 * time)
+    velocity = np.stack([np.sin(time), np.cos(2 * time)], -1)
+    velocity[:, 1] -= 0.05 * swing  # its joint is shaken the other way
+    spin = velocity @ subject.joint_from_motor
+    spin[:, 1] += swing
+    expected = (velocity @ subject.joint_from_motor)[:, 1]
+    assert expected @ spin[:, 1] / (expected @ expected) < 0.5  # no gear
+    residual, refused = balance(subject, spin, velocity, 0.005)
+    assert refused == ()
+    np.testing.assert_allclose(residual[:, 1], swing, atol=1e-12)
 
 
 @pytest.mark.parametrize("scale", [9.0, -1.0, 0.1])
