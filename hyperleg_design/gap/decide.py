@@ -19,11 +19,13 @@ from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Cause, Design, Fit, parts
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
+from hyperleg_design.gap.knocking import knocking
 from hyperleg_design.gap.loose import Loose, loose
 from hyperleg_design.gap.subject import FULL
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.samples import Samples
+    from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.thresholds import Thresholds
 
 FINALISTS = 10
@@ -72,7 +74,9 @@ class Decision:
     not_judged: tuple[screen.NotJudged, ...]
 
 
-def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> tuple[Judge, Decision]:
+def decide(
+    base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1, references: Sequence[Signals] = ()
+) -> tuple[Judge, Decision]:
     """Name the causes.
 
     Args:
@@ -80,6 +84,7 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
         thresholds: fixed rules.
         wanted: effects and locations that are tried.
         threads: that share the work.
+        references: logs of the healthy robot.
     """
     judge = Judge(base, thresholds, threads)
     swinging = unsettled(base.samples)
@@ -98,6 +103,8 @@ def decide(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]]
     verdict = "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
     if verdict == "none" and (_fails(base.samples, thresholds) or any(judge.held(chosen, joint) < HELD for joint in judge.holds)):
         verdict = "unknown"
+    if verdict in ("none", "unknown") and belt is None and not lost:
+        belt = knocking([sieve.signals for sieve in base.samples.sieves], references)
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, belt, (*not_judged, *swung))
 
 

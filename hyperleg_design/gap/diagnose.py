@@ -41,6 +41,8 @@ DRAWS = 400
 """Of the block bootstrap."""
 MOST_RIVALS, MOST_SHAPES, MOST_ERRORS = 8, 3, 12
 """Listed."""
+OTHERWISE = 0.15
+"""Probability at most that something else makes a belt's noises (assumed): it would have explained them."""
 LEAST_SHARE = 0.02
 """Of the excess, below which a place is not listed."""
 
@@ -120,7 +122,7 @@ def diagnose_signals(
     ready = prepare(signals, references, rules, threads)
     samples = ready.base.samples
     say(f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue")
-    judge, found = decide(ready.base, rules, screen.places(samples.sieves[0].signals.subject, effects), threads)
+    judge, found = decide(ready.base, rules, screen.places(samples.sieves[0].signals.subject, effects), threads, references)
     say("intervals, rivals and the next experiment")
     return _Report(ready, judge, found, seed, list(signals), list(references), list(checks)).diagnosis()
 
@@ -350,11 +352,13 @@ def _of_belt(told: Diagnosis, belt: Loose) -> Diagnosis:
     """A diagnosis that knows no cause of its chatter, with the belt that makes it: of what rings, not of what the balances show."""
     names = tuple((c.effect, c.location) for c in belt.causes)
     rivals = [r for r in told.rivals if (r.effect, r.location) not in names]
-    likely = max(1 - sum(r.probability for r in rivals), 0.0)
+    beside = sum(r.probability for r in rivals)
+    likely = 1 - min(beside, OTHERWISE)
+    rivals = [replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12)) for r in rivals]
     first, second = (replace(c, probability=likely * c.probability) for c in belt.causes)
     trial = experiment.separating(names)
     ordered = sorted(belt.shares.items(), key=lambda item: (-item[1], item[0]))
-    rings = {"shape": "ringing", "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0}
+    rings = {"shape": belt.shape, "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0}
     return replace(
         told, verdict="ambiguous", gap=Shrinkage(belt.missed, (1 - belt.closed) * belt.missed, 0.0, belt.closed, belt.closed_interval, "Nm"),
         where=tuple(Place(motor, "motor", "all", share) for motor, share in ordered if share >= LEAST_SHARE),

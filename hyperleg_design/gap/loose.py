@@ -42,8 +42,8 @@ FOLDS, UNLIKE = 3, 1.35
 drives filter the speeds that they tell."""
 HARMONIC = 0.05
 """Third harmonic of the swing over its first, from which play is likelier than a spring."""
-LIKELIER = 0.6
-"""Probability of the likelier of the two (assumed)."""
+LIKELIER = 0.7
+"""Probability of the likelier of the two (in development it was that in about eight cases of ten)."""
 UNCERTAIN = 0.2
 """Of the rotor's inertia and the frequency together, for the interval of a spring (assumed)."""
 WIDTH = 1.5
@@ -54,6 +54,8 @@ SHOWN_PERIODS = 10
 """Of chatter, for the eye."""
 THIRD = 3
 PLAY, SPRING = "backlash", "transmission_elasticity"
+RINGING, KNOCKING = "ringing", "knocking"
+"""How a belt that gives is known: here, or by `knocking`."""
 
 
 @dataclass(frozen=True)
@@ -61,26 +63,22 @@ class Loose:
     """A belt that gives."""
 
     motor: str
+    shape: str
+    """How it is known: `RINGING` or `KNOCKING`."""
+    says: str
+    """For people."""
     frequency: float
-    """Of the chatter in the log where most torque is missed [Hz]."""
+    """Of the chatter in the log where most torque is missed [Hz]; NaN of knocks."""
     missed: float
-    """Torque that the joints take and the motor does not give, root mean square [Nm]."""
+    """Torque that the joints take and the motor does not give, or that nobody told of, root mean square [Nm]."""
     closed: float
-    """Share of it that the ratio of torque to need explains in data that it was not taken from: other logs, or the other blocks of one."""
+    """Share of it that is explained, in data that it was not taken from."""
     closed_interval: tuple[float, float]
     """Of the logs, or of odd and even blocks."""
     shares: Mapping[str, float]
-    """Of all motors, in the squares of the torque that is missed, each over its limit."""
+    """Of all motors, in the squares of what is missed."""
     causes: tuple[Named, Named]
     """Play and a spring, the likelier first."""
-
-    @property
-    def says(self) -> str:
-        """For people."""
-        return (
-            f"rings at {self.frequency:.0f} Hz on its belt: its joints take {self.missed:.2g} Nm (rms) there that it does not give; "
-            "the belt is soft or has play"
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +121,12 @@ def loose(signals: Sequence[Signals]) -> Loose | None:
     most = max(lines, key=lambda one: float(_rms((one.need - one.torque)[:, first])))
     closed, interval = _closed(lines, first)
     shares = dict(zip(subject.motors, (share**2 / np.sum(share**2)).tolist(), strict=True))
-    return Loose(subject.motors[first], most.frequency, float(missed[first]), closed, interval, shares, _causes(subject, first, most, closed))
+    lacking = float(missed[first])
+    says = (
+        f"rings at {most.frequency:.0f} Hz on its belt: its joints take {lacking:.2g} Nm (rms) there that it does not give; "
+        "the belt is soft or has play"
+    )
+    return Loose(subject.motors[first], RINGING, says, most.frequency, lacking, closed, interval, shares, _causes(subject, first, most, closed))
 
 
 def ringing(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
@@ -237,7 +240,7 @@ def _causes(subject: Subject, motor: int, line: _Line, closed: float) -> tuple[N
     play = WIDTH * seen, seen, 2 * seen * (1 + UNCERTAIN)
     likely = LIKELIER if third > HARMONIC * turned else 1 - LIKELIER
     named = [
-        Named(effect, place, share, closed, _values(effect, subject, place, *size))
+        Named(effect, place, share, closed, valued(effect, subject, place, size))
         for effect, share, size in ((PLAY, likely, play), (SPRING, 1 - likely, spring))
     ]
     first, second = sorted(named, key=lambda one: -one.probability)
@@ -249,12 +252,20 @@ def _rms(values: np.ndarray) -> np.ndarray:
     return np.asarray(np.sqrt(np.mean(np.abs(values) ** 2, 0)))
 
 
-def _values(effect: str, subject: Subject, place: str, *size: float) -> dict[str, Value]:
-    """The first parameter as found, the others as the effect's example has them, and what people call it."""
+def valued(effect: str, subject: Subject, place: str, size: Sequence[float], side: float = 0.0) -> dict[str, Value]:
+    """Parameters of play or a spring, and what people call them: value, low and high of the first, the others as its example has them.
+
+    Args:
+        effect: `PLAY` or `SPRING`.
+        subject: the robot.
+        place: motor.
+        size: first parameter: value, low and high.
+        side: on which the encoders sit: 0, at the joints, or 1, on the rotors.
+    """
     one = EFFECTS[effect]
     low, high = one.bounds(place, subject)
     value, least, most = np.clip(size, low[0], high[0])
-    example = one.example(place, subject)
+    example = np.array([side if p.name == "side" else v for p, v in zip(one.parameters, one.example(place, subject), strict=True)])
     found = {p.name: Value(float(v), float(v), float(v), p.unit) for p, v in zip(one.parameters, example, strict=True)}
     found[one.parameters[0].name] = Value(float(value), float(least), float(most), one.parameters[0].unit)
     ends = [one.derived(place, np.r_[end, example[1:]], subject) for end in (value, least, most)]

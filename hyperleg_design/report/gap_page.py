@@ -10,7 +10,7 @@ import numpy as np
 
 from hyperleg_design import provenance
 from hyperleg_design.gap.evidence import Evidence, evidence
-from hyperleg_design.gap.loose import ringing
+from hyperleg_design.gap.loose import KNOCKING, RINGING, ringing
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_text import chosen
 from hyperleg_design.report.page import Cell, Details, Heading, Page, Picture, Section, Table, render
@@ -74,7 +74,7 @@ def _chatter(diagnosis: Mapping[str, Any]) -> str:
     shapes = diagnosis.get("residual_shape", ())
     joints = [one["location"] for one in shapes if one["shape"] == "chatter"]
     if not joints:
-        return "".join(f" {one['location']} {one['says']}." for one in shapes if one["shape"] == "ringing")
+        return "".join(f" {one['location']} {one['says']}." for one in shapes if one["shape"] in (RINGING, KNOCKING))
     return f"What is left first of all: {', '.join(joints)} chatter{'s' if len(joints) == 1 else ''}, as of a loop that is hardly stable."
 
 
@@ -160,7 +160,7 @@ def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[st
 
 def _ringing_motor(diagnosis: Mapping[str, Any]) -> str:
     """The motor that rings on its belt, if that is what is named."""
-    return next((str(one["location"]) for one in diagnosis.get("residual_shape", ()) if one["shape"] == "ringing"), "")
+    return next((str(one["location"]) for one in diagnosis.get("residual_shape", ()) if one["shape"] == RINGING), "")
 
 
 def _ringing(folder: Path, motor: str, signals: Sequence[Signals]) -> list[Any]:
