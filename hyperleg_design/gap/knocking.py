@@ -37,6 +37,8 @@ BEYOND_ROW = 0.1
 """Of it, beyond the share that the row of any one joint has: that may be a torque."""
 OF_REFERENCES = 0.6
 """Of the knocks' strength, at most that reference logs may show at the same joint: so healthy joints knock, too."""
+SHOWN = 0.6
+"""For the eye [s]."""
 SIZES, WIDEST = 25, 30.0
 """Sizes that are tried, and how far from the usual one."""
 SPREAD = 2.5
@@ -88,18 +90,39 @@ def knocking(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> 
     return Loose(place, KNOCKING, says, np.nan, missed, closed, (min(each), max(each)), dict(zip(subject.motors, fair.tolist(), strict=True)), causes)
 
 
+def struck(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where a log is hit hardest: time `(t,)` [s], what the balance of motion leaves there, and what of it is in the proportions of
+    a motion of a motor's joints, `(t, n)` [Nm] both, between `LOWEST` and `HIGHEST`.
+    """
+    fast = _between(signals, signals.residual["motion"], LOWEST)
+    scale = _scale(fast)
+    column = _column(signals.subject, signals.position, signals.subject.motors.index(motor)) / scale
+    size = np.einsum("tn,tn->t", column, fast / scale) / np.maximum(np.einsum("tn,tn->t", column, column), 1e-12)
+    explained = size[:, None] * column * scale
+    half = round(SHOWN / 2 / signals.step)
+    hardest = np.where(signals.valid, np.sum((explained / scale) ** 2, 1), 0.0)
+    middle = min(max(int(hardest.argmax()), half), len(fast) - 1 - half)
+    part = slice(max(middle - half, 0), middle + half + 1)
+    return signals.time[part], fast[part], explained[part]
+
+
 def _knocks(signals: Signals) -> _Knocks:
     subject, fast = signals.subject, _between(signals, signals.residual["motion"], LOWEST)
     scale = _scale(fast)
     when = (np.abs(fast) > EPISODE * scale).any(1) & signals.valid
     position, fast = signals.position[when], fast[when]
-    rest = np.zeros_like(position)
-    weight = rigid.inverse_dynamics(subject, position, rest, rest, rotors=False)
     explained = np.zeros((len(fast), len(subject.motors)))
-    for motor, share in enumerate(subject.motor_from_joint):
-        column = (rigid.inverse_dynamics(subject, position, rest, rest + share, rotors=False) - weight) / scale
+    for motor in range(len(subject.motors)):
+        column = _column(subject, position, motor) / scale
         explained[:, motor] = np.einsum("tn,tn->t", column, fast / scale) ** 2 / np.maximum(np.einsum("tn,tn->t", column, column), 1e-12)
     return _Knocks(fast / scale, explained, fast, int(signals.valid.sum()))
+
+
+def _column(subject: Subject, position: np.ndarray, motor: int) -> np.ndarray:
+    """Torque that a unit of acceleration of a motor's joints needs `(t, n)`."""
+    rest = np.zeros_like(position)
+    weight = rigid.inverse_dynamics(subject, position, rest, rest, rotors=False)
+    return np.asarray(rigid.inverse_dynamics(subject, position, rest, rest + subject.motor_from_joint[motor], rotors=False) - weight)
 
 
 def _between(signals: Signals, values: np.ndarray, lowest: float) -> np.ndarray:

@@ -121,6 +121,22 @@ def ringing_figure(motor: str, log: str, time: np.ndarray, need: np.ndarray, tor
         return figure
 
 
+def knocking_figure(joints: Sequence[str], log: str, time: np.ndarray, left: np.ndarray, explained: np.ndarray) -> Figure:
+    """A joint that knocks about unseen: torques that the model lacks, beside those of a hidden motion, `(t, n)` [Nm] over [s]."""
+    with figure_style():
+        import matplotlib.pyplot as plt
+
+        figure, panels = plt.subplots(1, len(joints), figsize=(10.5, 3.0), layout="constrained", squeeze=False)
+        for panel, joint, measured, moved in zip(panels[0], joints, left.T, explained.T, strict=True):
+            panel.plot(time, measured, color=_MEASURED, marker=".", label="the model lacks")
+            panel.plot(time, moved, color=_EXPLAINED, label="a motion that no encoder tells")
+            panel.set_xlabel("time [s]")
+            panel.set_ylabel("torque [Nm]")
+            panel.set_title(f"{joint}, {log}")
+        panels[0][0].legend(ncols=2, loc="upper left", bbox_to_anchor=(0.0, -0.2))
+        return figure
+
+
 def rows_figure(shown: Sequence[Evidence]) -> Figure:
     """Size of the residual of every row before and after."""
     with figure_style():

@@ -10,6 +10,7 @@ import numpy as np
 
 from hyperleg_design import provenance
 from hyperleg_design.gap.evidence import Evidence, evidence
+from hyperleg_design.gap.knocking import struck
 from hyperleg_design.gap.loose import KNOCKING, RINGING, ringing
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_text import chosen
@@ -42,11 +43,11 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     """
     (folder / FIGURES).mkdir(exist_ok=True)
     causes, rivals, gap = list(diagnosis["causes"]), list(diagnosis["rivals"]), diagnosis["gap"]
-    motor = _ringing_motor(diagnosis)  # what rings is in no balance
-    shown = [] if motor else [evidence(one, causes, _balance(one, causes)) for one in signals]
+    shape, motor = _belt(diagnosis)  # what rings is in no balance
+    shown = [] if shape == RINGING else [evidence(one, causes, _balance(one, causes)) for one in signals]
     sections = [
         Section("Where the gap lies", _where(folder, diagnosis, signals, shown)),
-        Section("Measured against predicted", _ringing(folder, motor, signals) if motor else _traces(folder, shown, causes)),
+        Section("Measured against predicted", _noises(folder, shape, motor, signals) if motor else _traces(folder, shown, causes)),
         Section("Which effect, and how far the gap shrinks", _causes(folder, gap, causes, rivals)),
         Section("What would tell the rivals apart", _next_steps(diagnosis)),
         Section("What these data can show", _limits(diagnosis)),
@@ -158,9 +159,15 @@ def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[st
     return content
 
 
-def _ringing_motor(diagnosis: Mapping[str, Any]) -> str:
-    """The motor that rings on its belt, if that is what is named."""
-    return next((str(one["location"]) for one in diagnosis.get("residual_shape", ()) if one["shape"] == RINGING), "")
+def _belt(diagnosis: Mapping[str, Any]) -> tuple[str, str]:
+    """How a belt that gives is known, and its motor, if that is what is named."""
+    shapes = diagnosis.get("residual_shape", ())
+    return next(((str(one["shape"]), str(one["location"])) for one in shapes if one["shape"] in (RINGING, KNOCKING)), ("", ""))
+
+
+def _noises(folder: Path, shape: str, motor: str, signals: Sequence[Signals]) -> list[Any]:
+    """Torques by which a belt is known that rings, or lets its joints knock about."""
+    return _ringing(folder, motor, signals) if shape == RINGING else _knocking(folder, motor, signals)
 
 
 def _ringing(folder: Path, motor: str, signals: Sequence[Signals]) -> list[Any]:
@@ -173,6 +180,20 @@ def _ringing(folder: Path, motor: str, signals: Sequence[Signals]) -> list[Any]:
         save(gap_figures.ringing_figure(motor, one.log.name, *shown), folder / FIGURES / name)
         says = "on a rigid transmission the two are one; the difference is the rotor's, which moves on its belt."
         content.append(Picture(f"{FIGURES}/{name}", f"{motor} in {one.log.name} about the frequency at which it chatters: {says}"))
+    return content
+
+
+def _knocking(folder: Path, motor: str, signals: Sequence[Signals]) -> list[Any]:
+    """Torques that the model lacks in the joints that tell most, beside those of a motion that no encoder tells."""
+    content: list[Any] = []
+    found = [(one, *struck(one, motor)) for one in signals]
+    found.sort(key=lambda row: -float(np.abs(row[3]).max()))
+    for i, (one, time, left, explained) in enumerate(found[:2]):
+        told = np.argsort(-np.mean(explained**2, 0), kind="stable")[:2]
+        name, joints = f"knocking-{i + 1}.png", one.subject.joints
+        save(gap_figures.knocking_figure([joints[j] for j in told], one.log.name, time, left[:, told], explained[:, told]), folder / FIGURES / name)
+        says = "two joints at once, in the proportions that one hidden motion makes; a torque would show in one of them."
+        content.append(Picture(f"{FIGURES}/{name}", f"{one.log.name}, where it knocks hardest: {says}"))
     return content
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.diagnose import diagnose
-from hyperleg_design.gap.knocking import knocking
+from hyperleg_design.gap.knocking import knocking, struck
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.metadata import Metadata
 from hyperleg_design.gap.subject import load_subject
@@ -123,6 +123,14 @@ def test_healthy_arms_do_not_knock(robot):
     assert heard(robot, arm(seed=1), arm(seed=2)) is None
 
 
+def test_a_hidden_motion_explains_both_joints_where_it_knocks_hardest(robot):
+    log = arm((0.0, 0.02), seed=1)
+    time, left, explained = struck(condition(log, load_subject(robot, [log])), "elbow")
+    assert len(time) == len(left) == len(explained)
+    assert np.sum((left - explained) ** 2) < 0.2 * np.sum(left**2)
+    assert (np.sum(explained**2, 0) > 0.1 * np.sum(explained**2)).all()
+
+
 def test_torques_that_hit_one_joint_are_no_play(robot):
     assert heard(robot, arm(bumps=3.0, seed=1), arm(bumps=3.0, seed=2)) is None
 
@@ -151,3 +159,4 @@ def test_the_diagnosis_says_so_and_its_page_shows_it(robot, tmp_path):
     subject = load_subject(robot, logs)
     page = write_gap_page(tmp_path, found.mapping(), [condition(one, subject) for one in logs]).read_text()
     assert "elbow knocks about" in page
+    assert "figures/knocking-1.png" in page
