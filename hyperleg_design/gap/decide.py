@@ -15,6 +15,7 @@ import numpy as np
 from hyperleg_design.gap import screen, shaping
 from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.chatter import unsettled
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Cause, Design, Fit, parts
@@ -26,6 +27,7 @@ from hyperleg_design.gap.subject import FULL
 if TYPE_CHECKING:
     from hyperleg_design.gap.samples import Samples
     from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
     from hyperleg_design.gap.thresholds import Thresholds
 
 FINALISTS = 10
@@ -99,13 +101,38 @@ def decide(
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     swung += [screen.NotJudged(*name, "its voltage is that of the reference logs") for name in supplied]
-    belt = loose([sieve.signals for sieve in base.samples.sieves]) if shaken and not lost else None
-    verdict = "unknown" if lost or shaken else _verdict(judge, chosen, rows, shaped)
+    signals = [sieve.signals for sieve in base.samples.sieves]
+    belt = loose(signals) if shaken and not lost else None
+    verdict = _verdict(judge, chosen, rows, shaped)
+    if belt is not None and verdict == "explained" and (others := _elsewhere(chosen, belt, signals[0].subject)):
+        if len(others) < len(chosen.causes):  # what it leaves at its own motor and joints looks like limits and constants
+            chosen = judge.model(others)
+            rows, slots = judge.excess_rows(chosen), [(chosen,) for _ in others]
+        shaken = ()
+    elif lost or shaken:
+        verdict = "unknown"
     if verdict == "none" and (_fails(base.samples, thresholds) or any(judge.held(chosen, joint) < HELD for joint in judge.holds)):
         verdict = "unknown"
-    if verdict in ("none", "unknown") and belt is None and not lost:
-        belt = knocking([sieve.signals for sieve in base.samples.sieves], references)
+    if belt is None and not lost:
+        belt = knocking(signals, references, [_motion(chosen, one) for one in signals] if verdict == "explained" else ())
+        if belt is not None and verdict == "explained" and len(_elsewhere(chosen, belt, signals[0].subject)) < len(chosen.causes):
+            belt = None
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, belt, (*not_judged, *swung))
+
+
+def _elsewhere(chosen: Model, belt: Loose, subject: Subject) -> tuple[Cause, ...]:
+    """Causes that are not at the motor or the joints of a belt that gives."""
+    own = {belt.motor, *(subject.joints[j] for j in np.flatnonzero(subject.motor_from_joint[subject.motors.index(belt.motor)]))}
+    return tuple(c for c in chosen.causes if c.location not in own)
+
+
+def _motion(model: Model, signals: Signals) -> np.ndarray:
+    """What causes leave in a log's balance of motion `(t, n)` [Nm]."""
+    found = np.zeros_like(signals.position)
+    for place, cause in enumerate(model.causes):
+        trace = EFFECTS[cause.effect].trace(signals, cause.location, model.values(place)[None])
+        found += trace["motion"][0] if "motion" in trace else 0.0
+    return found
 
 
 def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str, str]], threads: int = 1) -> Model:

@@ -349,20 +349,29 @@ def _without(found: Decision, place: int) -> float:
 
 
 def _of_belt(told: Diagnosis, belt: Loose) -> Diagnosis:
-    """A diagnosis that knows no cause of its chatter, with the belt that makes it: of what rings, not of what the balances show."""
+    """A diagnosis with the belt that rings or lets its joints knock: beside what is named already, or instead of nothing.
+
+    Where nothing is named, the gap is that of the belt: what rings is in no balance.
+    """
     names = tuple((c.effect, c.location) for c in belt.causes)
     rivals = [r for r in told.rivals if (r.effect, r.location) not in names]
     beside = sum(r.probability for r in rivals)
-    likely = 1 - min(beside, OTHERWISE)
-    rivals = [replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12)) for r in rivals]
+    likely = 1 - (OTHERWISE if told.causes else min(beside, OTHERWISE))
     first, second = (replace(c, probability=likely * c.probability) for c in belt.causes)
+    noise = {"shape": belt.shape, "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0}
+    shapes = (noise, *(s for s in told.residual_shape if s["shape"] != "chatter"))
+    if told.causes:
+        return replace(
+            told, verdict="ambiguous", causes=(*told.causes, first), rivals=(*rivals, second)[:MOST_RIVALS], equivalent=(*told.equivalent, names),
+            residual_shape=shapes,
+        )  # fmt: skip
+    rivals = [replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12)) for r in rivals]
     trial = experiment.separating(names)
     ordered = sorted(belt.shares.items(), key=lambda item: (-item[1], item[0]))
-    rings = {"shape": belt.shape, "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0}
     return replace(
         told, verdict="ambiguous", gap=Shrinkage(belt.missed, (1 - belt.closed) * belt.missed, 0.0, belt.closed, belt.closed_interval, "Nm"),
         where=tuple(Place(motor, "motor", "all", share) for motor, share in ordered if share >= LEAST_SHARE),
         causes=(first,), rivals=(second, *rivals)[:MOST_RIVALS], equivalent=(names,),
         separating_experiment=None if trial is None else experiment.as_mapping(trial, names),
-        residual_shape=(rings, *(s for s in told.residual_shape if s["shape"] != "chatter")),
+        residual_shape=shapes,
     )  # fmt: skip

@@ -8,6 +8,7 @@ a hidden motion from a hidden torque, and whose it is. The size is that at which
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -58,13 +59,17 @@ class _Knocks(NamedTuple):
     """Of the whole log."""
 
 
-def knocking(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> Loose | None:
+def knocking(signals: Sequence[Signals], references: Sequence[Signals] = (), known: Sequence[np.ndarray] = ()) -> Loose | None:
     """The belt whose joints knock about where encoders do not see it; None where none does, and of robots that stand on their feet.
 
     Args:
         signals: logs to be diagnosed.
         references: logs of the healthy robot.
+        known: what causes explain of each log's balance of motion `(t, n)` [Nm]; nothing by default.
     """
+    if known:
+        lefts = [{**one.residual, "motion": one.residual["motion"] - part} for one, part in zip(signals, known, strict=True)]
+        signals = [replace(one, residual=left) for one, left in zip(signals, lefts, strict=True)]
     subject = signals[0].subject
     if subject.floating or len(subject.joints) < 2:  # one joint alone has no other row to tell motion from torque by
         return None

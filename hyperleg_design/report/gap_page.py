@@ -44,10 +44,12 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     (folder / FIGURES).mkdir(exist_ok=True)
     causes, rivals, gap = list(diagnosis["causes"]), list(diagnosis["rivals"]), diagnosis["gap"]
     shape, motor = _belt(diagnosis)  # what rings is in no balance
-    shown = [] if shape == RINGING else [evidence(one, causes, _balance(one, causes)) for one in signals]
+    others = [cause for cause in causes if cause["location"] != motor]
+    shown = [] if shape == RINGING and not others else [evidence(one, others or causes, _balance(one, others or causes)) for one in signals]
+    pictures = [*(_noises(folder, shape, motor, signals) if motor else []), *(_traces(folder, shown, others) if others or not motor else [])]
     sections = [
         Section("Where the gap lies", _where(folder, diagnosis, signals, shown)),
-        Section("Measured against predicted", _noises(folder, shape, motor, signals) if motor else _traces(folder, shown, causes)),
+        Section("Measured against predicted", pictures),
         Section("Which effect, and how far the gap shrinks", _causes(folder, gap, causes, rivals)),
         Section("What would tell the rivals apart", _next_steps(diagnosis)),
         Section("What these data can show", _limits(diagnosis)),

@@ -160,3 +160,15 @@ def test_the_diagnosis_says_so_and_its_page_shows_it(robot, tmp_path):
     page = write_gap_page(tmp_path, found.mapping(), [condition(one, subject) for one in logs]).read_text()
     assert "elbow knocks about" in page
     assert "figures/knocking-1.png" in page
+
+
+def test_another_cause_is_named_beside_it(robot):
+    """A shoulder whose drive tells 1.3 times its torque, and an elbow with play."""
+    plain = [arm((0.0, 0.02), seed=s) for s in (1, 2)]
+    logs = [log.changed(signals={**log.signals, "motor_torque/shoulder": 1.3 * log.column("motor_torque/shoulder")}) for log in plain]
+    found = diagnose(robot, logs, [arm(seed=s, role="reference") for s in (3, 4)], threads=1)
+    assert {c.location for c in found.causes} == {"shoulder", "elbow"}
+    assert [c.effect for c in found.causes if c.location == "elbow"] == ["backlash"]
+    assert min(c.probability for c in found.causes) > 0
+    assert any(("backlash", "elbow") in one for one in found.equivalent)
+    assert found.gap.closed > 0.5
