@@ -34,21 +34,21 @@ def base_motion(log: Log, subject: Subject, ticks: np.ndarray) -> tuple[BaseMoti
         InputError: neither accelerometer nor base velocity nor position, or neither gyro nor orientation.
     """
     notes: list[str] = []
-    quaternion, gyro, felt = (_known(log, kind) for kind in ("base_orientation", "gyro", "accelerometer"))
-    velocity, place = _known(log, "base_velocity"), _known(log, "base_position")
+    quaternion, gyro, felt = (known(log, kind) for kind in ("base_orientation", "gyro", "accelerometer"))
+    velocity, place = known(log, "base_velocity"), known(log, "base_position")
     if gyro is None and quaternion is None:
         raise InputError(log.name, "gyro", None, "neither it nor base_orientation is logged: declare base fixed, or log one of them")
     if felt is None and (quaternion is None or (velocity is None and place is None)):
         remedy = "neither it nor base_velocity or base_position with base_orientation is logged: declare base fixed, or log one of them"
         raise InputError(log.name, "accelerometer", None, remedy)
-    turning = _orientation(log, quaternion, ticks) if quaternion is not None else None
+    turning = orientation(log, quaternion, ticks) if quaternion is not None else None
     if gyro is not None:
-        spin = smooth(log.time, gyro @ subject.imu_rotation.T, ticks)
-        angular, angular_acceleration = spin.value, spin.first
+        rates = smooth(log.time, gyro @ subject.imu_rotation.T, ticks)
+        angular, angular_acceleration = rates.value, rates.first
     else:
         notes.append("angular velocity of the base is the derivative of its orientation")
         assert turning is not None
-        angular, angular_acceleration = _spin(turning)
+        angular, angular_acceleration = spin(turning)
     force = None
     if felt is not None:
         arm = subject.imu_position
@@ -80,13 +80,13 @@ def base_motion(log: Log, subject: Subject, ticks: np.ndarray) -> tuple[BaseMoti
     return motion, tuple(notes)
 
 
-def _known(log: Log, kind: str) -> np.ndarray | None:
+def known(log: Log, kind: str) -> np.ndarray | None:
     """A vector of a log, None where any component is missing throughout."""
     values = log.vector(kind)
     return values if np.isfinite(values).any(0).all() else None
 
 
-def _orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
+def orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
     """Quaternion smoothed component by component, its sign made continuous first."""
     known = np.isfinite(quaternion).all(1)
     q = quaternion[known]
@@ -97,7 +97,7 @@ def _orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
     return smooth(log.time[known], q * np.cumprod(flips)[:, None] / length[:, None], ticks)
 
 
-def _spin(turning: Smooth) -> tuple[np.ndarray, np.ndarray]:
+def spin(turning: Smooth) -> tuple[np.ndarray, np.ndarray]:
     """Angular velocity and acceleration in the base's frame, 2 q* q' and its derivative."""
     conjugate = turning.value * np.array([1, -1, -1, -1])
     norm = np.sum(turning.value**2, 1, keepdims=True)

@@ -22,6 +22,7 @@ from hyperleg_design.gap.finding import NOTE, WARNING
 from hyperleg_design.gap.fit import Design
 from hyperleg_design.gap.held_out import Held, predict
 from hyperleg_design.gap.holding import sticks
+from hyperleg_design.gap.imu_offset import OFFSET, PLACE, Offset, imu_offset
 from hyperleg_design.gap.judge import CHATTERS, Judge, Model, rank
 from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
@@ -41,6 +42,8 @@ DRAWS = 400
 """Of the block bootstrap."""
 MOST_RIVALS, MOST_SHAPES, MOST_ERRORS = 8, 3, 12
 """Listed."""
+OTHER_SENSOR = 0.05
+"""Probability that what differs from an IMU is wrong instead of it (assumed)."""
 OTHERWISE = 0.15
 """Probability at most that something else makes a belt's noises (assumed): it would have explained them."""
 LEAST_SHARE = 0.02
@@ -124,7 +127,11 @@ def diagnose_signals(
     say(f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue")
     judge, found = decide(ready.base, rules, screen.places(samples.sieves[0].signals.subject, effects), threads, references)
     say("intervals, rivals and the next experiment")
-    return _Report(ready, judge, found, seed, list(signals), list(references), list(checks)).diagnosis()
+    told = _Report(ready, judge, found, seed, list(signals), list(references), list(checks)).diagnosis()
+    if effects is not None and PLACE[0] not in effects:
+        return told
+    offset = imu_offset(signals, references)
+    return told if offset is None else _of_imu(told, offset)
 
 
 class _Report:
@@ -365,7 +372,7 @@ def _of_belt(told: Diagnosis, belt: Loose) -> Diagnosis:
             told, verdict="ambiguous", causes=(*told.causes, first), rivals=(*rivals, second)[:MOST_RIVALS], equivalent=(*told.equivalent, names),
             residual_shape=shapes,
         )  # fmt: skip
-    rivals = [replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12)) for r in rivals]
+    rivals = [replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12), closed=0.0) for r in rivals]  # of what is heard
     trial = experiment.separating(names)
     ordered = sorted(belt.shares.items(), key=lambda item: (-item[1], item[0]))
     return replace(
@@ -375,3 +382,24 @@ def _of_belt(told: Diagnosis, belt: Loose) -> Diagnosis:
         separating_experiment=None if trial is None else experiment.as_mapping(trial, names),
         residual_shape=shapes,
     )  # fmt: skip
+
+
+def _of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
+    """A diagnosis with an IMU's constant error: beside what is named already, or instead of nothing; of an unknown gap it is a part."""
+    if any((c.effect, c.location) == PLACE for c in told.causes):
+        return told
+    shape = {"shape": OFFSET, "location": PLACE[1], "says": offset.says, "closed_beyond": offset.closed, "gain": 0.0}
+    shapes = (shape, *told.residual_shape)
+    rivals = [r for r in told.rivals if (r.effect, r.location) != PLACE]
+    beside = sum(r.probability for r in rivals)
+    cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
+    if told.causes:
+        return replace(told, causes=(*told.causes, cause), rivals=tuple(rivals), residual_shape=shapes)
+    if told.verdict == "unknown":
+        part = replace(cause, probability=max(1 - beside, 0.0) / 2)
+        return replace(told, rivals=(part, *rivals)[:MOST_RIVALS], residual_shape=shapes)
+    scaled = tuple(replace(r, probability=r.probability * OTHER_SENSOR / max(beside, 1.0), closed=0.0) for r in rivals)
+    gap = Shrinkage(offset.size, offset.left, 0.0, offset.closed, (offset.closed, offset.closed), offset.unit)
+    return replace(
+        told, verdict="explained", gap=gap, where=(Place(PLACE[1], "sensor", "all", 1.0),), causes=(cause,), rivals=scaled, residual_shape=shapes
+    )

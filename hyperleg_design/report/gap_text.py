@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.imu_offset import OFFSET
 from hyperleg_design.gap.loose import KNOCKING, RINGING
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
             )
             lines.append(f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}, closes {100 * row['closed']:.0f} %; {told}")
     lines += [f"  at rest, which is in no balance: {one['says']}" for one in diagnosis.get("at_rest", ())]
-    lines += [f"  {one['location']} {one['says']}" for one in diagnosis.get("residual_shape", ()) if one["shape"] in (RINGING, KNOCKING)]
+    lines += [f"  {one['location']} {one['says']}" for one in diagnosis.get("residual_shape", ()) if one["shape"] in (RINGING, KNOCKING, OFFSET)]
     places = [f"{w['location']} {100 * w['share']:.0f} %" for w in diagnosis["where"] if w["regime"] == "all"][:5]
     if places:
         lines.append(f"  where: {', '.join(places)}")

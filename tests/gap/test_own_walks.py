@@ -47,6 +47,7 @@ def test_a_simulated_walk_has_no_gap_to_its_own_model(tmp_path):
         ("encoder_offset", "right_knee", "offset", 0.05),
         ("payload", "pelvis", "mass", 3.0),
         ("imu_bias", "imu", "accelerometer_x", 0.8),
+        ("imu_bias", "imu", "gyro_y", 0.1),
         ("controller_gain", "left_knee", "stiffness_scale", 0.6),
         ("transmission_ratio", "left_knee", "scale", 1.1),
         ("command_delay", "left_knee", "delay", 0.01),

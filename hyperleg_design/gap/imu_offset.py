@@ -1,0 +1,145 @@
+"""Constant errors of an IMU, seen without any balance: what it tells minus what the base's motion from elsewhere says it should.
+
+A gyro minus the rate of a logged orientation, and an accelerometer minus the acceleration of a logged velocity with gravity, are noise
+about the sensors' errors; over seconds their mean is known a hundred times better than sensors are usually calibrated. No mass, friction
+or ground has a part in it. Only a vertical that leans cannot be told from an accelerometer's error across it, and is left alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.base_motion import known, orientation, spin
+from hyperleg_design.gap.diagnosis import Value
+from hyperleg_design.gap.effects.imu_bias import IMU, ImuBias
+from hyperleg_design.gap.mechanism import quaternion_rotation
+from hyperleg_design.gap.nuisance import ACCELEROMETER, GYRO
+from hyperleg_design.gap.smoothing import bridged, smooth
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
+
+PLACE = ImuBias.identifier, IMU
+OFFSET = "offset"
+UNUSUAL = 4.0
+"""Usual errors (`nuisance`), from which one is a finding."""
+CERTAIN = 5.0
+"""Its standard errors, at least."""
+PIECE = 1.0
+"""Of the means whose scatter gives the standard error [s]."""
+LEAST_PIECES = 4
+UPRIGHT = 0.15
+"""Vertical part of an accelerometer's error over its horizontal one, below which it may be a vertical that leans."""
+INTERVAL = 1.96
+"""Of a normal distribution, 95 %."""
+
+
+@dataclass(frozen=True, eq=False)
+class Offset:
+    """Constant errors of an IMU, in the sensor's axes."""
+
+    parameters: dict[str, Value]
+    """Of `ImuBias`."""
+    kind: str
+    """`gyro` or `accelerometer`, whichever is further off what is usual."""
+    size: float
+    """Of that one's error [rad/s, m/s^2]."""
+    left: float
+    """Of it, what an error taken from other data leaves: other logs, or the other half of one."""
+
+    @property
+    def unit(self) -> str:
+        """Of the sizes."""
+        return "rad/s" if self.kind == "gyro" else "m/s^2"
+
+    @property
+    def closed(self) -> float:
+        """Share of it that is foretold."""
+        return 1 - self.left / self.size
+
+    @property
+    def says(self) -> str:
+        """For people."""
+        source = "the rate of base_orientation" if self.kind == "gyro" else "the acceleration of the base's velocity and orientation, and gravity"
+        values = ", ".join(f"{self.parameters[f'{self.kind}_{axis}'].value:.3g}" for axis in "xyz")
+        return f"differs from {source} by a constant: {values} {self.unit} in its own axes"
+
+
+def imu_offset(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> Offset | None:
+    """Constant errors beyond what is usual; None where there are none, or the base's motion is not known from elsewhere.
+
+    Args:
+        signals: logs to be diagnosed.
+        references: logs of the healthy robot; an error that they have, too, is none of these.
+    """
+    means, errors, halves = (np.array(part) for part in zip(*map(_means, signals), strict=True))
+    mean, error = _together(means, errors)
+    if references:
+        healthy, unsure = _together(*(np.array(part) for part in zip(*(_means(one)[:2] for one in references), strict=True)))
+        told = np.isfinite(healthy)
+        mean, error = np.where(told, mean - healthy, mean), np.where(told, np.hypot(error, unsure), error)
+    usual = np.repeat([GYRO, ACCELEROMETER], 3)
+    clear = np.isfinite(mean) & (np.abs(mean) > UNUSUAL * usual) & (np.abs(mean) > CERTAIN * error)
+    if not clear.any() or (not clear[:3].any() and _leans(signals[0], mean[3:])):
+        return None
+    part = slice(0, 3) if np.nanmax(np.abs(mean[:3]) / GYRO, initial=0) >= np.nanmax(np.abs(mean[3:]) / ACCELEROMETER, initial=0) else slice(3, 6)
+    apart = means[:, part] if len(means) > 1 else halves[0][:, part]
+    others = (np.nansum(apart, 0) - apart) / max(len(apart) - 1, 1)
+    left = float(np.sqrt(np.nanmean(np.sum((apart - others) ** 2, -1))))
+    size = float(np.linalg.norm(mean[part]))
+    values = {
+        p.name: Value(float(m), float(m - INTERVAL * e), float(m + INTERVAL * e), p.unit) if np.isfinite(m) else Value(0.0, 0.0, 0.0, p.unit)
+        for p, m, e in zip(ImuBias.parameters, mean, error, strict=True)
+    }
+    return Offset(values, "gyro" if part.start == 0 else "accelerometer", size, min(left, size))
+
+
+def _means(signals: Signals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean error of gyro and accelerometer in the sensor's axes `(6,)`, its standard error, and means of both halves `(2, 6)`; NaN if unknown."""
+    log, subject, ticks = signals.log, signals.subject, signals.time
+    unknown = np.full(6, np.nan), np.full(6, np.nan), np.full((2, 6), np.nan)
+    quaternion, gyro, felt, velocity = (known(log, kind) for kind in ("base_orientation", "gyro", "accelerometer", "base_velocity"))
+    if quaternion is None or not subject.floating:
+        return unknown
+    turning = orientation(log, quaternion, ticks)
+    rate, turn = spin(turning)
+    apart = np.full((len(ticks), 6), np.nan)
+    if gyro is not None:
+        told = np.stack([np.interp(ticks, log.time, bridged(axis)) for axis in gyro.T], -1)
+        apart[:, :3] = told - rate @ subject.imu_rotation
+    if felt is not None and velocity is not None:
+        told = np.stack([np.interp(ticks, log.time, bridged(axis)) for axis in felt.T], -1)
+        world = np.einsum("tji,tj->ti", quaternion_rotation(turning.value), smooth(log.time, velocity, ticks).first - subject.gravity)
+        at_sensor = world + np.cross(turn, subject.imu_position) + np.cross(rate, np.cross(rate, subject.imu_position))
+        apart[:, 3:] = told - at_sensor @ subject.imu_rotation
+    apart = apart[signals.valid]
+    length = max(round(PIECE / signals.step), 1)
+    if len(apart) < LEAST_PIECES * length:
+        return unknown
+    pieces = np.array([piece.mean(0) for piece in np.array_split(apart, len(apart) // length)])
+    halves = np.array([half.mean(0) for half in np.array_split(apart, 2)])
+    return apart.mean(0), pieces.std(0, ddof=1) / np.sqrt(len(pieces)), halves
+
+
+def _together(means: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean of logs and its standard error `(6,)`, from their own and from how they differ."""
+    count = np.isfinite(means).sum(0)
+    own = np.sqrt(np.nansum(errors**2, 0)) / np.maximum(count, 1)
+    middle = np.where(count > 0, np.nansum(means, 0) / np.maximum(count, 1), np.nan)
+    between = np.sqrt(np.nansum((means - middle) ** 2, 0) / np.maximum(count - 1, 1) / np.maximum(count, 1))
+    return middle, np.hypot(own, between)
+
+
+def _leans(signals: Signals, error: np.ndarray) -> bool:
+    """Whether an accelerometer's error lies in the horizontal plane, as a leaning vertical's."""
+    if signals.base is None or not np.isfinite(error).all():
+        return False
+    rotation = np.nanmean(signals.base.rotation, 0) @ signals.subject.imu_rotation
+    world = rotation @ error
+    up = signals.subject.gravity / max(float(np.linalg.norm(signals.subject.gravity)), 1e-9)
+    upright = float(world @ up)
+    return abs(upright) < UPRIGHT * float(np.linalg.norm(world - upright * up))
