@@ -12,17 +12,18 @@ import numpy as np
 from hyperleg_design import provenance
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import experiment, screen
+from hyperleg_design.gap.beside_balances import of_belt, of_imu
 from hyperleg_design.gap.chatter import swings
 from hyperleg_design.gap.check import Check, check_log
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.decide import Decision, decide
-from hyperleg_design.gap.diagnosis import NAMING, Diagnosis, Named, Place, Shrinkage
+from hyperleg_design.gap.diagnosis import LEAST_SHARE, MOST_RIVALS, NAMING, Diagnosis, Named, Place, Shrinkage
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
 from hyperleg_design.gap.fit import Design
 from hyperleg_design.gap.held_out import Held, predict
 from hyperleg_design.gap.holding import sticks
-from hyperleg_design.gap.imu_offset import OFFSET, PLACE, Offset, imu_offset
+from hyperleg_design.gap.imu_offset import PLACE, imu_offset
 from hyperleg_design.gap.judge import CHATTERS, Judge, Model, rank
 from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
@@ -35,19 +36,12 @@ from hyperleg_design.gap.thresholds import Thresholds, load_thresholds
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.log import Log
-    from hyperleg_design.gap.loose import Loose
     from hyperleg_design.gap.signals import Signals
 
 DRAWS = 400
 """Of the block bootstrap."""
-MOST_RIVALS, MOST_SHAPES, MOST_ERRORS = 8, 3, 12
+MOST_SHAPES, MOST_ERRORS = 3, 12
 """Listed."""
-OTHER_SENSOR = 0.05
-"""Probability that what differs from an IMU is wrong instead of it (assumed)."""
-OTHERWISE = 0.15
-"""Probability at most that something else makes a belt's noises (assumed): it would have explained them."""
-LEAST_SHARE = 0.02
-"""Of the excess, below which a place is not listed."""
 
 
 def diagnose(
@@ -131,7 +125,7 @@ def diagnose_signals(
     if effects is not None and PLACE[0] not in effects:
         return told
     offset = imu_offset(signals, references)
-    return told if offset is None else _of_imu(told, offset)
+    return told if offset is None else of_imu(told, offset)
 
 
 class _Report:
@@ -188,7 +182,7 @@ class _Report:
             residual_shape=self.shape(), checks=doubts, nuisance=self.nuisance(), provenance=self.provenance(),
             at_rest=tuple({"location": j, "torque": t, "says": sticks(j, t)} for j, t in judge.holds.items()),
         )  # fmt: skip
-        return told if found.belt is None else _of_belt(told, found.belt)
+        return told if found.belt is None else of_belt(told, found.belt)
 
     def doubtful(self, table: dict[tuple[tuple[str, str], ...], float], alike_first: Sequence[Model]) -> bool:
         """Whether the first cause and what is like it are rather not it, with a gap that the floor's own doubt may be."""
@@ -353,53 +347,3 @@ class _Report:
 def _without(found: Decision, place: int) -> float:
     """Gain of the model before a cause was added, for slots after the first."""
     return max((m.gain for m in found.slots[place - 1] if len(m.causes) == place), default=0.0)
-
-
-def _of_belt(told: Diagnosis, belt: Loose) -> Diagnosis:
-    """A diagnosis with the belt that rings or lets its joints knock: beside what is named already, or instead of nothing.
-
-    Where nothing is named, the gap is that of the belt: what rings is in no balance.
-    """
-    names = tuple((c.effect, c.location) for c in belt.causes)
-    rivals = [r for r in told.rivals if (r.effect, r.location) not in names]
-    beside = sum(r.probability for r in rivals)
-    likely = 1 - (OTHERWISE if told.causes else min(beside, OTHERWISE))
-    first, second = (replace(c, probability=likely * c.probability) for c in belt.causes)
-    noise = {"shape": belt.shape, "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0}
-    shapes = (noise, *(s for s in told.residual_shape if s["shape"] != "chatter"))
-    if told.causes:
-        return replace(
-            told, verdict="ambiguous", causes=(*told.causes, first), rivals=(*rivals, second)[:MOST_RIVALS], equivalent=(*told.equivalent, names),
-            residual_shape=shapes,
-        )  # fmt: skip
-    rivals = [replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12), closed=0.0) for r in rivals]  # of what is heard
-    trial = experiment.separating(names)
-    ordered = sorted(belt.shares.items(), key=lambda item: (-item[1], item[0]))
-    return replace(
-        told, verdict="ambiguous", gap=Shrinkage(belt.missed, (1 - belt.closed) * belt.missed, 0.0, belt.closed, belt.closed_interval, "Nm"),
-        where=tuple(Place(motor, "motor", "all", share) for motor, share in ordered if share >= LEAST_SHARE),
-        causes=(first,), rivals=(second, *rivals)[:MOST_RIVALS], equivalent=(names,),
-        separating_experiment=None if trial is None else experiment.as_mapping(trial, names),
-        residual_shape=shapes,
-    )  # fmt: skip
-
-
-def _of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
-    """A diagnosis with an IMU's constant error: beside what is named already, or instead of nothing; of an unknown gap it is a part."""
-    if any((c.effect, c.location) == PLACE for c in told.causes):
-        return told
-    shape = {"shape": OFFSET, "location": PLACE[1], "says": offset.says, "closed_beyond": offset.closed, "gain": 0.0}
-    shapes = (shape, *told.residual_shape)
-    rivals = [r for r in told.rivals if (r.effect, r.location) != PLACE]
-    beside = sum(r.probability for r in rivals)
-    cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
-    if told.causes:
-        return replace(told, causes=(*told.causes, cause), rivals=tuple(rivals), residual_shape=shapes)
-    if told.verdict == "unknown":
-        part = replace(cause, probability=max(1 - beside, 0.0) / 2)
-        return replace(told, rivals=(part, *rivals)[:MOST_RIVALS], residual_shape=shapes)
-    scaled = tuple(replace(r, probability=r.probability * OTHER_SENSOR / max(beside, 1.0), closed=0.0) for r in rivals)
-    gap = Shrinkage(offset.size, offset.left, 0.0, offset.closed, (offset.closed, offset.closed), offset.unit)
-    return replace(
-        told, verdict="explained", gap=gap, where=(Place(PLACE[1], "sensor", "all", 1.0),), causes=(cause,), rivals=scaled, residual_shape=shapes
-    )

@@ -16,6 +16,10 @@ SCHEMA = 1
 VERDICTS = ("explained", "ambiguous", "none", "unknown")
 NAMING = ("explained", "ambiguous")
 """Verdicts by which causes are named."""
+MOST_RIVALS = 8
+"""Listed."""
+LEAST_SHARE = 0.02
+"""Of the excess, below which a place is not listed."""
 SCHEMA_FILE = Path(__file__).with_name("diagnosis_schema.json")
 DIGITS = 6
 """Significant digits of numbers."""

@@ -4,14 +4,10 @@ import dataclasses
 
 import numpy as np
 import pytest
-from diagnosed import run
 
 from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.diagnose import _of_imu, diagnose
-from hyperleg_design.gap.diagnosis import Named
-from hyperleg_design.gap.imu_offset import PLACE, imu_offset
+from hyperleg_design.gap.imu_offset import imu_offset
 from hyperleg_design.gap.subject import load_subject
-from hyperleg_design.report.gap_text import diagnosis_text
 
 GYRO_OFF, FELT_OFF = np.array([0.03, -0.05, 0.0]), np.array([0.3, 0.0, -0.4])
 
@@ -109,27 +105,3 @@ def test_without_both_nothing_is_said(swaying, subject, lacking):
     log = off(swaying, GYRO_OFF)
     less = log.changed(signals={c: v for c, v in log.signals.items() if not c.startswith(f"{lacking}/")})
     assert found(subject, less) is None
-
-
-def test_what_a_diagnosis_makes_of_it(swaying, subject, robot_files):
-    """Where nothing is named, it is the cause; where others are, one more; of an unknown gap, a part."""
-    offset = found(subject, off(swaying, GYRO_OFF))
-    none = diagnose(robot_files["coupled"], [run("healthy", s, session="today") for s in (0, 1)], threads=1)
-    assert none.verdict == "none"
-    alone = _of_imu(none, offset)
-    assert alone.verdict == "explained"
-    assert [(c.effect, c.location) for c in alone.causes] == [PLACE]
-    assert (alone.gap.before, alone.gap.unit) == (offset.size, "rad/s")
-    assert alone.where[0].location == "imu"
-    assert "base_orientation by a constant" in diagnosis_text(alone.mapping())
-    other = Named("coulomb_friction", "knee", 0.9, 0.8, {})
-    beside = _of_imu(dataclasses.replace(none, verdict="explained", causes=(other,)), offset)
-    assert [(c.effect, c.location) for c in beside.causes] == [("coulomb_friction", "knee"), PLACE]
-    assert _of_imu(beside, offset) is beside
-    unknown = _of_imu(dataclasses.replace(none, verdict="unknown"), offset)
-    assert (unknown.verdict, unknown.causes) == ("unknown", ())
-    assert (unknown.rivals[0].effect, unknown.rivals[0].location) == PLACE
-    for told in (alone, unknown):
-        assert sum(c.probability for c in (*told.causes, *told.rivals)) < 1 + 1e-9
-        assert told.residual_shape[0]["shape"] == "offset"
-        assert told.mapping()["residual_shape"][0]["location"] == "imu"

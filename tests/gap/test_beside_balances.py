@@ -1,0 +1,85 @@
+"""What a diagnosis makes of causes that no balance shows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnosed import run
+
+from hyperleg_design.gap.beside_balances import of_belt, of_imu
+from hyperleg_design.gap.diagnose import diagnose
+from hyperleg_design.gap.diagnosis import Named, Value
+from hyperleg_design.gap.imu_offset import PLACE, Offset
+from hyperleg_design.gap.loose import KNOCKING, Loose
+from hyperleg_design.report.gap_text import diagnosis_text
+
+OTHER = Named("coulomb_friction", "hip", 0.9, 0.8, {})
+PLAY, SPRING = (Named(effect, "m_back", share, 0.7, {}) for effect, share in (("backlash", 0.7), ("transmission_elasticity", 0.3)))
+BELT = Loose("m_back", KNOCKING, "knocks about", np.nan, 2.0, 0.7, (0.6, 0.8), {"m_front": 0.2, "m_back": 0.8}, (PLAY, SPRING))
+
+
+@pytest.fixture(scope="module")
+def none(robot_files):
+    found = diagnose(robot_files["coupled"], [run("healthy", s, session="today") for s in (0, 1)], threads=1)
+    assert found.verdict == "none"
+    return found
+
+
+@pytest.fixture
+def offset():
+    errors = {f"{kind}_{axis}": Value(0.05 * (axis == "y"), 0.0, 0.1, "") for kind in ("gyro", "accelerometer") for axis in "xyz"}
+    return Offset(errors, "gyro", 0.05, 0.001)
+
+
+def certain(told):
+    return sum(c.probability for c in (*told.causes, *told.rivals))
+
+
+def names(causes):
+    return [(c.effect, c.location) for c in causes]
+
+
+def test_a_sensor_is_the_cause_where_nothing_else_is(none, offset):
+    told = of_imu(none, offset)
+    assert told.verdict == "explained"
+    assert names(told.causes) == [PLACE]
+    assert (told.gap.before, told.gap.after, told.gap.unit) == (0.05, 0.001, "rad/s")
+    assert told.gap.closed == pytest.approx(0.98)
+    assert told.where[0].location == "imu"
+    assert all(rival.closed == 0 for rival in told.rivals)
+    assert "base_orientation by a constant: 0, 0.05, 0 rad/s" in diagnosis_text(told.mapping())
+    assert certain(told) < 1 + 1e-9
+
+
+def test_a_sensor_is_one_cause_more_beside_others_and_is_not_named_twice(none, offset):
+    told = of_imu(replace(none, verdict="explained", causes=(OTHER,)), offset)
+    assert names(told.causes) == [("coulomb_friction", "hip"), PLACE]
+    assert of_imu(told, offset) is told
+
+
+def test_a_sensor_does_not_explain_a_gap_that_is_unknown(none, offset):
+    told = of_imu(replace(none, verdict="unknown"), offset)
+    assert (told.verdict, told.causes) == ("unknown", ())
+    assert names(told.rivals)[0] == PLACE
+    assert told.residual_shape[0]["shape"] == "offset"
+    assert certain(told) < 1 + 1e-9
+
+
+def test_a_belt_is_the_cause_where_nothing_else_is(none):
+    told = of_belt(none, BELT)
+    assert told.verdict == "ambiguous"
+    assert names(told.causes) == [("backlash", "m_back")]
+    assert told.equivalent == ((("backlash", "m_back"), ("transmission_elasticity", "m_back")),)
+    assert (told.gap.before, told.gap.closed, told.gap.closed_interval) == (2.0, 0.7, (0.6, 0.8))
+    assert told.gap.after == pytest.approx(0.6)
+    assert [(place.location, place.share) for place in told.where] == [("m_back", 0.8), ("m_front", 0.2)]
+    assert told.causes[0].probability > told.rivals[0].probability
+    assert certain(told) < 1 + 1e-9
+
+
+def test_a_belt_beside_another_cause_leaves_that_ones_gap_as_it_is(none):
+    explained = replace(none, verdict="explained", causes=(OTHER,))
+    told = of_belt(explained, BELT)
+    assert names(told.causes) == [("coulomb_friction", "hip"), ("backlash", "m_back")]
+    assert told.gap == explained.gap
+    assert (told.verdict, told.residual_shape[0]["location"]) == ("ambiguous", "m_back")
