@@ -38,6 +38,8 @@ BEYOND_ROW = 0.1
 """Of it, beyond the share that the row of any one joint has: that may be a torque."""
 OF_REFERENCES = 0.6
 """Of the knocks' strength, at most that reference logs may show at the same joint: so healthy joints knock, too."""
+SLOWER, PADDED = 0.5, 50
+"""`LOWEST` over the highest frequency that a log resolves, at most: 27 Hz at least; and ticks of a log, at least."""
 SHOWN = 0.6
 """For the eye [s]."""
 SIZES, WIDEST = 25, 30.0
@@ -72,6 +74,8 @@ def knocking(signals: Sequence[Signals], references: Sequence[Signals] = (), kno
         signals = [replace(one, residual=left) for one, left in zip(signals, lefts, strict=True)]
     subject = signals[0].subject
     if subject.floating or len(subject.joints) < 2:  # one joint alone has no other row to tell motion from torque by
+        return None
+    if any(LOWEST * one.step > SLOWER * HIGHEST or len(one.time) < PADDED for one in (*signals, *references)):
         return None
     logs = [_knocks(one) for one in signals]
     if sum(len(one.rows) for one in logs) < LEAST:

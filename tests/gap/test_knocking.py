@@ -140,6 +140,14 @@ def test_what_reference_logs_show_too_is_nothing_new(robot):
     assert heard(robot, arm(play, seed=1), arm(play, seed=2), references=[arm(play, seed=3, role="reference")]) is None
 
 
+@pytest.mark.parametrize("every", [4, 10, 20])
+def test_slow_logs_hear_no_knocks(robot, every):
+    whole = arm((0.0, 0.02), seed=1)
+    log = Log("slow", whole.time[::every], {k: v[::every] for k, v in whole.signals.items()}, whole.metadata)
+    found = heard(robot, log)
+    assert found is None or (every == 4 and found.motor == "elbow")
+
+
 def test_one_joint_alone_has_nothing_to_tell_motion_from_torque_by(tmp_path):
     path = tmp_path / "one.xml"
     path.write_text(
