@@ -53,8 +53,7 @@ def base_motion(log: Log, subject: Subject, ticks: np.ndarray) -> tuple[BaseMoti
     if felt is not None:
         arm = subject.imu_position
         # as it was felt: jerks are no noise, and who balances forces filters both sides alike
-        raw = np.stack([np.interp(ticks, log.time, bridged(axis)) for axis in felt.T], -1)
-        force = raw @ subject.imu_rotation.T - np.cross(angular_acceleration, arm) - np.cross(angular, np.cross(angular, arm))
+        force = on_ticks(log, felt, ticks) @ subject.imu_rotation.T - np.cross(angular_acceleration, arm) - np.cross(angular, np.cross(angular, arm))
     if turning is not None:
         rotation = quaternion_rotation(turning.value)
     else:
@@ -86,15 +85,20 @@ def known(log: Log, kind: str) -> np.ndarray | None:
     return values if np.isfinite(values).any(0).all() else None
 
 
+def on_ticks(log: Log, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+    """A vector of a log as it was told, on the ticks `(t, 3)`; its gaps bridged."""
+    return np.stack([np.interp(ticks, log.time, bridged(axis)) for axis in values.T], -1)
+
+
 def orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
     """Quaternion smoothed component by component, its sign made continuous first."""
-    known = np.isfinite(quaternion).all(1)
-    q = quaternion[known]
+    told = np.isfinite(quaternion).all(1)
+    q = quaternion[told]
     length = np.linalg.norm(q, axis=1)
     if not np.all(np.abs(length - 1) < 0.1):
         raise InputError(log.name, "base_orientation", float(length[np.argmax(np.abs(length - 1))]), "is no unit quaternion: expects w, x, y, z")
     flips = np.concatenate([[1.0], np.where(np.sum(q[1:] * q[:-1], 1) < 0, -1.0, 1.0)])
-    return smooth(log.time[known], q * np.cumprod(flips)[:, None] / length[:, None], ticks)
+    return smooth(log.time[told], q * np.cumprod(flips)[:, None] / length[:, None], ticks)
 
 
 def spin(turning: Smooth) -> tuple[np.ndarray, np.ndarray]:

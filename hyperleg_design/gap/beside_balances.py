@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 from hyperleg_design.gap import experiment
 from hyperleg_design.gap.diagnosis import LEAST_SHARE, MOST_RIVALS, Diagnosis, Named, Place, Shrinkage
 from hyperleg_design.gap.imu_offset import OFFSET, PLACE
+from hyperleg_design.gap.loose import KNOCKING, RINGING
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.imu_offset import Offset
     from hyperleg_design.gap.loose import Loose
 
+APART = (RINGING, KNOCKING, OFFSET)
+"""Shapes by which such causes are known."""
 OTHER_SENSOR = 0.05
 """Probability that what differs from an IMU is wrong instead of it (assumed)."""
 OTHERWISE = 0.15

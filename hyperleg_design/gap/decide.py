@@ -17,6 +17,7 @@ from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.chatter import unsettled
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
+from hyperleg_design.gap.effects.placing import moved_joints
 from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Cause, Design, Fit, parts
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
@@ -70,9 +71,9 @@ class Decision:
     together: float
     """Share of the time in which most drives at once do not do what they were told, beside the causes; 0 where that is little."""
     chatter: tuple[str, ...]
-    """Joints that chatter though none of the causes can make them."""
+    """Joints that chatter though none of the causes can make them, nor a belt beside causes that explain the rest."""
     belt: Loose | None
-    """That makes them chatter."""
+    """That rings, or lets its joints knock about."""
     not_judged: tuple[screen.NotJudged, ...]
 
 
@@ -122,7 +123,7 @@ def decide(
 
 def _elsewhere(chosen: Model, belt: Loose, subject: Subject) -> tuple[Cause, ...]:
     """Causes that are not at the motor or the joints of a belt that gives."""
-    own = {belt.motor, *(subject.joints[j] for j in np.flatnonzero(subject.motor_from_joint[subject.motors.index(belt.motor)]))}
+    own = {belt.motor, *moved_joints(subject, subject.motors.index(belt.motor))}
     return tuple(c for c in chosen.causes if c.location not in own)
 
 

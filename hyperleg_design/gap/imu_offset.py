@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.base_motion import known, orientation, spin
+from hyperleg_design.gap.base_motion import known, on_ticks, orientation, spin
 from hyperleg_design.gap.diagnosis import Value
 from hyperleg_design.gap.effects.imu_bias import IMU, ImuBias
 from hyperleg_design.gap.mechanism import quaternion_rotation
 from hyperleg_design.gap.nuisance import ACCELEROMETER, GYRO
-from hyperleg_design.gap.smoothing import bridged, smooth
+from hyperleg_design.gap.smoothing import smooth
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -109,13 +109,11 @@ def _means(signals: Signals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     rate, turn = spin(turning)
     apart = np.full((len(ticks), 6), np.nan)
     if gyro is not None:
-        told = np.stack([np.interp(ticks, log.time, bridged(axis)) for axis in gyro.T], -1)
-        apart[:, :3] = told - rate @ subject.imu_rotation
+        apart[:, :3] = on_ticks(log, gyro, ticks) - rate @ subject.imu_rotation
     if felt is not None and velocity is not None:
-        told = np.stack([np.interp(ticks, log.time, bridged(axis)) for axis in felt.T], -1)
         world = np.einsum("tji,tj->ti", quaternion_rotation(turning.value), smooth(log.time, velocity, ticks).first - subject.gravity)
         at_sensor = world + np.cross(turn, subject.imu_position) + np.cross(rate, np.cross(rate, subject.imu_position))
-        apart[:, 3:] = told - at_sensor @ subject.imu_rotation
+        apart[:, 3:] = on_ticks(log, felt, ticks) - at_sensor @ subject.imu_rotation
     apart = apart[signals.valid]
     length = max(round(PIECE / signals.step), 1)
     if len(apart) < LEAST_PIECES * length:

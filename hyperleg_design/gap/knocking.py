@@ -16,11 +16,11 @@ import numpy as np
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.diagnosis import Named
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.loose import KNOCKING, LIKELIER, PLAY, SPRING, Loose, valued
+from hyperleg_design.gap.effects.placing import moved_joints
+from hyperleg_design.gap.loose import KNOCKING, LIKELIER, PLAY, SPRING, Loose, sided, valued
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
 
 LOWEST = 4.0
 """Of what counts as a knock [Hz]; below, joints move as commanded, and models err."""
@@ -42,6 +42,8 @@ SLOWER, PADDED = 0.5, 50
 """`LOWEST` over the highest frequency that a log resolves, at most: 27 Hz at least; and ticks of a log, at least."""
 SHOWN = 0.6
 """For the eye [s]."""
+ON_ROTORS = 1.0
+"""Side of the encoders."""
 SIZES, WIDEST = 25, 30.0
 """Sizes that are tried, and how far from the usual one."""
 SPREAD = 2.5
@@ -92,7 +94,7 @@ def knocking(signals: Sequence[Signals], references: Sequence[Signals] = (), kno
     missed = float(np.sqrt(np.mean(np.sum(torque**2, 1))))
     says = (
         f"knocks about: for {len(torque)} ticks its joints take torques ({missed:.2g} Nm, rms) in the proportions of a motion of "
-        f"{_joints(subject, motor)} that no encoder tells; its belt has play or is soft, and the encoders sit on the rotors"
+        f"{', '.join(moved_joints(subject, motor))} that no encoder tells; its belt has play or is soft, and the encoders sit on the rotors"
     )
     causes = _causes(signals, place, closed)
     fair = shares / shares.sum()
@@ -105,7 +107,9 @@ def struck(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.nda
     """
     fast = _between(signals, signals.residual["motion"], LOWEST)
     scale = _scale(fast)
-    column = _column(signals.subject, signals.position, signals.subject.motors.index(motor)) / scale
+    subject = signals.subject
+    (column,) = rigid.accelerating(subject, signals.position, [subject.motor_from_joint[subject.motors.index(motor)]], rotors=False)
+    column = column / scale
     size = np.einsum("tn,tn->t", column, fast / scale) / np.maximum(np.einsum("tn,tn->t", column, column), 1e-12)
     explained = size[:, None] * column * scale
     half = round(SHOWN / 2 / signals.step)
@@ -121,17 +125,10 @@ def _knocks(signals: Signals) -> _Knocks:
     when = (np.abs(fast) > EPISODE * scale).any(1) & signals.valid
     position, fast = signals.position[when], fast[when]
     explained = np.zeros((len(fast), len(subject.motors)))
-    for motor in range(len(subject.motors)):
-        column = _column(subject, position, motor) / scale
+    for motor, column in enumerate(rigid.accelerating(subject, position, subject.motor_from_joint, rotors=False)):
+        column = column / scale
         explained[:, motor] = np.einsum("tn,tn->t", column, fast / scale) ** 2 / np.maximum(np.einsum("tn,tn->t", column, column), 1e-12)
     return _Knocks(fast / scale, explained, fast, int(signals.valid.sum()))
-
-
-def _column(subject: Subject, position: np.ndarray, motor: int) -> np.ndarray:
-    """Torque that a unit of acceleration of a motor's joints needs `(t, n)`."""
-    rest = np.zeros_like(position)
-    weight = rigid.inverse_dynamics(subject, position, rest, rest, rotors=False)
-    return np.asarray(rigid.inverse_dynamics(subject, position, rest, rest + subject.motor_from_joint[motor], rotors=False) - weight)
 
 
 def _between(signals: Signals, values: np.ndarray, lowest: float) -> np.ndarray:
@@ -159,16 +156,12 @@ def _strength(logs: Sequence[_Knocks], motor: int) -> float:
     return float(sum(one.explained[:, motor].sum() for one in logs) / sum(one.ticks for one in logs))
 
 
-def _joints(subject: Subject, motor: int) -> str:
-    return ", ".join(subject.joints[j] for j in np.flatnonzero(subject.motor_from_joint[motor]))
-
-
 def _causes(signals: Sequence[Signals], place: str, closed: float) -> tuple[Named, Named]:
     """Play and spring there; first the one whose knocks come when they do."""
     subject = signals[0].subject
     fitted = sorted(((*_fitted(effect, signals, place), effect) for effect in (PLAY, SPRING)), key=lambda one: -one[1])
     first, second = (
-        Named(effect, place, share, closed, valued(effect, subject, place, size, side=1.0))
+        Named(effect, place, share, closed, valued(effect, subject, place, size, side=ON_ROTORS))
         for (size, _, effect), share in zip(fitted, (LIKELIER, 1 - LIKELIER), strict=True)
     )
     return first, second
@@ -184,8 +177,7 @@ def _fitted(effect: str, signals: Sequence[Signals], place: str) -> tuple[tuple[
     low, high = one.bounds(place, subject)
     usual = float(one.usual(place, subject)[0])
     sizes = np.unique(np.clip(np.geomspace(usual / WIDEST, usual * WIDEST, SIZES), low[0], high[0]))
-    example = [1.0 if p.name == "side" else v for p, v in zip(one.parameters, one.example(place, subject), strict=True)]
-    values = np.column_stack([sizes, np.tile(example[1:], (len(sizes), 1))])
+    values = np.column_stack([sizes, np.tile(sided(effect, subject, place, ON_ROTORS)[1:], (len(sizes), 1))])
     strong, both, known = np.zeros(len(sizes)), np.zeros(len(sizes)), 0.0
     for log in signals:
         seen = _between(log, log.residual["motion"], SLOWEST)[log.valid]

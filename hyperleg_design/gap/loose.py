@@ -165,9 +165,7 @@ def _line(signals: Signals) -> _Line | None:
     if frequency is None:
         return None
     acceleration = -((2 * np.pi * frequency) ** 2) * swing
-    rest = np.zeros_like(signals.position)
-    weight = rigid.inverse_dynamics(subject, signals.position, rest, rest)
-    parts = [rigid.inverse_dynamics(subject, signals.position, rest, part) - weight for part in (acceleration.real, acceleration.imag)]
+    parts = rigid.accelerating(subject, signals.position, (acceleration.real, acceleration.imag))
     need = applied(subject.motor_from_joint, parts[0]) + 1j * applied(subject.motor_from_joint, parts[1])
     inertias = np.array([rotor(subject, m) for m in range(len(subject.motors))])
     third = _folded(THIRD * frequency, 1 / step)
@@ -252,6 +250,12 @@ def _rms(values: np.ndarray) -> np.ndarray:
     return np.asarray(np.sqrt(np.mean(np.abs(values) ** 2, 0)))
 
 
+def sided(effect: str, subject: Subject, place: str, side: float) -> np.ndarray:
+    """An effect's example, with the encoders on a given side `(parameters,)`."""
+    one = EFFECTS[effect]
+    return np.array([side if p.name == "side" else v for p, v in zip(one.parameters, one.example(place, subject), strict=True)])
+
+
 def valued(effect: str, subject: Subject, place: str, size: Sequence[float], side: float = 0.0) -> dict[str, Value]:
     """Parameters of play or a spring, and what people call them: value, low and high of the first, the others as its example has them.
 
@@ -265,7 +269,7 @@ def valued(effect: str, subject: Subject, place: str, size: Sequence[float], sid
     one = EFFECTS[effect]
     low, high = one.bounds(place, subject)
     value, least, most = np.clip(size, low[0], high[0])
-    example = np.array([side if p.name == "side" else v for p, v in zip(one.parameters, one.example(place, subject), strict=True)])
+    example = sided(effect, subject, place, side)
     found = {p.name: Value(float(v), float(v), float(v), p.unit) for p, v in zip(one.parameters, example, strict=True)}
     found[one.parameters[0].name] = Value(float(value), float(least), float(most), one.parameters[0].unit)
     ends = [one.derived(place, np.r_[end, example[1:]], subject) for end in (value, least, most)]

@@ -10,6 +10,7 @@ on posture here.
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
@@ -62,6 +63,13 @@ def inverse_dynamics(
         `(..., t, n)`.
     """
     return _dynamics(subject, position, velocity, acceleration, base, rotors)[0]
+
+
+def accelerating(subject: Subject, position: np.ndarray, accelerations: Iterable[np.ndarray], *, rotors: bool = True) -> list[np.ndarray]:
+    """Torque that each of some accelerations `(t, n)` or `(n,)` takes of a robot at rest, beyond its weight `(t, n)` [Nm]; see `inverse_dynamics`."""
+    rest = np.zeros_like(position)
+    weight = inverse_dynamics(subject, position, rest, rest, rotors=rotors)
+    return [inverse_dynamics(subject, position, rest, rest + one, rotors=rotors) - weight for one in accelerations]
 
 
 def base_wrench(subject: Subject, position: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray, base: BaseMotion) -> np.ndarray:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design import provenance
+from hyperleg_design.gap.beside_balances import APART
 from hyperleg_design.gap.evidence import Evidence, evidence
-from hyperleg_design.gap.imu_offset import OFFSET
 from hyperleg_design.gap.knocking import struck
 from hyperleg_design.gap.loose import KNOCKING, RINGING, ringing
 from hyperleg_design.report import gap_figures
@@ -78,7 +78,7 @@ def _chatter(diagnosis: Mapping[str, Any]) -> str:
     shapes = diagnosis.get("residual_shape", ())
     joints = [one["location"] for one in shapes if one["shape"] == "chatter"]
     if not joints:
-        return "".join(f" {one['location']} {one['says']}." for one in shapes if one["shape"] in (RINGING, KNOCKING, OFFSET))
+        return "".join(f" {one['location']} {one['says']}." for one in shapes if one["shape"] in APART)
     return f"What is left first of all: {', '.join(joints)} chatter{'s' if len(joints) == 1 else ''}, as of a loop that is hardly stable."
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from hyperleg_design.gap.beside_balances import APART
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.imu_offset import OFFSET
-from hyperleg_design.gap.loose import KNOCKING, RINGING
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.added import Changed, Replayed
@@ -112,12 +111,13 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
             )
             lines.append(f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}, closes {100 * row['closed']:.0f} %; {told}")
     lines += [f"  at rest, which is in no balance: {one['says']}" for one in diagnosis.get("at_rest", ())]
-    lines += [f"  {one['location']} {one['says']}" for one in diagnosis.get("residual_shape", ()) if one["shape"] in (RINGING, KNOCKING, OFFSET)]
+    lines += [f"  {one['location']} {one['says']}" for one in diagnosis.get("residual_shape", ()) if one["shape"] in APART]
     places = [f"{w['location']} {100 * w['share']:.0f} %" for w in diagnosis["where"] if w["regime"] == "all"][:5]
     if places:
         lines.append(f"  where: {', '.join(places)}")
     if diagnosis["verdict"] == "unknown":
-        lines += [f"  left: {one['shape']} at {one['location']}: {one['says']}" for one in diagnosis.get("residual_shape", ())[:3]]
+        left = [one for one in diagnosis.get("residual_shape", ()) if one["shape"] not in APART]
+        lines += [f"  left: {one['shape']} at {one['location']}: {one['says']}" for one in left[:3]]
     if diagnosis["separating_experiment"]:
         told = "; ".join(f"{key.replace('_', ' ')}: {value}" for key, value in diagnosis["separating_experiment"].items())
         lines.append(f"  to tell them apart: {told}")

@@ -62,6 +62,7 @@ def test_a_sensor_does_not_explain_a_gap_that_is_unknown(none, offset):
     assert (told.verdict, told.causes) == ("unknown", ())
     assert names(told.rivals)[0] == PLACE
     assert told.residual_shape[0]["shape"] == "offset"
+    assert diagnosis_text(told.mapping()).count("base_orientation by a constant") == 1
     assert certain(told) < 1 + 1e-9
 
 

@@ -130,3 +130,13 @@ def test_a_pad_that_rolls_does_not_slide():
     radius = np.array([p.radius for p in biped.pads])
     np.testing.assert_allclose(found[1:-1, :, 0], -np.gradient(angle, 0.005)[1:-1, None] * radius, atol=1e-4)
     assert np.abs(found[1:-1, :, 1:]).max() < 1e-4
+
+
+def test_unit_accelerations_take_the_columns_of_the_inertia_matrix():
+    subject = load_subject("hyperleg")
+    position = np.random.default_rng(8).uniform(-0.4, 0.4, (3, len(subject.joints)))
+    columns = np.stack(rigid.accelerating(subject, position, np.eye(len(subject.joints)), rotors=False), -1)
+    np.testing.assert_allclose(columns, columns.transpose(0, 2, 1), atol=1e-10)
+    assert np.linalg.eigvalsh(columns).min() > 0
+    twice = rigid.accelerating(subject, position, [np.full(position.shape, 2.0)], rotors=False)[0]
+    np.testing.assert_allclose(twice, 2 * columns.sum(-1), atol=1e-9)

@@ -42,6 +42,11 @@ def driven_motors(subject: Subject) -> tuple[str, ...]:
     return subject.motors
 
 
+def moved_joints(subject: Subject, motor: int) -> tuple[str, ...]:
+    """Joints that follow a motor."""
+    return tuple(subject.joints[j] for j in np.flatnonzero(subject.motor_from_joint[motor]))
+
+
 def at_joint(signals: Signals, joint: int, torque: np.ndarray) -> dict[str, np.ndarray]:
     """Trace of a torque that a joint takes from its drive, beyond the model `(k, t)` [Nm]."""
     rows = _rows(torque, len(signals.subject.joints))
