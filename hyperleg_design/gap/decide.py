@@ -114,6 +114,8 @@ def decide(
         verdict = "unknown"
     if verdict == "none" and (_fails(base.samples, thresholds) or any(judge.held(chosen, joint) < HELD for joint in judge.holds)):
         verdict = "unknown"
+    if verdict == "none" and shaping.tells(thresholds, chosen, pushes := shaping.of_base(judge)):
+        verdict, shaped = "unknown", pushes
     if belt is None and not lost:
         belt = knocking(signals, references, [_motion(chosen, one) for one in signals] if verdict == "explained" else ())
         if belt is not None and verdict == "explained" and len(_elsewhere(chosen, belt, signals[0].subject)) < len(chosen.causes):

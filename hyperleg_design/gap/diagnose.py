@@ -12,7 +12,7 @@ import numpy as np
 from hyperleg_design import provenance
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import experiment, screen
-from hyperleg_design.gap.beside_balances import of_belt, of_imu
+from hyperleg_design.gap.beside_balances import of_belt, of_feet, of_imu
 from hyperleg_design.gap.chatter import swings
 from hyperleg_design.gap.check import Check, check_log
 from hyperleg_design.gap.conditioning import condition
@@ -31,6 +31,10 @@ from hyperleg_design.gap.regimes import worst
 from hyperleg_design.gap.samples import BLOCKS, LOGS
 from hyperleg_design.gap.shaping import tells
 from hyperleg_design.gap.signals import BALANCES
+from hyperleg_design.gap.sinking import EFFECT as SOFT
+from hyperleg_design.gap.sinking import sinks
+from hyperleg_design.gap.slipping import EFFECT as SLIPPERY
+from hyperleg_design.gap.slipping import slips
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.gap.thresholds import Thresholds, load_thresholds
 
@@ -122,6 +126,9 @@ def diagnose_signals(
     judge, found = decide(ready.base, rules, screen.places(samples.sieves[0].signals.subject, effects), threads, references)
     say("intervals, rivals and the next experiment")
     told = _Report(ready, judge, found, seed, list(signals), list(references), list(checks)).diagnosis()
+    for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
+        if effects is None or effect in effects:
+            told = of_feet(told, tell(signals, references))
     if effects is not None and PLACE[0] not in effects:
         return told
     offset = imu_offset(signals, references)
@@ -202,8 +209,7 @@ class _Report:
 
     def gap(self, named: bool) -> Shrinkage:
         """Before, after and floor over the rows that count, in their unit."""
-        judge, rows = self.judge, self.found.rows
-        samples = judge.base.samples
+        judge, rows = self.judge, self.found.rows if named else self.alike()
         model = self.found.model if named else judge.nothing
         scale = float(np.sqrt(judge.row_floor[rows].mean()))
         last = self.held(model)
@@ -214,15 +220,28 @@ class _Report:
         shares = np.where(b > lowest, (b - a) / np.maximum(b - lowest, 1e-9), 0.0)
         closed = self.closed(model) if named else 0.0
         low, high = (float(v) for v in np.percentile(np.minimum(shares, 1.0), [2.5, 97.5])) if named else (0.0, 0.0)
-        units = dict.fromkeys(BALANCES[samples.rows[r % len(samples.rows)].balance][1] for r in np.flatnonzero(rows).tolist())
+        units = dict.fromkeys(self.unit(r) for r in np.flatnonzero(rows).tolist())
         return Shrinkage(before * scale, after * scale, min(1.0, after) * scale, closed, (min(low, closed), max(high, closed)), ", ".join(units))
+
+    def unit(self, row: int) -> str:
+        """Of a row, or of its episodes."""
+        rows = self.judge.base.samples.rows
+        return BALANCES[rows[row % len(rows)].balance][1]
+
+    def alike(self) -> np.ndarray:
+        """Of the rows that count, those in the unit of the one with the largest gap: all that one number can tell."""
+        rows = np.flatnonzero(self.found.rows)
+        largest = rows[np.argmax(self.judge.rows(self.judge.nothing.held.bare)[rows])]
+        found = np.zeros_like(self.found.rows)
+        found[[row for row in rows.tolist() if self.unit(row) == self.unit(int(largest))]] = True
+        return found
 
     def where(self) -> tuple[Place, ...]:
         """Shares of the excess, and the regime of each place in which it is most."""
         judge, samples = self.judge, self.judge.base.samples
         whole = np.where(self.found.rows, judge.rows(self.found.model.held.bare), 0.0)
         calm = judge.rows(self.found.model.held.bare)[: len(samples.rows)]
-        excess = np.maximum(calm - 1, 0.0) + np.maximum(whole[len(samples.rows) :] - 1, 0.0)
+        excess = judge.present * np.maximum(calm - 1, 0.0) + np.maximum(whole[len(samples.rows) :] - 1, 0.0)
         shares: dict[tuple[str, str], float] = {}
         for row, value in zip(samples.rows, excess, strict=True):
             key = (

@@ -106,6 +106,10 @@ class Footing:
     """Logged `(t, 3)` [N]; NaN where unknown."""
     slide: np.ndarray
     """Horizontal velocity of its loaded point `(t, 2)` [m/s]; NaN where unknown."""
+    pad_force: np.ndarray
+    """Logged on its p pads `(t, p, 3)` [N]; NaN where unknown."""
+    pad_slide: np.ndarray
+    """Horizontal velocity of their lowest points `(t, p, 2)` [m/s]; NaN where unknown."""
     height: np.ndarray
     """Of its p pads over the origin `(t, p)` [m]; NaN where unknown."""
     sink: np.ndarray
@@ -231,7 +235,8 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
         span = 2 * max(round(LANDING / signals.step), 1) + 1
         settled = minimum_filter1d(np.nan_to_num(force[:, 2]) > LOADED, span)
         fall = np.gradient(sink, signals.step, axis=0)
-        found.append(Footing(force, slide, height, sink, fall, friction, law, loaded, settled))
+        on_pads = np.full((len(force), len(own), 3), np.nan) if signals.pad_force is None else signals.pad_force[:, own]
+        found.append(Footing(force, slide, on_pads, velocity[:, own, :2], height, sink, fall, friction, law, loaded, settled))
     return tuple(found)
 
 

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.base import number_of
+from hyperleg_design.gap.base import Base, number_of
 from hyperleg_design.gap.fit import ROUNDS, Design, Fit
 from hyperleg_design.gap.samples import BLOCKS
 
 FREEDOM = 40.0
 """Most degrees of freedom of a predictive distribution: the scale of other data is never known better (assumed)."""
+
+
+_DOUBTS: WeakKeyDictionary[Base, dict[int, np.ndarray]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +51,7 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
     base = design.base
     samples = base.samples
     left, spread, freedom = np.zeros(len(samples.value)), np.ones(len(samples.value)), np.ones(len(samples.value))
-    bare = np.zeros(len(samples.value))
+    bare, open_to = np.zeros(len(samples.value)), doubt(base, way)
     scaled = []
     fold_of = samples.fold[way][samples.part]
     for fold in range(samples.folds(way)):
@@ -63,7 +67,7 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
     cell = samples.block * samples.groups + samples.group
     cells, inverse = np.unique(cell, return_inverse=True)
     size = np.bincount(inverse, samples.share)
-    square = np.bincount(inverse, left**2)
+    square = np.bincount(inverse, left**2 / (1 + open_to / spread))
     nu, scale = (np.bincount(inverse, v * samples.share) / size for v in (freedom, spread))
     each = -0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale)
     likelihood = np.bincount(cells // samples.groups, each, base.blocks)
@@ -74,3 +78,26 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
         np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups) for v in (left, bare)
     )
     return Held(likelihood, squares, left, whole)
+
+
+def doubt(base: Base, way: int = BLOCKS) -> np.ndarray:
+    """How far the calibration errors of the other folds leave each sample open, without any cause: variance over the floor's `(S,)`.
+
+    A joint that hardly slides in any other block is foretold by the usual size of its errors alone. Kept while the base lives.
+    """
+    kept = _DOUBTS.setdefault(base, {})
+    if way not in kept:
+        samples, design = base.samples, Design(base)
+        scale = design.fit().scale
+        found = np.zeros(len(samples.value))
+        fold_of, session_of = samples.fold[way][samples.part], samples.session[samples.part]
+        for fold in range(samples.folds(way)):
+            weight = 1 / design.fit(way, fold, scale, rounds=2).scale
+            for session in range(samples.sessions):
+                here = (fold_of == fold) & (session_of == session)
+                if here.any():
+                    normal = base.part(way, fold, session, False).weighed(weight)[:-1, :-1] + base.prior.precision
+                    mine = base.errors[:, here]
+                    found[here] = np.einsum("ps,ps->s", mine, np.linalg.solve(normal, mine))
+        kept[way] = found / samples.share
+    return kept[way]

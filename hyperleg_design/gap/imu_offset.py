@@ -2,7 +2,7 @@
 
 A gyro minus the rate of a logged orientation, and an accelerometer minus the acceleration of a logged velocity with gravity, are noise
 about the sensors' errors; over seconds their mean is known a hundred times better than sensors are usually calibrated. No mass, friction
-or ground has a part in it. Only a vertical that leans cannot be told from an accelerometer's error across it, and is left alone.
+or ground has a part in it. Only a vertical that leans cannot be told from an accelerometer's error across it: that is told as such.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from hyperleg_design.gap.base_motion import known, on_ticks, orientation, spin
 from hyperleg_design.gap.diagnosis import Value
 from hyperleg_design.gap.effects.imu_bias import IMU, ImuBias
 from hyperleg_design.gap.mechanism import quaternion_rotation
-from hyperleg_design.gap.nuisance import ACCELEROMETER, GYRO
 from hyperleg_design.gap.smoothing import smooth
 
 if TYPE_CHECKING:
@@ -25,8 +24,8 @@ if TYPE_CHECKING:
 
 PLACE = ImuBias.identifier, IMU
 OFFSET = "offset"
-UNUSUAL = 4.0
-"""Usual errors (`nuisance`), from which one is a finding."""
+CALIBRATED = 0.25
+"""Of what data sheets allow a sensor that nobody calibrated (`ImuBias`), from which an error is a finding."""
 CERTAIN = 5.0
 """Its standard errors, at least."""
 PIECE = 1.0
@@ -34,6 +33,8 @@ PIECE = 1.0
 LEAST_PIECES = 4
 UPRIGHT = 0.15
 """Vertical part of an accelerometer's error over its horizontal one, below which it may be a vertical that leans."""
+LEANING = 0.01
+"""Angle of a vertical from which it is told [rad] (assumed: robots stand as upright as that)."""
 INTERVAL = 1.96
 """Of a normal distribution, 95 %."""
 
@@ -50,6 +51,8 @@ class Offset:
     """Of that one's error [rad/s, m/s^2]."""
     left: float
     """Of it, what an error taken from other data leaves: other logs, or the other half of one."""
+    leans: float = 0.0
+    """Angle by which the vertical would lean that makes it as well [rad]; 0 where none would."""
 
     @property
     def unit(self) -> str:
@@ -64,6 +67,8 @@ class Offset:
     @property
     def says(self) -> str:
         """For people."""
+        if self.leans:
+            return f"feels a vertical that leans by {self.leans:.2g} rad against base_orientation: gravity, orientation or the accelerometer is off"
         source = "the rate of base_orientation" if self.kind == "gyro" else "the acceleration of the base's velocity and orientation, and gravity"
         values = ", ".join(f"{self.parameters[f'{self.kind}_{axis}'].value:.3g}" for axis in "xyz")
         return f"differs from {source} by a constant: {values} {self.unit} in its own axes"
@@ -82,11 +87,15 @@ def imu_offset(signals: Sequence[Signals], references: Sequence[Signals] = ()) -
         healthy, unsure = _together(*(np.array(part) for part in zip(*(_means(one)[:2] for one in references), strict=True)))
         told = np.isfinite(healthy)
         mean, error = np.where(told, mean - healthy, mean), np.where(told, np.hypot(error, unsure), error)
-    usual = np.repeat([GYRO, ACCELEROMETER], 3)
-    clear = np.isfinite(mean) & (np.abs(mean) > UNUSUAL * usual) & (np.abs(mean) > CERTAIN * error)
-    if not clear.any() or (not clear[:3].any() and _leans(signals[0], mean[3:])):
+    usual = np.array([p.typical for p in ImuBias.parameters])
+    clear = np.isfinite(mean) & (np.abs(mean) > CALIBRATED * usual) & (np.abs(mean) > CERTAIN * error)
+    if not clear.any():
         return None
-    part = slice(0, 3) if np.nanmax(np.abs(mean[:3]) / GYRO, initial=0) >= np.nanmax(np.abs(mean[3:]) / ACCELEROMETER, initial=0) else slice(3, 6)
+    leans = _leans(signals[0], mean[3:]) if not clear[:3].any() else 0.0
+    if 0 < leans < LEANING:
+        return None
+    over = np.abs(mean) / usual
+    part = slice(0, 3) if np.nanmax(over[:3], initial=0) >= np.nanmax(over[3:], initial=0) else slice(3, 6)
     apart = means[:, part] if len(means) > 1 else halves[0][:, part]
     others = (np.nansum(apart, 0) - apart) / max(len(apart) - 1, 1)
     left = float(np.sqrt(np.nanmean(np.sum((apart - others) ** 2, -1))))
@@ -95,7 +104,7 @@ def imu_offset(signals: Sequence[Signals], references: Sequence[Signals] = ()) -
         p.name: Value(float(m), float(m - INTERVAL * e), float(m + INTERVAL * e), p.unit) if np.isfinite(m) else Value(0.0, 0.0, 0.0, p.unit)
         for p, m, e in zip(ImuBias.parameters, mean, error, strict=True)
     }
-    return Offset(values, "gyro" if part.start == 0 else "accelerometer", size, min(left, size))
+    return Offset(values, "gyro" if part.start == 0 else "accelerometer", size, min(left, size), leans)
 
 
 def _means(signals: Signals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -132,12 +141,14 @@ def _together(means: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.nda
     return middle, np.hypot(own, between)
 
 
-def _leans(signals: Signals, error: np.ndarray) -> bool:
-    """Whether an accelerometer's error lies in the horizontal plane, as a leaning vertical's."""
+def _leans(signals: Signals, error: np.ndarray) -> float:
+    """Angle by which a vertical leans that makes an accelerometer's error [rad]; 0 where it lies not in the horizontal plane."""
     if signals.base is None or not np.isfinite(error).all():
-        return False
+        return 0.0
     rotation = np.nanmean(signals.base.rotation, 0) @ signals.subject.imu_rotation
     world = rotation @ error
-    up = signals.subject.gravity / max(float(np.linalg.norm(signals.subject.gravity)), 1e-9)
+    strength = max(float(np.linalg.norm(signals.subject.gravity)), 1e-9)
+    up = signals.subject.gravity / strength
     upright = float(world @ up)
-    return abs(upright) < UPRIGHT * float(np.linalg.norm(world - upright * up))
+    across = float(np.linalg.norm(world - upright * up))
+    return across / strength if abs(upright) < UPRIGHT * across else 0.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.fit import Cause, Design, Fit, parts
-from hyperleg_design.gap.held_out import Held, predict
+from hyperleg_design.gap.held_out import Held, doubt, predict
 from hyperleg_design.gap.holding import SURE, share
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ NEGATIVE = 8.0
 """Log prior odds against a load that weighs less than nothing, beyond what is declared."""
 CHATTERS = 12.0
 """Log odds for what can make control loops unstable, where one chatters that was damped (assumed: healthy loops are)."""
+PRESENT = 0.05
+"""Share of the time of the row that is known longest, for which a row must be known to count for the gap."""
 OWN_ROWS = 0.3
 """Rows are a cause's own where its trace has this share of its largest square over the floor."""
 EXPLAINED = 0.5
@@ -88,8 +90,8 @@ class Judge:
 
     @cached_property
     def floor(self) -> np.ndarray:
-        """Mean square that is expected of each group `(G,)`, in its unit."""
-        return self._means(self.base.samples.floor**2)
+        """Mean square that is expected of each group in data held out `(G,)`, in its unit."""
+        return self._means(self.base.samples.floor**2 * (1 + doubt(self.base)))
 
     def _means(self, values: np.ndarray) -> np.ndarray:
         """Of samples `(S,)`, by group `(G,)`."""
@@ -128,6 +130,17 @@ class Judge:
         return samples.group_row + np.where(samples.episodic, len(samples.rows), 0)
 
     @cached_property
+    def present(self) -> np.ndarray:
+        """Rows that are known for long enough to count for the gap `(rows,)` of bool."""
+        samples = self.base.samples
+        known = np.zeros(len(samples.rows))
+        keys = [(r.balance, r.column) for r in samples.rows]
+        for sieve in samples.sieves:
+            for row, mask in zip(sieve.rows, sieve.mask, strict=True):
+                known[keys.index((row.balance, row.column))] += mask.sum()
+        return known >= PRESENT * known.max(initial=0.0)
+
+    @cached_property
     def row_floor(self) -> np.ndarray:
         """Mean square that is expected of each row and of its episodes `(2 rows,)`."""
         return np.bincount(self.group_row, self.floor, 2 * len(self.base.samples.rows))
@@ -163,11 +176,12 @@ class Judge:
         excess = np.maximum(bare - 1, 0.0)
         episode = np.arange(len(excess)) >= len(self.base.samples.rows)
         excess[episode & (left > EXPLAINED * bare)] = 0.0
+        excess[~np.tile(self.present, 2)] = 0.0
         found = excess >= max(EXCESSIVE * float(excess.max(initial=0.0)), 1e-9)
         for place in range(len(model.causes) if len(model.causes) > 1 else 0):
             shown = self.shown(model, place)
             found |= (shown >= OWN_ROWS * shown.max()) & (excess > 0.5)
-        return found if found.any() else ~episode
+        return found if found.any() else ~episode & np.tile(self.present, 2)
 
     def gap(self, square: np.ndarray, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
         """Root mean square over some rows, each over its floor `()` or `(k,)`; squares as of `held_out.Held`."""

@@ -76,6 +76,25 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
     return tuple(sorted(found, key=lambda t: (-t.gain, t.shape.name, t.shape.row)))
 
 
+def of_base(judge: Judge) -> tuple[Told, ...]:
+    """Rhythms in the balance of a floating base, in which no joint's friction and no drive has a part: small pushes show there."""
+    base = judge.base
+    found = []
+    for row, one in enumerate(base.samples.rows):
+        if one.balance != "base":
+            continue
+        rhythm = shape.Shape("rhythm", row, f"{one.name} of the base: a push that repeats in time, whatever the motion")
+        columns = shape.columns(base, judge.nothing.fit, rhythm)
+        if columns is None:
+            continue
+        design = Design(base, ridge=columns)
+        fit = design.fit(scale=judge.nothing.fit.scale, rounds=ROUNDS)
+        held = predict(design, fit=fit)
+        own = np.arange(2 * len(base.samples.rows)) == row
+        found.append(Told(rhythm, judge.gain(fit, held), _beyond(judge, judge.nothing.held, held, own)))
+    return tuple(sorted(found, key=lambda t: (-t.gain, t.shape.row)))
+
+
 def _companions(judge: Judge, chosen: Model) -> np.ndarray | None:
     """Ways on which the friction of causes may turn over, as that of the model, weighted `(k, S)`."""
     samples = judge.base.samples

@@ -80,7 +80,7 @@ def joint_places(subject: Subject) -> tuple[np.ndarray, list[int]]:
 
 
 def trace_figure(shown: Evidence, title: str = "") -> Figure:
-    """Residual measured, explained and left, over time and over speed, of the row where the gap is largest."""
+    """Residual measured, explained and left, over time and, where the row has one, over speed, of the row where the gap is largest."""
     with figure_style():
         import matplotlib.pyplot as plt
 
@@ -89,7 +89,12 @@ def trace_figure(shown: Evidence, title: str = "") -> Figure:
         time, before, explained, after = (
             values[window] for values in (shown.time, shown.before[:, row], shown.explained[:, row], shown.after[:, row])
         )
-        figure, (left, right) = plt.subplots(1, 2, figsize=(10.5, 3.4), width_ratios=(2.4, 1), layout="constrained")
+        speed = shown.speed[:, row]
+        thin = np.flatnonzero(np.isfinite(speed) & np.isfinite(shown.before[:, row]))
+        thin = thin[:: max(1, len(thin) // 3000)]
+        panels = 2 if thin.size else 1
+        figure, axes = plt.subplots(1, panels, figsize=(10.5, 3.4), width_ratios=(2.4, 1)[:panels], layout="constrained", squeeze=False)
+        left = axes[0, 0]
         left.plot(time, before, color=_MEASURED, label="gap measured")
         left.plot(time, explained, color=_EXPLAINED, label="causes predict")
         left.plot(time, after, color=_LEFT, linewidth=1, label="left")
@@ -97,12 +102,11 @@ def trace_figure(shown: Evidence, title: str = "") -> Figure:
         left.set_ylabel(AXIS.get(shown.balance, "torque [Nm]"))
         left.set_title(title or f"{shown.rows[row]}, {shown.log}")
         left.legend(ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.16))
-        speed = shown.speed[:, row]
-        thin = np.flatnonzero(np.isfinite(speed) & np.isfinite(shown.before[:, row]))
-        thin = thin[:: max(1, len(thin) // 3000)]
-        right.plot(speed[thin], shown.before[thin, row], ".", color=_MEASURED, markersize=2)
-        right.plot(speed[thin], shown.explained[thin, row], ".", color=_EXPLAINED, markersize=2)
-        right.set_xlabel("speed [rad/s]")
+        if thin.size:
+            right = axes[0, 1]
+            right.plot(speed[thin], shown.before[thin, row], ".", color=_MEASURED, markersize=2)
+            right.plot(speed[thin], shown.explained[thin, row], ".", color=_EXPLAINED, markersize=2)
+            right.set_xlabel("speed [rad/s]")
         return figure
 
 
@@ -134,6 +138,41 @@ def knocking_figure(joints: Sequence[str], log: str, time: np.ndarray, left: np.
             panel.set_ylabel("torque [Nm]")
             panel.set_title(f"{joint}, {log}")
         panels[0][0].legend(ncols=2, loc="upper left", bbox_to_anchor=(0.0, -0.2))
+        return figure
+
+
+def slipping_figure(foot: str, log: str, speed: np.ndarray, ratio: np.ndarray, nominal: float, coefficient: float) -> Figure:
+    """A foot that slides: tangential force over load [-] at the speeds against it [m/s] of its contacts, beside the nominal ground's."""
+    with figure_style():
+        import matplotlib.pyplot as plt
+
+        figure, panel = plt.subplots(figsize=(10.5, 3.2), layout="constrained")
+        panel.plot(speed, ratio, linestyle="none", marker=".", markersize=3, alpha=0.4, color=_MEASURED, label="measured, each contact and tick")
+        panel.axhline(coefficient, color=_EXPLAINED, label=f"slides at {coefficient:.2f}")
+        panel.axhline(nominal, color=_MEASURED, linestyle="--", label=f"the model's ground, {nominal:.2f}")
+        panel.set_xlabel("speed against the force [m/s]")
+        panel.set_ylabel("tangential force over load")
+        panel.set_ylim(0.0, 1.3 * max(nominal, coefficient))
+        panel.set_title(f"{foot}, {log}")
+        panel.legend(ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.2))
+        return figure
+
+
+def sinking_figure(foot: str, log: str, load: np.ndarray, height: np.ndarray, nominal: np.ndarray, ratio: float) -> Figure:
+    """A foot that sinks: heights of its pads over their loads [N], each about its mean [m], beside the nominal ground's."""
+    with figure_style():
+        import matplotlib.pyplot as plt
+
+        figure, panel = plt.subplots(figsize=(10.5, 3.2), layout="constrained")
+        panel.plot(load, 1e3 * height, linestyle="none", marker=".", markersize=3, alpha=0.3, color=_MEASURED, label="measured, each pad and tick")
+        ends = np.array([float(load.min()), float(load.max())])
+        slope = float(load @ nominal / (load @ load))
+        panel.plot(ends, 1e3 * ratio * slope * ends, color=_EXPLAINED, label=f"gives {ratio:.2g} times as much")
+        panel.plot(ends, 1e3 * slope * ends, color=_MEASURED, linestyle="--", label="the model's ground")
+        panel.set_xlabel("load about its mean [N]")
+        panel.set_ylabel("height about its mean [mm]")
+        panel.set_title(f"{foot}, {log}")
+        panel.legend(ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.2))
         return figure
 
 

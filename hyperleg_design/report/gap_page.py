@@ -11,8 +11,13 @@ import numpy as np
 from hyperleg_design import provenance
 from hyperleg_design.gap.beside_balances import APART
 from hyperleg_design.gap.evidence import Evidence, evidence
+from hyperleg_design.gap.ground import footings
 from hyperleg_design.gap.knocking import struck
 from hyperleg_design.gap.loose import KNOCKING, RINGING, ringing
+from hyperleg_design.gap.sinking import EFFECT as SOFT
+from hyperleg_design.gap.sinking import SINKS, bearings
+from hyperleg_design.gap.slipping import EFFECT as SLIPPERY
+from hyperleg_design.gap.slipping import SLIPS, contacts
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_text import chosen
 from hyperleg_design.report.page import Cell, Details, Heading, Page, Picture, Section, Table, render
@@ -44,10 +49,19 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     """
     (folder / FIGURES).mkdir(exist_ok=True)
     causes, rivals, gap = list(diagnosis["causes"]), list(diagnosis["rivals"]), diagnosis["gap"]
-    shape, motor = _belt(diagnosis)  # what rings is in no balance
-    others = [cause for cause in causes if cause["location"] != motor]
-    shown = [] if shape == RINGING and not others else [evidence(one, others or causes, _balance(one, others or causes)) for one in signals]
-    pictures = [*(_noises(folder, shape, motor, signals) if motor else []), *(_traces(folder, shown, others) if others or not motor else [])]
+    shape, motor = _belt(diagnosis)
+    slid, sunk = _feet(diagnosis, SLIPS), _feet(diagnosis, SINKS)
+    of_feet = {*((SLIPPERY, foot) for foot in slid), *((SOFT, foot) for foot in sunk)}
+    others = [one for one in causes if one["location"] != motor and (one["effect"], one["location"]) not in of_feet]
+    apart = shape == RINGING or bool(of_feet)  # what rings is in no balance, and what feet tell in none in which it is the largest
+    shown = [] if apart and not others else [evidence(one, others or causes, _balance(one, others or causes)) for one in signals]
+    shown = [one for one in shown if np.isfinite(one.before).any()]  # joints that stand all the time show nothing
+    pictures = [
+        *(_noises(folder, shape, motor, signals) if motor else []),
+        *_slipping(folder, slid, signals),
+        *_sinking(folder, sunk, signals),
+        *(_traces(folder, shown, others) if others or not (motor or of_feet) else []),
+    ]
     sections = [
         Section("Where the gap lies", _where(folder, diagnosis, signals, shown)),
         Section("Measured against predicted", pictures),
@@ -153,10 +167,11 @@ def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[st
     for i, one in enumerate(shown[:2]):
         name = f"trace-{i + 1}.png"
         save(gap_figures.trace_figure(one), folder / FIGURES / name)
+        right = "; right, against speed" if np.isfinite(one.speed[:, one.worst]).any() else ""
         content.append(
             Picture(
                 f"{FIGURES}/{name}",
-                f"{one.rows[one.worst]} in {one.log}: torque that the model lacks, {says}, but for its rest; right, against speed.",
+                f"{one.rows[one.worst]} in {one.log}: torque that the model lacks, {says}, but for its rest{right}.",
             )
         )
     return content
@@ -197,6 +212,47 @@ def _knocking(folder: Path, motor: str, signals: Sequence[Signals]) -> list[Any]
         save(gap_figures.knocking_figure([joints[j] for j in told], one.log.name, time, left[:, told], explained[:, told]), folder / FIGURES / name)
         says = "two joints at once, in the proportions that one hidden motion makes; a torque would show in one of them."
         content.append(Picture(f"{FIGURES}/{name}", f"{one.log.name}, where it knocks hardest: {says}"))
+    return content
+
+
+def _feet(diagnosis: Mapping[str, Any], shape: str) -> list[str]:
+    """Feet that tell of their ground."""
+    return [str(one["location"]) for one in diagnosis.get("residual_shape", ()) if one["shape"] == shape]
+
+
+def _slipping(folder: Path, feet: Sequence[str], signals: Sequence[Signals]) -> list[Any]:
+    """Forces of feet that slide, over the speeds at which they do, in the log in which they do so most."""
+    content: list[Any] = []
+    for i, foot in enumerate(feet):
+        place = signals[0].subject.feet.index(foot)
+        found = [(one, shown) for one in signals if (shown := contacts(one, place)) is not None]
+        if not found:
+            continue
+        one, shown = max(found, key=lambda pair: int(pair[1].slides.sum()))
+        name, nominal = f"slipping-{i + 1}.png", footings(one)[place].friction
+        coefficient = float(np.median(shown.ratio[shown.slides])) if shown.slides.any() else nominal
+        drawn = gap_figures.slipping_figure(foot, one.log.name, shown.against[shown.loaded], shown.ratio[shown.loaded], nominal, coefficient)
+        save(drawn, folder / FIGURES / name)
+        says = "what sticks or creeps may have any force below the line, what slides has that of the line at any speed."
+        content.append(Picture(f"{FIGURES}/{name}", f"{foot} in {one.log.name}: {says}"))
+    return content
+
+
+def _sinking(folder: Path, feet: Sequence[str], signals: Sequence[Signals]) -> list[Any]:
+    """Heights over loads of feet that sink, in the log whose loads vary most."""
+    content: list[Any] = []
+    for i, foot in enumerate(feet):
+        found = [(one, pads) for one in signals if (pads := bearings(one, signals[0].subject.feet.index(foot)))]
+        if not found:
+            continue
+        one, pads = max(found, key=lambda pair: sum(pad.weight for pad in pair[1]))
+        load, height, nominal = (
+            np.concatenate([getattr(pad, name) - getattr(pad, name).mean() for pad in pads]) for name in ("load", "height", "nominal")
+        )
+        drawn = gap_figures.sinking_figure(foot, one.log.name, load, height, nominal, float(load @ height / (load @ nominal)))
+        save(drawn, folder / FIGURES / f"sinking-{i + 1}.png")
+        says = "how much lower a pad stands under more load is how the ground gives, wherever the floor lies."
+        content.append(Picture(f"{FIGURES}/sinking-{i + 1}.png", f"{foot} in {one.log.name}: {says}"))
     return content
 
 

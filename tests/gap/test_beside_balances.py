@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from diagnosed import run
 
-from hyperleg_design.gap.beside_balances import of_belt, of_imu
+from hyperleg_design.gap.beside_balances import of_belt, of_feet, of_imu
 from hyperleg_design.gap.diagnose import diagnose
-from hyperleg_design.gap.diagnosis import Named, Value
+from hyperleg_design.gap.diagnosis import Named, Place, Value
 from hyperleg_design.gap.imu_offset import PLACE, Offset
 from hyperleg_design.gap.loose import KNOCKING, Loose
+from hyperleg_design.gap.underfoot import Underfoot
 from hyperleg_design.report.gap_text import diagnosis_text
 
 OTHER = Named("coulomb_friction", "hip", 0.9, 0.8, {})
@@ -66,6 +67,15 @@ def test_a_sensor_does_not_explain_a_gap_that_is_unknown(none, offset):
     assert certain(told) < 1 + 1e-9
 
 
+def test_a_vertical_that_leans_is_an_unknown_gap_and_no_cause(none, offset):
+    leaning = replace(offset, kind="accelerometer", leans=0.03)
+    told = of_imu(none, leaning)
+    assert (told.verdict, told.causes) == ("unknown", ())
+    assert names(told.rivals)[0] == PLACE
+    assert "leans by 0.03 rad" in diagnosis_text(told.mapping())
+    assert names(of_imu(replace(none, verdict="explained", causes=(OTHER,)), leaning).causes) == [("coulomb_friction", "hip")]
+
+
 def test_a_belt_is_the_cause_where_nothing_else_is(none):
     told = of_belt(none, BELT)
     assert told.verdict == "ambiguous"
@@ -84,3 +94,47 @@ def test_a_belt_beside_another_cause_leaves_that_ones_gap_as_it_is(none):
     assert names(told.causes) == [("coulomb_friction", "hip"), ("backlash", "m_back")]
     assert told.gap == explained.gap
     assert (told.verdict, told.residual_shape[0]["location"]) == ("ambiguous", "m_back")
+
+
+def feet(effect, shape, says, unit):
+    return tuple(
+        Underfoot(effect, foot, {"scale": Value(0.5, 0.4, 0.6, "")}, shape, says, weight, 30.0, 3.0, unit)
+        for foot, weight in (("left_foot", 2.0), ("right_foot", 1.0))
+    )
+
+
+SLIDING, SOFT = feet("ground_friction", "slips", "slides for 2 s", "N"), feet("ground_compliance", "sinks", "sinks by 1 mm", "m")
+BOTH = [("ground_friction", "left_foot"), ("ground_friction", "right_foot")]
+
+
+def test_slippery_ground_is_the_cause_where_nothing_else_is(none):
+    told = of_feet(none, SLIDING)
+    assert (told.verdict, names(told.causes)) == ("explained", BOTH)
+    assert (told.gap.before, told.gap.unit) == (pytest.approx(30.0), "N")
+    assert told.gap.closed == pytest.approx(0.9)
+    assert [(w.location, w.share) for w in told.where] == [("left_foot", pytest.approx(2 / 3)), ("right_foot", pytest.approx(1 / 3))]
+    assert sum(r.probability for r in told.rivals) < 0.06
+    assert "slides for 2 s" in diagnosis_text(told.mapping())
+
+
+def test_slippery_ground_is_one_cause_more_beside_others_and_is_not_named_twice(none):
+    told = of_feet(replace(none, verdict="explained", causes=(OTHER,)), SLIDING)
+    assert names(told.causes) == [("coulomb_friction", "hip"), *BOTH]
+    assert of_feet(told, SLIDING) is told
+    assert of_feet(none, ()) is none
+
+
+def test_an_unknown_gap_under_feet_that_slide_is_theirs_and_another_is_not(none):
+    unknown = replace(none, verdict="unknown")
+    under = (Place("left_foot", "foot", "all", 0.4), Place("right_foot", "foot", "all", 0.3), Place("hip", "joint", "all", 0.3))
+    assert of_feet(replace(unknown, where=under), SLIDING).verdict == "explained"
+    elsewhere = of_feet(replace(unknown, where=(Place("hip", "joint", "all", 1.0),)), SLIDING)
+    assert (elsewhere.verdict, elsewhere.causes) == ("unknown", ())
+    assert names(elsewhere.rivals)[0] == BOTH[0]
+
+
+def test_soft_ground_that_creeps_is_not_slippery_but_one_that_feet_slide_on_may_be(none):
+    slippery = Named("ground_friction", "left_foot", 0.9, 0.5, {})
+    soft = [("ground_compliance", foot) for _, foot in BOTH]
+    assert names(of_feet(replace(none, verdict="explained", causes=(slippery,)), SOFT).causes) == soft
+    assert names(of_feet(of_feet(none, SLIDING), SOFT).causes) == [*BOTH, *soft]

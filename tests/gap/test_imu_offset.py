@@ -89,13 +89,16 @@ def test_the_sensors_own_axes_are_told(swaying, subject):
 
 
 def test_a_vertical_that_leans_is_not_blamed_on_the_accelerometer(swaying, subject):
-    assert found(subject, off(swaying, felt=(0.5, 0.3, 0.0))) is None
-    assert found(subject, off(swaying, felt=(0.5, 0.3, 0.4))) is not None
+    told = found(subject, off(swaying, felt=(0.5, 0.3, 0.0)))
+    assert told.leans == pytest.approx(np.hypot(0.5, 0.3) / 9.81, rel=0.1)
+    assert "leans by 0.05" in told.says
+    assert found(subject, off(swaying, felt=(0.06, 0.0, 0.0))) is None
+    assert found(subject, off(swaying, felt=(0.5, 0.3, 0.4))).leans == 0
 
 
 def test_errors_as_usual_and_those_of_references_are_no_news(swaying, subject):
     log = swaying
-    assert found(subject, off(log, gyro=(0.005, 0, 0), felt=(0.05, 0, 0.05))) is None
+    assert found(subject, off(log, gyro=(0.002, 0, 0), felt=(0.03, 0, 0.03))) is None
     assert found(subject, off(log, GYRO_OFF), references=[off(log, GYRO_OFF)]) is None
     assert found(subject, off(log, GYRO_OFF), references=[log]) is not None
 
