@@ -97,6 +97,8 @@ def decide(
     singles, not_judged = _finalists(judge, wanted, ())
     chosen, slots = _chosen(judge, wanted, singles)
     rows = judge.excess_rows(chosen if chosen.causes or not singles else singles[0])
+    if not chosen.causes:
+        rows = _calm(judge, rows)
     shaped = shaping.instead(judge, chosen, rows, max((m.gain for m in singles), default=0.0)) or shaping.beside(judge, chosen, rows)
     lost = 0.0 if _sags(judge, chosen, rows) else _lost(base.samples, chosen.held.left, thresholds)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
@@ -121,6 +123,12 @@ def decide(
         if belt is not None and verdict == "explained" and len(_elsewhere(chosen, belt, signals[0].subject)) < len(chosen.causes):
             belt = None
     return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, belt, (*not_judged, *swung))
+
+
+def _calm(judge: Judge, rows: np.ndarray) -> np.ndarray:
+    """Rows that count without their episodes, which only a cause that is named may explain."""
+    calm = rows & (np.arange(len(rows)) < len(judge.base.samples.rows))
+    return calm if calm.any() else judge.excess_rows(judge.nothing)
 
 
 def _elsewhere(chosen: Model, belt: Loose, subject: Subject) -> tuple[Cause, ...]:
