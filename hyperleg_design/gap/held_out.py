@@ -15,6 +15,8 @@ FREEDOM = 40.0
 """Most degrees of freedom of a predictive distribution: the scale of other data is never known better (assumed)."""
 
 
+AT_ONCE = 20_000
+"""Samples whose doubt is computed at once, for memory's sake."""
 _DOUBTS: WeakKeyDictionary[Base, dict[int, np.ndarray]] = WeakKeyDictionary()
 
 
@@ -94,10 +96,13 @@ def doubt(base: Base, way: int = BLOCKS) -> np.ndarray:
         for fold in range(samples.folds(way)):
             weight = 1 / design.fit(way, fold, scale, rounds=2).scale
             for session in range(samples.sessions):
-                here = (fold_of == fold) & (session_of == session)
-                if here.any():
-                    normal = base.part(way, fold, session, False).weighed(weight)[:-1, :-1] + base.prior.precision
-                    mine = base.errors[:, here]
-                    found[here] = np.einsum("ps,ps->s", mine, np.linalg.solve(normal, mine))
+                here = np.flatnonzero((fold_of == fold) & (session_of == session))
+                if not here.size:
+                    continue
+                known = np.linalg.inv(base.part(way, fold, session, False).weighed(weight)[:-1, :-1] + base.prior.precision)
+                for start in range(0, here.size, AT_ONCE):
+                    part = here[start : start + AT_ONCE]
+                    mine = base.errors[:, part]
+                    found[part] = np.einsum("ps,ps->s", mine, known @ mine)
         kept[way] = found / samples.share
     return kept[way]

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import diagnosed
 import numpy as np
 import pytest
@@ -24,3 +26,13 @@ def test_effects_that_scale_torques_pay_and_others_do_not(robot_files):
     assert factor(samples, "viscous_friction", "hip", np.array([1.0])) is None
     friction = factor(samples, "load_dependent_friction", "hip", np.array([0.1]))
     assert friction is not None
+
+
+def test_a_torque_that_is_nothing_over_the_floor_gains_nothing_by_being_scaled_up(robot_files):
+    samples = diagnosed.prepared(robot_files["coupled"], diagnosed.run("healthy", 0)).base.samples
+    own = factor(samples, "torque_constant", "m_front", np.array([0.08]))
+    assert own.shows == 1
+    faint = replace(samples, floor=1e3 * samples.floor)
+    hidden = factor(faint, "torque_constant", "m_front", np.array([0.08]))
+    assert hidden.log(2.0) == 0
+    assert hidden.log(-2.0) == pytest.approx(own.log(-2.0))

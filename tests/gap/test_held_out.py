@@ -4,7 +4,7 @@ import pytest
 from hyperleg_design.gap.base import number_of
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.fit import Design
-from hyperleg_design.gap.held_out import predict
+from hyperleg_design.gap.held_out import doubt, predict
 from hyperleg_design.gap.samples import BLOCKS, LOGS
 from hyperleg_design.gap.screen import linearise
 
@@ -34,3 +34,30 @@ def test_a_fold_and_all_but_it_are_everything(viscous_ready):
     whole = number_of(base, BLOCKS, None, True)
     assert np.allclose(number_of(base, BLOCKS, 2, True) + number_of(base, BLOCKS, 2, False), whole)
     assert whole.sum() == pytest.approx(base.samples.share.sum())
+
+
+@pytest.mark.parametrize("way", [BLOCKS, LOGS])
+def test_what_others_leave_open_is_what_their_priors_would_foretell(viscous_ready, way):
+    """Against a direct computation, of one sample of each fold: its errors' covariance given all samples of the other folds."""
+    base = viscous_ready.base
+    samples, design = base.samples, Design(base)
+    found = doubt(base, way)
+    scale = design.fit().scale
+    for fold in range(samples.folds(way)):
+        inside = samples.fold[way][samples.part] == fold
+        one = int(np.flatnonzero(inside)[0])
+        session = samples.session[samples.part]
+        weight = 1 / design.fit(way, fold, scale, rounds=2).scale
+        others = base.errors[:, ~inside & (session == session[one])]
+        weighed = others * weight[samples.group[~inside & (session == session[one])]]
+        covariance = np.linalg.inv(weighed @ others.T + base.prior.precision)
+        mine = base.errors[:, one] / np.sqrt(samples.share[one])
+        assert found[one] == pytest.approx(mine @ covariance @ mine, rel=1e-6)
+    assert np.all(found >= 0)
+
+
+def test_a_row_that_other_blocks_pin_down_is_hardly_open(viscous_ready):
+    base = viscous_ready.base
+    found = doubt(base)
+    prior = np.einsum("ps,pq,qs->s", base.errors, base.prior.covariance, base.errors) / base.samples.share
+    assert found.mean() < 0.3 * prior.mean()

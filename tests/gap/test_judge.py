@@ -62,3 +62,18 @@ def test_a_choice_is_told_as_it_was_made(judge, weak_motor):
     read = judge.model([linearise(samples, effect, motor, np.array([1.0, 1.0]))])
     assert read.values(0)[1] == 1.0
     assert weak_motor.values(0)[1] == 0.0
+
+
+def test_rows_that_are_known_for_a_moment_do_not_count(judge, right, viscous_ready):
+    samples = viscous_ready.base.samples
+    assert judge.present.all()
+    knee = next(i for i, r in enumerate(samples.rows) if r.name == "knee" and r.balance == "motion")
+    sieves = []
+    for sieve in samples.sieves:
+        mask = sieve.mask.copy()
+        mask[knee, 20:] = False
+        sieves.append(replace(sieve, mask=mask))
+    short = Judge(replace(viscous_ready.base, samples=replace(samples, sieves=tuple(sieves))), load_thresholds(), 1)
+    assert short.present.tolist() == [i != knee for i in range(len(samples.rows))]
+    assert judge.excess_rows(right)[knee]
+    assert not short.excess_rows(right)[knee]

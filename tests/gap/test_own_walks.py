@@ -1,5 +1,6 @@
 """Walks of our own simulator against its own model: nothing is wrong, and what an overlay adds is found."""
 
+import numpy as np
 import pytest
 
 from hyperleg_design.evaluation.evaluate import evaluate
@@ -60,3 +61,26 @@ def test_what_an_overlay_adds_is_found(tmp_path, effect, location, parameter, va
     found = diagnose(tmp_path / "logs" / logs[0].metadata.robot, logs, threads=2)
     assert [(cause.effect, cause.location) for cause in found.causes] == [(effect, location)]
     assert found.causes[0].parameters[parameter].value == pytest.approx(value, rel=0.1)
+
+
+@pytest.mark.slow
+def test_a_small_push_that_repeats_shows_in_the_balance_of_the_base_alone(tmp_path):
+    """8 N on a robot of 350 N: taken from what the feet are said to bear, as a push from outside is not."""
+    from hyperleg_design.gap.judge import Judge
+    from hyperleg_design.gap.shaping import of_base, tells
+
+    (log,) = walked(tmp_path)
+    push = 8.0 * np.clip(np.sin(2 * np.pi * 0.7 * log.time), 0, None) ** 6
+    total = sum(np.maximum(log.signals[f"contact_force/{pad}_z"], 0.0) for pad in log.feet)
+    shares = {pad: np.maximum(log.signals[f"contact_force/{pad}_z"], 0.0) / np.maximum(total, 1.0) for pad in log.feet}
+    pushed = log.changed(
+        signals={**log.signals, **{f"contact_force/{p}_y": log.signals[f"contact_force/{p}_y"] - s * push for p, s in shares.items()}}
+    )
+    rules, told = load_thresholds(), []
+    for one in (log, pushed):
+        subject = load_subject(tmp_path / "logs" / one.metadata.robot, [one])
+        judge = Judge(prepare([condition(one, subject)], [], rules).base, rules, 1)
+        told.append(of_base(judge))
+        assert tells(rules, judge.nothing, told[-1]) == (one is pushed)
+    assert judge.base.samples.rows[told[1][0].shape.row].name in ("force_y", "moment_x")  # at the feet, far below the base
+    assert told[1][0].gain > told[0][0].gain + 10
