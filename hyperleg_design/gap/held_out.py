@@ -94,7 +94,7 @@ def doubt(base: Base, way: int = BLOCKS) -> np.ndarray:
         found = np.zeros(len(samples.value))
         fold_of, session_of = samples.fold[way][samples.part], samples.session[samples.part]
         for fold in range(samples.folds(way)):
-            weight = 1 / design.fit(way, fold, scale, rounds=2).scale
+            weight = 1 / np.minimum(design.fit(way, fold, scale, rounds=2).scale, 1.0)  # a gap does not make the other blocks tell less
             for session in range(samples.sessions):
                 here = np.flatnonzero((fold_of == fold) & (session_of == session))
                 if not here.size:

@@ -47,7 +47,7 @@ def test_what_others_leave_open_is_what_their_priors_would_foretell(viscous_read
         inside = samples.fold[way][samples.part] == fold
         one = int(np.flatnonzero(inside)[0])
         session = samples.session[samples.part]
-        weight = 1 / design.fit(way, fold, scale, rounds=2).scale
+        weight = 1 / np.minimum(design.fit(way, fold, scale, rounds=2).scale, 1.0)
         others = base.errors[:, ~inside & (session == session[one])]
         weighed = others * weight[samples.group[~inside & (session == session[one])]]
         covariance = np.linalg.inv(weighed @ others.T + base.prior.precision)
