@@ -68,20 +68,14 @@ def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
     if any((c.effect, c.location) == PLACE for c in told.causes):
         return told
     shape = {"shape": OFFSET, "location": PLACE[1], "says": offset.says, "closed_beyond": offset.closed, "gain": 0.0}
-    shapes = (shape, *told.residual_shape)
-    rivals = [r for r in told.rivals if (r.effect, r.location) != PLACE]
-    beside = sum(r.probability for r in rivals)
+    told = replace(told, residual_shape=(shape, *told.residual_shape), rivals=tuple(r for r in told.rivals if (r.effect, r.location) != PLACE))
     cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
     if told.causes:
-        return replace(told, causes=told.causes if offset.leans else (*told.causes, cause), rivals=tuple(rivals), residual_shape=shapes)
+        return told if offset.leans else replace(told, causes=(*told.causes, cause))
     if told.verdict == "unknown" or offset.leans:
-        part = replace(cause, probability=max(1 - beside, 0.0) / 2)
-        return replace(told, verdict="unknown", rivals=(part, *rivals)[:MOST_RIVALS], residual_shape=shapes)
-    scaled = tuple(replace(r, probability=r.probability * OTHER_SENSOR / max(beside, 1.0), closed=0.0) for r in rivals)
+        return replace(_with_part(told, cause), verdict="unknown")
     gap = Shrinkage(offset.size, offset.left, 0.0, offset.closed, (offset.closed, offset.closed), offset.unit)
-    return replace(
-        told, verdict="explained", gap=gap, where=(Place(PLACE[1], "sensor", "all", 1.0),), causes=(cause,), rivals=scaled, residual_shape=shapes
-    )
+    return _instead(told, (cause,), gap, (Place(PLACE[1], "sensor", "all", 1.0),))
 
 
 def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
@@ -94,24 +88,33 @@ def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     if not feet:
         return told
     noted = ({"shape": one.shape, "location": one.foot, "says": one.says, "closed_beyond": one.closed, "gain": 0.0} for one in feet)
-    shapes = (*noted, *told.residual_shape)
+    effects = {one.effect for one in feet}
+    told = replace(told, residual_shape=(*noted, *told.residual_shape), rivals=tuple(r for r in told.rivals if r.effect not in effects))
     causes = tuple(Named(*one.name, 1 - OTHER_GROUND, one.closed, one.parameters) for one in feet)
-    rivals = tuple(r for r in told.rivals if r.effect not in {one.effect for one in feet})
     if told.causes:
-        return replace(told, causes=(*told.causes, *causes), rivals=rivals, residual_shape=shapes)
-    beside = sum(r.probability for r in rivals)
+        return replace(told, causes=(*told.causes, *causes))
     theirs = sum(w.share for w in told.where if w.regime == "all" and w.kind == "foot" and w.location in {one.foot for one in feet})
     if told.verdict == "unknown" and theirs < OF_FEET:
-        part = replace(causes[0], probability=max(1 - beside, 0.0) / 2)
-        return replace(told, rivals=(part, *rivals)[:MOST_RIVALS], residual_shape=shapes)
-    scaled = tuple(replace(r, probability=r.probability * OTHER_GROUND / max(beside, 1.0), closed=0.0) for r in rivals)
+        return _with_part(told, causes[0])
     weight = sum(one.weight for one in feet)
     before = sum(one.weight * one.size**2 for one in feet) / weight
     after = sum(one.weight * one.left**2 for one in feet) / weight
     closed = 1 - (after / before) ** 0.5
     gap = Shrinkage(before**0.5, after**0.5, 0.0, closed, (closed, closed), feet[0].unit)
-    where = tuple(Place(one.foot, "foot", "all", one.weight * one.size**2 / (before * weight)) for one in feet)
-    return replace(told, verdict="explained", gap=gap, where=where, causes=causes, rivals=scaled, residual_shape=shapes)
+    return _instead(told, causes, gap, tuple(Place(one.foot, "foot", "all", one.weight * one.size**2 / (before * weight)) for one in feet))
+
+
+def _with_part(told: Diagnosis, cause: Named) -> Diagnosis:
+    """An unknown gap, of which a cause may be a part."""
+    beside = sum(r.probability for r in told.rivals)
+    return replace(told, rivals=(replace(cause, probability=max(1 - beside, 0.0) / 2), *told.rivals)[:MOST_RIVALS])
+
+
+def _instead(told: Diagnosis, causes: tuple[Named, ...], gap: Shrinkage, where: tuple[Place, ...]) -> Diagnosis:
+    """Causes alone, with a gap of their own; what was a rival shares what is left of the first one's probability."""
+    beside, otherwise = sum(r.probability for r in told.rivals), 1 - causes[0].probability
+    rivals = tuple(replace(r, probability=r.probability * otherwise / max(beside, 1.0), closed=0.0) for r in told.rivals)
+    return replace(told, verdict="explained", gap=gap, where=where, causes=causes, rivals=rivals)
 
 
 def _without_creep(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
@@ -119,4 +122,8 @@ def _without_creep(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     slid = {one["location"] for one in told.residual_shape if one["shape"] == SLIPS}
     soft = {(SLIPPERY, one.foot) for one in feet if one.shape == SINKS and one.foot not in slid}
     kept = tuple(c for c in told.causes if (c.effect, c.location) not in soft)
-    return told if len(kept) == len(told.causes) else replace(told, causes=kept)
+    if len(kept) == len(told.causes):
+        return told
+    sets = tuple(group for group in told.equivalent if not soft.intersection(group))
+    verdict = "explained" if told.verdict == "ambiguous" and not sets else told.verdict
+    return replace(told, verdict=verdict, causes=kept, equivalent=sets, separating_experiment=told.separating_experiment if sets else None)

@@ -80,13 +80,14 @@ def _slip(foot: str, place: int, signals: Sequence[Signals], references: Sequenc
     scale = ratio / usual
     if abs(scale - 1) < UNUSUAL * GROUND:
         return None
-    own = [one for one in logs if one.time >= LEAST_TIME]
-    parts = own if len(own) > 1 else _halves(logs)
-    others = [float(np.median(np.concatenate([o.ratio for o in parts if o is not one]))) for one in parts]
-    load = np.concatenate([one.load for one in parts])
-    told = np.concatenate([one.ratio for one in parts])
+    parts = [(one.load, one.ratio) for one in logs if one.time >= LEAST_TIME]
+    if len(parts) < 2:
+        loads = np.concatenate([one.load for one in logs])
+        parts = list(zip(*(np.split(values, [len(ratios) // 2]) for values in (loads, ratios)), strict=True))
+    load, told = (np.concatenate(values) for values in zip(*parts, strict=True))
+    others = [float(np.median(np.concatenate([r for i, (_, r) in enumerate(parts) if i != place]))) for place in range(len(parts))]
     size = float(np.sqrt(np.mean((load * (told - usual)) ** 2)))
-    left = float(np.sqrt(np.mean((load * (told - np.repeat(others, [len(one.load) for one in parts]))) ** 2)))
+    left = float(np.sqrt(np.mean((load * (told - np.repeat(others, [len(r) for _, r in parts]))) ** 2)))
     reach = INTERVAL * scale * float(np.hypot(unsure, _spread(told) / 2))
     value = Value(scale, max(scale - reach, 0.0), scale + reach, "")
     time = sum(one.time for one in logs)
@@ -108,13 +109,6 @@ def _coefficient(logs: Sequence[_Sliding]) -> float | None:
 def _spread(values: np.ndarray) -> float:
     low, middle, high = np.percentile(values, [25, 50, 75])
     return float((high - low) / middle)
-
-
-def _halves(logs: Sequence[_Sliding]) -> list[_Sliding]:
-    """Of all logs' ticks, in order."""
-    load, ratio, edges = (np.concatenate([getattr(one, name) for one in logs]) for name in ("load", "ratio", "along_edges"))
-    middle = len(load) // 2
-    return [_Sliding(load[p], ratio[p], edges[p], 0.0, ratio[p]) for p in (slice(None, middle), slice(middle, None))]
 
 
 @dataclass(frozen=True, eq=False)

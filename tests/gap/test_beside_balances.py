@@ -138,3 +138,6 @@ def test_soft_ground_that_creeps_is_not_slippery_but_one_that_feet_slide_on_may_
     soft = [("ground_compliance", foot) for _, foot in BOTH]
     assert names(of_feet(replace(none, verdict="explained", causes=(slippery,)), SOFT).causes) == soft
     assert names(of_feet(of_feet(none, SLIDING), SOFT).causes) == [*BOTH, *soft]
+    alike = replace(none, verdict="ambiguous", causes=(OTHER, slippery), equivalent=((BOTH[0], ("link_mass", "hip")),))
+    told = of_feet(alike, SOFT)
+    assert (told.verdict, told.equivalent, names(told.causes)) == ("explained", (), [("coulomb_friction", "hip"), *soft])
