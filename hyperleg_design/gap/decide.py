@@ -40,14 +40,14 @@ OWN_WORTH = 0.5
 """Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
 SAG, SAGGED = "voltage_sag", 0.03
 """Effect of a weak battery; share of the voltage that must be missing where reference logs tell what it is when all is well."""
-AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.95
+CLEARER = 0.8
+"""Share of the squares that calibration errors leave of a small gap which its cause leaves at most."""
+AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.9
 """Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
-BEYOND_DOUBT = 1.5
-"""Evidence, over that which a further cause needs, of a first cause that is named however little it leaves over the floor."""
 HELD = 0.5
 """Share of what a joint holds that friction must explain."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
@@ -99,6 +99,8 @@ def decide(
     rows = judge.excess_rows(chosen if chosen.causes or not singles else singles[0])
     if not chosen.causes:
         rows = _calm(judge, rows)
+    elif float(judge.gap(chosen.held.bare, rows)) < thresholds.least_gap:
+        rows = judge.own(chosen, 0)
     shaped = shaping.instead(judge, chosen, rows, max((m.gain for m in singles), default=0.0)) or shaping.beside(judge, chosen, rows)
     lost = 0.0 if _sags(judge, chosen, rows) else _lost(base.samples, chosen.held.left, thresholds)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
@@ -163,6 +165,7 @@ def _chosen(judge: Judge, wanted: Sequence[tuple[str, str]], singles: list[Model
         further = next((m for m in more if _further(judge, m, chosen)), None)
         if further is None:
             break
+        further = _likelier(judge, more, further)
         chosen, slots = further, [*slots, _from(more, further)]
         if len(chosen.causes) == 2:
             chosen, slots = _swapped(judge, wanted, chosen, slots)
@@ -204,11 +207,21 @@ def _named(judge: Judge, model: Model) -> bool:
     if not _visible(judge, model) or _seldom(judge, model):
         return False
     rows = judge.excess_rows(model)
-    if float(judge.gap(model.held.bare, rows)) < rules.least_gap and model.gain < BEYOND_DOUBT * rules.second_evident:
-        return False
-    if judge.closed(model.held, rows, model.held) >= rules.worth:
+    large = float(judge.gap(model.held.bare, rows)) >= rules.least_gap
+    if large and judge.closed(model.held, rows, model.held) >= rules.worth:
         return True
-    return model.gain >= rules.second_evident and _closes_own(judge, model, judge.nothing, OWN_WORTH, rules.least_gap)
+    if model.gain < rules.second_evident:
+        return False
+    return _closes_own(judge, model, judge.nothing, OWN_WORTH, rules.least_gap) or _stands_out(judge, model)
+
+
+def _stands_out(judge: Judge, model: Model) -> bool:
+    """Whether a lone cause, however small over the floor, makes up half of what there is where it shows, even beside calibration errors."""
+    if model.causes[0].effect in AT_LIMITS:
+        return False
+    own = np.flatnonzero(judge.own(model, 0) & (judge.shown(model, 0) >= judge.thresholds.visible**2))
+    bare, left, nothing = (float(judge.rows(v)[own].sum()) for v in (model.held.bare, model.held.square, judge.nothing.held.square))
+    return bool(own.size) and left <= (1 - OWN_WORTH) * bare and left <= CLEARER * nothing
 
 
 def _further(judge: Judge, model: Model, before: Model) -> bool:
@@ -218,6 +231,8 @@ def _further(judge: Judge, model: Model, before: Model) -> bool:
     """
     rules, already = judge.thresholds, len(before.causes)
     gain = model.gain - before.gain
+    if gain >= rules.second_evident * already and _rests(judge, model) and not _rests(judge, before):
+        return True
     if not _visible(judge, model) or _seldom(judge, model):
         return False
     if gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth):
@@ -227,6 +242,13 @@ def _further(judge: Judge, model: Model, before: Model) -> bool:
     if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or float(np.sqrt(calm.max())) < rules.second_visible:
         return False
     return _kept(model, before)
+
+
+def _likelier(judge: Judge, more: Sequence[Model], further: Model) -> Model:
+    """A model that is much likelier than the one that shows that a further cause is needed: that one imitates it."""
+    least = rank(further) + judge.thresholds.alike
+    found = (m for m in more if m.causes[-1].effect not in AT_LIMITS and _visible(judge, m) and not _seldom(judge, m))
+    return next((m for m in found if rank(m) > least), further)
 
 
 def _kept(model: Model, before: Model) -> bool:
@@ -241,6 +263,14 @@ def _kept(model: Model, before: Model) -> bool:
 def _rests(judge: Judge, model: Model) -> bool:
     """Whether a model explains what a joint shows at rest, which is in no row."""
     return any(judge.held(model, joint) >= HELD for joint in judge.holds)
+
+
+def _sticks_alone(judge: Judge, model: Model, rows: np.ndarray) -> bool:
+    """Whether a model explains what joints show at rest, and only these still have a gap."""
+    held = {joint for joint in judge.holds if judge.held(model, joint) >= HELD}
+    large = rows & (judge.rows(model.held.square) > judge.thresholds.largest_excess**2)
+    names = {judge.base.samples.rows[i % len(judge.base.samples.rows)].name for i in np.flatnonzero(large).tolist()}
+    return bool(held) and names <= held
 
 
 def _visible(judge: Judge, model: Model) -> bool:
@@ -303,7 +333,7 @@ def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots
     """Look for the first cause again beside the second: forward selection may have begun with what looked like both."""
     models, _ = _finalists(judge, wanted, pair.causes[1:])
     turned = [_turned(m) for m in models]
-    if turned and turned[0].gain > pair.gain + 1e-6 and turned[0].names != pair.names:
+    if turned and rank(turned[0]) > rank(pair) + 1e-6 and turned[0].names != pair.names:
         return turned[0], [tuple(turned), slots[1]]
     return pair, [tuple(turned) if any(t.names == pair.names for t in turned) else slots[0], slots[1]]
 
@@ -341,7 +371,7 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[sha
     left = float(judge.gap(chosen.held.square, rows))
     far = rules.far_required ** (1 / len(chosen.causes))  # several causes that still leave much are the less likely
     needed = far if left > rules.far else rules.required if left > rules.largest_excess else -np.inf
-    short = judge.closed(chosen.held, rows, chosen.held) < needed and not _rests(judge, chosen)
+    short = judge.closed(chosen.held, rows, chosen.held) < needed and not _sticks_alone(judge, chosen, rows)
     if beyond or short:
         return "unknown"
     return "explained"

@@ -242,6 +242,10 @@ class _Report:
         whole = np.where(self.found.rows, judge.rows(self.found.model.held.bare), 0.0)
         calm = judge.rows(self.found.model.held.bare)[: len(samples.rows)]
         excess = judge.present * np.maximum(calm - 1, 0.0) + np.maximum(whole[len(samples.rows) :] - 1, 0.0)
+        if self.found.slots and float(judge.gap(self.found.model.held.bare, self.found.rows)) < judge.thresholds.least_gap:
+            # a small cause that stands out, though it is not over the floor
+            left = judge.rows(self.found.model.held.square)[: len(samples.rows)]
+            excess = np.where(self.found.rows[: len(samples.rows)], np.maximum(calm - left, 0.0), 0.0)
         shares: dict[tuple[str, str], float] = {}
         for row, value in zip(samples.rows, excess, strict=True):
             key = (
@@ -304,9 +308,12 @@ class _Report:
         return tuple(causes), tuple(sorted(rivals.values(), key=lambda r: (-r.probability, -r.closed, r.effect, r.location)))
 
     def rivals_of_none(self) -> tuple[Named, ...]:
-        """What was tried though nothing is wrong."""
+        """What was tried though nothing is wrong; what the rules did not find worth its name is less likely than that."""
         table = self.probabilities([])[0]
-        return tuple(Named(*m.causes[0].name, table.get(m.names, 0.0), self.closed(m), parameters(self.judge, m, 0)) for m in self.found.singles[:3])
+        share = min(1.0, (1 - self.judge.thresholds.likely) / max(sum(table.values()), 1e-300))
+        return tuple(
+            Named(*m.causes[0].name, share * table.get(m.names, 0.0), self.closed(m), parameters(self.judge, m, 0)) for m in self.found.singles[:3]
+        )
 
     def shape(self) -> tuple[dict[str, Any], ...]:
         """What the residual beside the causes looks like."""

@@ -32,6 +32,8 @@ UNSEEN = {"voltage_sag": 6.0, "thermal_derating": 1.0}
 """Log prior odds against what follows a signal that nobody logged: a model of it fits much."""
 NEGATIVE = 8.0
 """Log prior odds against a load that weighs less than nothing, beyond what is declared."""
+INWARD, OUTERMOST = 3.0, 2.0
+"""Log prior odds against a load far from the ends of a robot, and for one on a link that carries none (assumed: loads hang on hands)."""
 CHATTERS = 12.0
 """Log odds for what can make control loops unstable, where one chatters that was damped (assumed: healthy loops are)."""
 PRESENT = 0.05
@@ -39,7 +41,7 @@ PRESENT = 0.05
 OWN_ROWS = 0.3
 """Rows are a cause's own where its trace has this share of its largest square over the floor."""
 EXPLAINED = 0.5
-"""Share of the squares in episodes that a model leaves at most, if they are to count."""
+"""Share of the squares in episodes that a model leaves at most, also of what calibration errors alone leave, if they are to count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,6 +169,12 @@ class Judge:
         trace = cause.trace((model.values(place) - cause.nulls) / cause.usual)
         return np.bincount(self.group_row, self._means(trace**2), 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
 
+    def own(self, model: Model, place: int) -> np.ndarray:
+        """Rows, their episodes left out, in which one cause shows most `(2 rows,)` of bool."""
+        shown = self.shown(model, place)
+        calm = np.arange(len(shown)) < len(self.base.samples.rows)
+        return calm & (shown > 0) & (shown >= OWN_ROWS * shown[calm].max())
+
     def excess_rows(self, model: Model) -> np.ndarray:
         """Rows that count for the gap `(2 rows,)` of bool: those with much excess when a model's causes are left out.
 
@@ -175,7 +183,7 @@ class Judge:
         bare, left = self.rows(model.held.bare), self.rows(model.held.square)
         excess = np.maximum(bare - 1, 0.0)
         episode = np.arange(len(excess)) >= len(self.base.samples.rows)
-        excess[episode & (left > EXPLAINED * bare)] = 0.0
+        excess[episode & (left > EXPLAINED * np.minimum(bare, self.rows(self.nothing.held.square)))] = 0.0
         excess[~np.tile(self.present, 2)] = 0.0
         found = excess >= max(EXCESSIVE * float(excess.max(initial=0.0)), 1e-9)
         for place in range(len(model.causes) if len(model.causes) > 1 else 0):
@@ -200,8 +208,11 @@ def rank(model: Model) -> float:
 
 
 def plausible(model: Model) -> float:
-    """Log prior of the last cause of a model, over that of any other."""
-    cause = model.causes[-1]
+    """Log prior of a model's causes, each over that of any other in its place."""
+    return sum(_odds(cause, model.values(place)) for place, cause in enumerate(model.causes))
+
+
+def _odds(cause: Cause, values: np.ndarray) -> float:
     free = len(cause.nulls) - (int(cause.shape.sum()) if cause.linear else 0)
     found = -PER_PARAMETER * free + RARE.get(cause.effect, 0.0)
     if cause.unsettling:
@@ -209,7 +220,7 @@ def plausible(model: Model) -> float:
     if cause.unseen:
         found -= UNSEEN[cause.effect]
     if cause.effect == "link_mass":
-        found -= HEAVIER * max(abs(float(model.values(len(model.causes) - 1)[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0)
-    if cause.effect == "payload" and model.values(len(model.causes) - 1)[0] < -cause.declared:
-        found -= NEGATIVE
+        found -= HEAVIER * max(abs(float(values[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0)
+    if cause.effect == "payload":
+        found -= NEGATIVE * (values[0] < -cause.declared) + INWARD * (cause.beyond > 1) - OUTERMOST * (cause.beyond == 0)
     return found

@@ -66,6 +66,16 @@ class Mechanism:
             joint = int(self.parent[joint])
         return found[::-1]
 
+    def beyond(self, name: str) -> int:
+        """Most joints in a row that a link carries: 0 at the ends of a robot, 1 of feet with toes and hands with fingers.
+
+        1 of a floating base, and of what is no link.
+        """
+        if name not in (*self.links, *self.joints) or (joint := int(self.link_joint[self.link(name)])) == BASE:
+            return 1
+        chains = [self.chain(j) for j in range(self.count)]
+        return max(len(chain) - 1 - chain.index(joint) for chain in chains if joint in chain)
+
     def link(self, name: str) -> int:
         """Place of a link, given by its own name or by that of the joint that carries it (its outermost link).
 

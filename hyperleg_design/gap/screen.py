@@ -120,8 +120,9 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     unseen = driver is not None and all(getattr(s.signals, driver) is None for s in samples.sieves)
     shakes = _unsettling(samples, effect, location)
     return Cause(
-        effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen, shakes
-    )
+        effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen, shakes,
+        subject.tree.beyond(location),
+    )  # fmt: skip
 
 
 def _unsettling(samples: Samples, effect: Effect, location: str) -> bool:

@@ -5,7 +5,7 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.decide import _as_healthy, _fails, _seldom, _verdict, decide
+from hyperleg_design.gap.decide import _as_healthy, _fails, _likelier, _seldom, _stands_out, _sticks_alone, _verdict, decide
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.judge import Judge, rank
 from hyperleg_design.gap.screen import places
@@ -95,3 +95,45 @@ def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives(share, ef
     judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
     judge.shown = lambda model, place: np.array([0.5, 9.0] if episode else [9.0, 0.5])
     assert _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect),))) is seldom
+
+
+def rows_of(shown, bare, left, nothing, gain=20.0, effect="coulomb_friction"):
+    """A judge and a model of one cause, by what there is in two rows and their episodes."""
+    samples = SimpleNamespace(rows=(SimpleNamespace(name="hip", balance="motion"), SimpleNamespace(name="knee", balance="motion")))
+    held = {k: np.array(v) for k, v in (("bare", bare), ("left", left), ("nothing", nothing), ("shown", shown))}
+    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds(), rows=lambda kind: held[kind], holds={})
+    judge.shown = lambda model, place: held["shown"]
+    judge.own = lambda model, place: np.array([False, True, False, False])
+    judge.nothing = SimpleNamespace(held=SimpleNamespace(square="nothing"))
+    cause = SimpleNamespace(effect=effect)
+    return judge, SimpleNamespace(causes=(cause,), gain=gain, held=SimpleNamespace(bare="bare", square="left"))
+
+
+def test_a_small_cause_stands_out_if_it_is_most_of_what_there_is():
+    shown = (0.0, 0.9, 0.0, 0.0)
+    assert _stands_out(*rows_of(shown, (0.5, 1.0, 0, 0), (0.5, 0.2, 0, 0), (0.5, 0.4, 0, 0)))
+    assert not _stands_out(*rows_of(shown, (0.5, 1.0, 0, 0), (0.5, 0.6, 0, 0), (0.5, 0.9, 0, 0)))
+    assert not _stands_out(*rows_of(shown, (0.5, 1.0, 0, 0), (0.5, 0.2, 0, 0), (0.5, 0.2, 0, 0))), "calibration errors leave as little"
+    assert not _stands_out(*rows_of((0.0, 0.1, 0.0, 0.0), (0.5, 1.0, 0, 0), (0.5, 0.2, 0, 0), (0.5, 0.4, 0, 0))), "hardly to be seen"
+    limited = rows_of(shown, (0.5, 1.0, 0, 0), (0.5, 0.2, 0, 0), (0.5, 0.4, 0, 0), effect="torque_saturation")
+    assert not _stands_out(*limited), "healthy drives reach limits"
+
+
+def test_a_joint_that_sticks_excuses_its_own_gap_alone():
+    rows = np.array([True, True, False, False])
+    for left, excused in (((9.0, 1.0, 0, 0), True), ((9.0, 9.0, 0, 0), False)):
+        judge, model = rows_of((1.0, 1.0, 0, 0), (9.0, 9.0, 0, 0), left, (9.0, 9.0, 0, 0))
+        judge.holds, judge.held = {"hip": 2.0}, lambda model, joint: 0.9
+        assert _sticks_alone(judge, model, rows) is excused
+        judge.held = lambda model, joint: 0.1
+        assert not _sticks_alone(judge, model, rows)
+
+
+def test_what_is_much_likelier_is_named_and_not_what_imitates_it(judged):
+    judge, found = judged
+    right, imitation = found.slots[0][0], found.slots[0][1]
+    assert rank(right) > rank(imitation) + judge.thresholds.alike
+    assert _likelier(judge, found.slots[0], imitation).names == right.names
+    assert _likelier(judge, found.slots[0][1:], imitation).names == imitation.names
+    unseen = replace(right, causes=(replace(right.causes[0], effect="torque_saturation"),))
+    assert _likelier(judge, [unseen, imitation], imitation).names == imitation.names

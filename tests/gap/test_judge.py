@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.judge import PER_PARAMETER, RARE, Judge, plausible, rank
+from hyperleg_design.gap.judge import INWARD, OUTERMOST, PER_PARAMETER, RARE, Judge, plausible, rank
 from hyperleg_design.gap.screen import linearise
 from hyperleg_design.gap.thresholds import load_thresholds
 
@@ -77,3 +77,17 @@ def test_rows_that_are_known_for_a_moment_do_not_count(judge, right, viscous_rea
     assert short.present.tolist() == [i != knee for i in range(len(samples.rows))]
     assert judge.excess_rows(right)[knee]
     assert not short.excess_rows(right)[knee]
+
+
+def test_loads_hang_at_the_ends_and_odds_are_of_all_causes(judge, right):
+    hung = replace(right.causes[0], effect="payload", beyond=1)
+    ends, inward = (replace(right, causes=(replace(hung, beyond=n),)) for n in (0, 3))
+    assert plausible(ends) - plausible(replace(right, causes=(hung,))) == pytest.approx(OUTERMOST)
+    assert plausible(replace(right, causes=(hung,))) - plausible(inward) == pytest.approx(INWARD)
+    both = judge.model([right.causes[0], replace(right.causes[0], location="hip")])
+    assert plausible(both) == pytest.approx(2 * plausible(right))
+
+
+def test_rows_are_a_causes_own_where_it_shows_and_no_episodes_are(judge, right):
+    own = judge.own(right, 0)
+    assert [judge.base.samples.rows[r].name for r in np.flatnonzero(own)] == ["knee"]

@@ -14,6 +14,16 @@ def test_mass_of_the_tree_is_mass_of_the_model():
     assert subject.tree.link_inertial[:, 0].sum() == pytest.approx(total, rel=1e-12)
 
 
+def test_ends_of_a_robot_carry_nothing():
+    tree = load_subject("hyperleg").tree
+    carried = {link: tree.beyond(link) for link in ("left_toe_plate", "left_foot", "left_shank", "left_thigh")}
+    assert carried["left_toe_plate"] == 0
+    assert carried["left_foot"] == 1
+    assert 1 < carried["left_shank"] < carried["left_thigh"]
+    assert tree.beyond("left_toe") == 0  # a joint stands for what it carries
+    assert tree.beyond("pelvis") == tree.beyond("no such link") == 1
+
+
 def test_inertial_parameters_move_there_and_back():
     rng = np.random.default_rng(0)
     root = rng.normal(size=(3, 3))

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 LARGEST_LOSS = 0.95
 """Share of a link's own mass that may be missing at most."""
+RIDGE = 1e-3
+"""Damping of a linear fit that finds a start, over the regressor's own size."""
 
 
 class InertialEffect(Effect):
@@ -100,6 +102,17 @@ class AddedInertia(Alteration):
         mujoco.mju_mat2Quat(quaternion, vectors.ravel())
         model.body_mass[index], model.body_ipos[index], model.body_inertia[index], model.body_iquat[index] = mass, com, values, quaternion
         model.body_simple[index] = 0
+
+
+def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
+    """Some of the first four inertial parameters that a linear fit to a log adds to a link; None where it shows none of them."""
+    residual = signals.residual["motion"]
+    known = np.isfinite(residual) & signals.valid[:, None]
+    columns, values = rigid.link_regressor(signals, link)[..., :4][known][:, part], residual[known]
+    square = columns.T @ columns
+    if not len(values) or np.trace(square) <= 0:
+        return None
+    return np.asarray(np.linalg.solve(square + RIDGE * np.trace(square) / 4 * np.eye(len(square)), columns.T @ values))
 
 
 def least_mass(subject: Subject, link: str) -> float:

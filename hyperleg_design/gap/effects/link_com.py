@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Parameter
-from hyperleg_design.gap.effects.inertial import InertialEffect
+from hyperleg_design.gap.effects.inertial import InertialEffect, fitted
 from hyperleg_design.gap.mechanism import inertial_parameters, mass_properties
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
 
 
@@ -31,3 +32,14 @@ class LinkCom(InertialEffect):
         """Of the moved link less the link, see `InertialEffect.added`."""
         mass, com, inertia = mass_properties(own)
         return np.stack([inertial_parameters(mass, com + shift, inertia) - inertial_parameters(mass, com, inertia) for shift in values])
+
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """The shift that a linear fit of the first moment to the log finds, and the usual one along each axis."""
+        tree, usual = signals.subject.tree, self.usual(location, signals.subject)
+        low, high = self.bounds(location, signals.subject)
+        tried = [*np.diag(usual), *-np.diag(usual)]
+        moment = fitted(signals, location, slice(1, 4))
+        if moment is not None:
+            tried.insert(0, moment / tree.link_inertial[tree.link(location), 0])
+        found = np.clip(tried, low, high)
+        return np.asarray(found[found.any(1)])

@@ -6,16 +6,13 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Parameter
-from hyperleg_design.gap.effects.inertial import InertialEffect, carried_mass, least_mass
+from hyperleg_design.gap.effects.inertial import InertialEffect, carried_mass, fitted, least_mass
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
 
-RIDGE = 1e-3
-"""Damping of the linear fit that finds a start, over the regressor's own size."""
 SHARE = 0.2
 """Usual payload over the mass that moves with the link (assumed: tools and batteries; a UR10e carries 2.8 kg on 33 kg of arm)."""
 
@@ -69,13 +66,8 @@ class Payload(InertialEffect):
         low, high = self.bounds(location, signals.subject)
         shown = self.example(location, signals.subject)
         tried = [shown, shown * np.array([-1.0, 1.0, 1.0, 1.0, 1.0])]
-        residual = signals.residual["motion"]
-        known = np.isfinite(residual) & signals.valid[:, None]
-        columns, values = rigid.link_regressor(signals, location)[..., :4][known], residual[known]
-        square = columns.T @ columns
-        if len(values) and square[0, 0] > 0:
-            fitted = np.linalg.solve(square + RIDGE * np.trace(square) / 4 * np.eye(4), columns.T @ values)
-            if abs(fitted[0]) > 1e-3 * shown[0]:
-                tried.insert(0, np.array([fitted[0], *(fitted[1:] / fitted[0]), 0.0]))
+        first = fitted(signals, location, slice(4))
+        if first is not None and abs(first[0]) > 1e-3 * shown[0]:
+            tried.insert(0, np.array([first[0], *(first[1:] / first[0]), 0.0]))
         found = np.clip(tried, low, high)
         return np.asarray(found[found[:, 0] != 0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -139,3 +140,20 @@ def test_bounds_leave_something_of_a_link(arm):
     assert effect("link_mass").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.95 * 2.3)
     assert effect("payload").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.95 * 2.3)
     assert effect("payload").bounds("flange", arm.subject)[0, 0] == 0.0
+
+
+@pytest.mark.parametrize("name", ["payload", "link_com"])
+@pytest.mark.parametrize("values", [[1.2, 0.08, -0.06, 0.1, 0.0], [1.2, -0.05, 0.07, 0.02, 0.0]])
+def test_a_start_is_near_what_is_there_wherever_it_lies(name, values, arm):
+    one, link = effect(name), "forearm"
+    truth = np.array(values if name == "payload" else values[1:4])
+    wrong = replace(arm, residual=arm.residual | {"motion": one.trace(arm, link, truth[None])["motion"][0]})
+    first = one.starts(wrong, link)[0]
+    there, found = one.trace(arm, link, np.stack([truth, first]))["motion"]
+    assert np.square(there - found).mean() < 0.05 * np.square(there).mean()
+
+
+def test_without_a_residual_the_usual_starts_are_left(arm):
+    for name in ("payload", "link_com"):
+        still = replace(arm, residual=arm.residual | {"motion": np.full_like(arm.residual["motion"], np.nan)})
+        assert len(effect(name).starts(still, "forearm")) == (2 if name == "payload" else 6)
