@@ -42,12 +42,18 @@ SAG, SAGGED = "voltage_sag", 0.03
 """Effect of a weak battery; share of the voltage that must be missing where reference logs tell what it is when all is well."""
 CLEARER = 0.8
 """Share of the squares that calibration errors leave of a small gap which its cause leaves at most."""
-AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.9
+AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.95
 """Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
+SEVERAL = 2
+"""Joints that must be off at times for it to be a gap where nobody measured drives: one alone may have its own friction."""
+PLAIN = 2.0
+"""Times the evidence that a further cause needs from which it need only be as large as the floor to stand for large calibration errors."""
+LIMITS_AT_ONCE = 2
+"""Drives that give less than their limit at once, from which there is rather something common to them: firmware that shapes motion, a supply."""
 HELD = 0.5
 """Share of what a joint holds that friction must explain."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
@@ -74,6 +80,8 @@ class Decision:
     """Joints that chatter though none of the causes can make them, nor a belt beside causes that explain the rest."""
     belt: Loose | None
     """That rings, or lets its joints knock about."""
+    failing: dict[int, float]
+    """Rows that are far off for a share of the time which no cause explains, where nothing else is wrong."""
     not_judged: tuple[screen.NotJudged, ...]
 
 
@@ -116,7 +124,8 @@ def decide(
         shaken = ()
     elif lost or shaken:
         verdict = "unknown"
-    if verdict == "none" and (_fails(base.samples, thresholds) or any(judge.held(chosen, joint) < HELD for joint in judge.holds)):
+    failing = _fails(base.samples, thresholds) if verdict == "none" else {}
+    if failing or (verdict == "none" and any(judge.held(chosen, joint) < HELD for joint in judge.holds)):
         verdict = "unknown"
     if verdict == "none" and shaping.tells(thresholds, chosen, pushes := shaping.of_base(judge)):
         verdict, shaped = "unknown", pushes
@@ -124,7 +133,7 @@ def decide(
         belt = knocking(signals, references, [_motion(chosen, one) for one in signals] if verdict == "explained" else ())
         if belt is not None and verdict == "explained" and len(_elsewhere(chosen, belt, signals[0].subject)) < len(chosen.causes):
             belt = None
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, belt, (*not_judged, *swung))
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, belt, failing, (*not_judged, *swung))
 
 
 def _calm(judge: Judge, rows: np.ndarray) -> np.ndarray:
@@ -235,11 +244,12 @@ def _further(judge: Judge, model: Model, before: Model) -> bool:
         return True
     if not _visible(judge, model) or _seldom(judge, model):
         return False
-    if gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth):
+    if gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth, 1.0):
         return True
     # Large calibration errors may hide what it leaves; then it must show clearly, away from episodes, and be likelier than they are.
     calm = judge.shown(model, already)[: len(judge.base.samples.rows)]
-    if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or float(np.sqrt(calm.max())) < rules.second_visible:
+    least = 1.0 if gain >= PLAIN * rules.second_evident * already else rules.second_visible
+    if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or float(np.sqrt(calm.max())) < least:
         return False
     return _kept(model, before)
 
@@ -293,9 +303,17 @@ def _of_time(samples: Samples, row: int) -> float:
     return float(samples.share[own & samples.episodic[samples.group]].sum() / max(samples.share[own].sum(), 1e-300))
 
 
-def _fails(samples: Samples, rules: Thresholds) -> bool:
-    """Whether a drive does not do what it is told, more often than healthy ones at their limits."""
-    return any(row.balance == "drive" and _of_time(samples, place) > rules.failing for place, row in enumerate(samples.rows))
+def _fails(samples: Samples, rules: Thresholds) -> dict[int, float]:
+    """Rows of drives that do not do what they are told, more often than healthy ones at their limits, and for how much of the time.
+
+    Where nobody measured what drives give, of joints, if several are so often off.
+    """
+    often = {place: share for place in range(len(samples.rows)) if (share := _of_time(samples, place)) > rules.failing}
+    found = {place: share for place, share in often.items() if samples.rows[place].balance == "drive"}
+    if any(row.balance == "drive" for row in samples.rows):
+        return found
+    found = {place: share for place, share in often.items() if samples.rows[place].balance == "motion"}
+    return found if len(found) >= SEVERAL else {}
 
 
 def _as_healthy(samples: Samples) -> bool:
@@ -372,6 +390,7 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[sha
     far = rules.far_required ** (1 / len(chosen.causes))  # several causes that still leave much are the less likely
     needed = far if left > rules.far else rules.required if left > rules.largest_excess else -np.inf
     short = judge.closed(chosen.held, rows, chosen.held) < needed and not _sticks_alone(judge, chosen, rows)
-    if beyond or short:
+    limited = sum(c.effect == "torque_saturation" for c in chosen.causes)
+    if beyond or short or limited >= LIMITS_AT_ONCE:
         return "unknown"
     return "explained"

@@ -324,6 +324,10 @@ class _Report:
             found.append({"shape": "lost_commands", "location": "robot", "says": says, "closed_beyond": 0.0, "gain": 0.0})
         for joint in self.found.chatter:
             found.append({"shape": "chatter", "location": joint, "says": swings(self.signals, joint), "closed_beyond": 0.0, "gain": 0.0})
+        for row, share in self.found.failing.items():
+            gives = "its drive does not give what it was told" if samples.rows[row].balance == "drive" else "it does not move as its torque says"
+            says = f"for {100 * share:.1f} % of the time {gives}, and no listed effect says why"
+            found.append({"shape": "episodes", "location": samples.rows[row].name, "says": says, "closed_beyond": 0.0, "gain": 0.0})
         for one, gain, closed in self.found.shaped[:MOST_SHAPES]:
             if gain > 0 and closed > 0:
                 place = "robot" if one.row < 0 else samples.rows[one.row].name

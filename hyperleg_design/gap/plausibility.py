@@ -43,7 +43,7 @@ STUCK = 0.5
 
 def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
     """All that does not fit."""
-    found = [*_motion(log), *_targets(log), *_magnitudes(log), *_torques(log, subject), *_stuck(log)]
+    found = [*_motion(log), *_targets(log, subject), *_magnitudes(log), *_torques(log, subject), *_stuck(log)]
     return found + (_robot(log, subject) if subject is not None else [])
 
 
@@ -84,7 +84,7 @@ def _motion(log: Log) -> list[Finding]:
     return found
 
 
-def _targets(log: Log) -> list[Finding]:
+def _targets(log: Log, subject: Subject | None) -> list[Finding]:
     joints = [j for j in log.joints if log.has("position_target", j)]
     if not joints:
         return []
@@ -105,14 +105,26 @@ def _targets(log: Log) -> list[Finding]:
         if abs(fit[i]) < STRANGE and rivals[best] > FITS and _correlations(target, position[:, i])[best] > FITS:
             text = f"is followed by {joints[best]} (correlation {rivals[best]:.2f}), not by {joint} ({fit[i]:.2f})"
             found.append(Finding(ERROR, column, text, "the columns of two joints are swapped: rename them"))
-        elif fit[i] < -FITS and ratio < 10:
-            found.append(Finding(ERROR, column, "runs against its position", "flip the sign of one of the two"))
+        elif fit[i] < -FITS and ratio < 10 and not _pushed(log, subject, joint):
+            # what stands on the ground, and whose torques nobody logged, may be pushed against its targets
+            severity = WARNING if log.metadata.base == "floating" else ERROR
+            found.append(Finding(severity, column, "runs against its position", "flip the sign of one of the two"))
         elif fit[i] > STRANGE and (abs(ratio / DEGREES - 1) < 0.4 or abs(ratio * DEGREES - 1) < 0.4):
             # a soft joint may follow its target as little; then neither turns as far as degrees would say
             severity = ERROR if max(np.nanmax(np.abs(target[:, i])), np.nanmax(np.abs(position[:, i]))) > HALF_TURN else WARNING
             text = f"moves {ratio:.3g} times as far as its position: one of the two {'is' if severity == ERROR else 'may be'} in degrees"
             found.append(Finding(severity, column, text, "convert both to rad"))
     return found
+
+
+def _pushed(log: Log, subject: Subject | None, joint: str) -> bool:
+    """Whether torques at a joint are those that its target asks for, so that it is a load that moves it the other way."""
+    motors = {joint}
+    if subject is not None and joint in subject.joints:
+        turned = subject.motor_from_joint[:, subject.joints.index(joint)] != 0
+        motors |= {motor for motor, here in zip(subject.motors, turned, strict=True) if here}
+    held = [(asked, torque) for column, asked, torque in _asked(log, subject) if column.partition("/")[2] in motors]
+    return any(_slopes(asked[:, None], torque[:, None])[1][0] > STRANGE for asked, torque in held)
 
 
 def _magnitudes(log: Log) -> list[Finding]:

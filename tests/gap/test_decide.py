@@ -54,6 +54,13 @@ def test_causes_that_leave_far_more_than_the_floor_must_close_most_of_it(judged)
         assert _verdict(replace(judge, thresholds=several), found.model, found.rows, ()) == verdict
 
 
+def test_several_drives_at_limits_that_nobody_declared_have_something_else_in_common(judged):
+    judge, found = judged
+    limit = replace(found.model.causes[0], effect="torque_saturation")
+    for causes, verdict in (((limit,), "explained"), ((limit, replace(limit, location="hip")), "unknown")):
+        assert _verdict(judge, replace(found.model, causes=causes), found.rows, ()) == verdict
+
+
 def supplied(voltage, nominal):
     subject = SimpleNamespace(voltage=nominal)
     return SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(voltage=v, subject=subject)) for v in voltage])
@@ -68,11 +75,13 @@ def test_a_battery_as_full_as_in_reference_logs_is_no_cause():
     assert not _as_healthy(supplied([full[0], None], 48.0))
 
 
-def in_episodes(share, balance="drive"):
-    """One row of 1000 samples in two groups, the second its episodes."""
-    group = (np.arange(1000) < 1000 * share).astype(int)
-    rows = (SimpleNamespace(balance=balance),)
-    return SimpleNamespace(rows=rows, row=np.zeros(1000, int), group=group, episodic=np.array([False, True]), share=np.full(1000, 0.5))
+def in_episodes(share, *balances):
+    """Rows of 1000 samples each in two groups, the second their episodes."""
+    balances = balances or ("drive",)
+    group = np.tile((np.arange(1000) < 1000 * share).astype(int), len(balances))
+    rows = tuple(SimpleNamespace(balance=balance) for balance in balances)
+    row = np.repeat(np.arange(len(balances)), 1000)
+    return SimpleNamespace(rows=rows, row=row, group=group, episodic=np.array([False, True]), share=np.full(len(row), 0.5))
 
 
 def test_a_drive_that_often_fails_its_commands_is_a_gap():
@@ -80,6 +89,11 @@ def test_a_drive_that_often_fails_its_commands_is_a_gap():
     assert _fails(in_episodes(1.2 * rules.failing), rules)
     assert not _fails(in_episodes(0.8 * rules.failing), rules)
     assert not _fails(in_episodes(1.2 * rules.failing, "motion"), rules)
+    assert _fails(in_episodes(1.2 * rules.failing, "motion", "motion"), rules)
+    assert not _fails(in_episodes(0.8 * rules.failing, "motion", "motion"), rules)
+    told = in_episodes(1.2 * rules.failing, "motion", "motion", "drive")
+    told.group[told.row == 2] = 0
+    assert not _fails(told, rules), "drives that were measured do what they are told"
 
 
 @pytest.mark.parametrize(("share", "effect", "line", "episode", "seldom"), [
