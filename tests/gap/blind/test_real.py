@@ -57,3 +57,12 @@ def test_cases_of_the_real_logs(tmp_path):
     for case in (cases[0], cases[12], cases[-1]):
         subject = load_subject(case.robot, [*case.logs, *case.references])
         assert set(case.logs[0].joints) <= set(subject.joints)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not data_folder().is_dir(), reason="the real logs are not on this machine")
+def test_no_cause_is_named_on_real_logs_that_is_not_one():
+    found = score_real(data_folder())
+    wrong = [(row.name, row.said) for row in found.rows if row.said and not row.right]
+    assert wrong == []
+    assert sum(row.right for row in found.rows) >= 8
