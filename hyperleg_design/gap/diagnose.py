@@ -158,8 +158,18 @@ class _Report:
         return self.kept[id(model)][1]
 
     def closed(self, model: Model) -> float:
-        """Share of the excess gap that a model closes."""
+        """Share of the excess gap that a model closes; of a small cause's, over what is left with it."""
+        if self.small:
+            chosen, rows = self.held(self.found.model), self.found.rows
+            before, least, after = (float(self.judge.gap(v, rows)) for v in (chosen.bare, chosen.square, self.held(model).square))
+            return float(np.clip((before - after) / max(before - least, 1e-9), -9.99, 1.0))
         return float(np.clip(self.judge.closed(self.held(model), self.found.rows, self.held(self.found.model)), -9.99, 1.0))
+
+    @property
+    def small(self) -> bool:
+        """Whether a cause is named that stands out though it is not over the floor."""
+        judge, found = self.judge, self.found
+        return bool(found.slots) and float(judge.gap(found.model.held.bare, found.rows)) < judge.thresholds.least_gap
 
     def diagnosis(self) -> Diagnosis:
         """All of it."""
@@ -242,8 +252,7 @@ class _Report:
         whole = np.where(self.found.rows, judge.rows(self.found.model.held.bare), 0.0)
         calm = judge.rows(self.found.model.held.bare)[: len(samples.rows)]
         excess = judge.present * np.maximum(calm - 1, 0.0) + np.maximum(whole[len(samples.rows) :] - 1, 0.0)
-        if self.found.slots and float(judge.gap(self.found.model.held.bare, self.found.rows)) < judge.thresholds.least_gap:
-            # a small cause that stands out, though it is not over the floor
+        if self.small:
             left = judge.rows(self.found.model.held.square)[: len(samples.rows)]
             excess = np.where(self.found.rows[: len(samples.rows)], np.maximum(calm - left, 0.0), 0.0)
         shares: dict[tuple[str, str], float] = {}

@@ -1,12 +1,14 @@
 import json
+from types import SimpleNamespace
 
 import diagnosed
 import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.diagnose import diagnose, diagnose_signals
+from hyperleg_design.gap.diagnose import _Report, diagnose, diagnose_signals
 from hyperleg_design.gap.diagnosis import SCHEMA_FILE
+from hyperleg_design.gap.thresholds import load_thresholds
 
 
 def found(robot_files, kind, seeds=(0, 1), references=(), **options):
@@ -92,3 +94,15 @@ def test_a_log_in_degrees_is_refused(robot_files):
     wrong = log.changed(signals={c: np.degrees(v) if c.startswith("velocity/") else v for c, v in log.signals.items()})
     with pytest.raises(InputError, match="rad"):
         diagnose(robot_files["coupled"], [wrong])
+
+
+def test_of_a_small_gap_rivals_close_what_they_close_over_what_is_left():
+    held = {name: SimpleNamespace(held=SimpleNamespace(bare=0.9, square=left)) for name, left in (("chosen", 0.4), ("rival", 0.65), ("none", 0.9))}
+    report = object.__new__(_Report)
+    report.judge = SimpleNamespace(gap=lambda value, rows: value, thresholds=load_thresholds())
+    report.found = SimpleNamespace(slots=((held["chosen"],),), rows=np.ones(1, bool), model=held["chosen"])
+    report.held = lambda model: model.held
+    assert report.small
+    assert [report.closed(held[name]) for name in ("chosen", "rival", "none")] == pytest.approx([1.0, 0.5, 0.0])
+    held["chosen"].held.bare = 1.2
+    assert not report.small, "a gap over the floor is measured against the floor"
