@@ -138,7 +138,7 @@ def decide(
 
 def _calm(judge: Judge, rows: np.ndarray) -> np.ndarray:
     """Rows that count without their episodes, which only a cause that is named may explain."""
-    calm = rows & (np.arange(len(rows)) < len(judge.base.samples.rows))
+    calm = rows & judge.calm
     return calm if calm.any() else judge.excess_rows(judge.nothing)
 
 
@@ -247,7 +247,7 @@ def _further(judge: Judge, model: Model, before: Model) -> bool:
     if gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth, 1.0):
         return True
     # Large calibration errors may hide what it leaves; then it must show clearly, away from episodes, and be likelier than they are.
-    calm = judge.shown(model, already)[: len(judge.base.samples.rows)]
+    calm = judge.shown(model, already)[judge.calm]
     least = 1.0 if gain >= PLAIN * rules.second_evident * already else rules.second_visible
     if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or float(np.sqrt(calm.max())) < least:
         return False
@@ -270,14 +270,14 @@ def _kept(model: Model, before: Model) -> bool:
     return True
 
 
-def _rests(judge: Judge, model: Model) -> bool:
-    """Whether a model explains what a joint shows at rest, which is in no row."""
-    return any(judge.held(model, joint) >= HELD for joint in judge.holds)
+def _rests(judge: Judge, model: Model) -> set[str]:
+    """Joints of which a model explains what they show at rest, which is in no row."""
+    return {joint for joint in judge.holds if judge.held(model, joint) >= HELD}
 
 
 def _sticks_alone(judge: Judge, model: Model, rows: np.ndarray) -> bool:
     """Whether a model explains what joints show at rest, and only these still have a gap."""
-    held = {joint for joint in judge.holds if judge.held(model, joint) >= HELD}
+    held = _rests(judge, model)
     large = rows & (judge.rows(model.held.square) > judge.thresholds.largest_excess**2)
     names = {judge.base.samples.rows[i % len(judge.base.samples.rows)].name for i in np.flatnonzero(large).tolist()}
     return bool(held) and names <= held
@@ -308,12 +308,10 @@ def _fails(samples: Samples, rules: Thresholds) -> dict[int, float]:
 
     Where nobody measured what drives give, of joints, if several are so often off.
     """
-    often = {place: share for place in range(len(samples.rows)) if (share := _of_time(samples, place)) > rules.failing}
-    found = {place: share for place, share in often.items() if samples.rows[place].balance == "drive"}
-    if any(row.balance == "drive" for row in samples.rows):
-        return found
-    found = {place: share for place, share in often.items() if samples.rows[place].balance == "motion"}
-    return found if len(found) >= SEVERAL else {}
+    balance = "drive" if any(row.balance == "drive" for row in samples.rows) else "motion"
+    shares = {place: _of_time(samples, place) for place, row in enumerate(samples.rows) if row.balance == balance}
+    found = {place: share for place, share in shares.items() if share > rules.failing}
+    return found if balance == "drive" or len(found) >= SEVERAL else {}
 
 
 def _as_healthy(samples: Samples) -> bool:
@@ -335,10 +333,9 @@ def _closes_own(judge: Judge, model: Model, before: Model, worth: float, least: 
     """
     shown = judge.shown(model, len(model.causes) - 1)
     own = (shown >= OWN_ROWS * shown.max()) & (shown > 0)
-    calm = own & (np.arange(len(shown)) < len(judge.base.samples.rows))
     without, with_it = judge.rows(before.held.square), judge.rows(model.held.square)
     in_episodes = max(worth, AT_LIMITS_WORTH) if model.causes[-1].effect in AT_LIMITS else worth
-    for rows, share in ((calm, worth), (own, in_episodes)):
+    for rows, share in ((own & judge.calm, worth), (own, in_episodes)):
         if not rows.any():
             continue
         left, less = float(without[rows].mean()), float(with_it[rows].mean())

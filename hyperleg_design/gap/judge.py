@@ -169,11 +169,15 @@ class Judge:
         trace = cause.trace((model.values(place) - cause.nulls) / cause.usual)
         return np.bincount(self.group_row, self._means(trace**2), 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
 
+    @cached_property
+    def calm(self) -> np.ndarray:
+        """Rows that are no episodes `(2 rows,)` of bool."""
+        return np.repeat([True, False], len(self.base.samples.rows))
+
     def own(self, model: Model, place: int) -> np.ndarray:
         """Rows, their episodes left out, in which one cause shows most `(2 rows,)` of bool."""
         shown = self.shown(model, place)
-        calm = np.arange(len(shown)) < len(self.base.samples.rows)
-        return calm & (shown > 0) & (shown >= OWN_ROWS * shown[calm].max())
+        return self.calm & (shown > 0) & (shown >= OWN_ROWS * shown[self.calm].max())
 
     def excess_rows(self, model: Model) -> np.ndarray:
         """Rows that count for the gap `(2 rows,)` of bool: those with much excess when a model's causes are left out.
@@ -182,14 +186,13 @@ class Judge:
         """
         bare, left = self.rows(model.held.bare), self.rows(model.held.square)
         excess = np.maximum(bare - 1, 0.0)
-        episode = np.arange(len(excess)) >= len(self.base.samples.rows)
-        excess[episode & (left > EXPLAINED * np.minimum(bare, self.rows(self.nothing.held.square)))] = 0.0
+        excess[~self.calm & (left > EXPLAINED * np.minimum(bare, self.rows(self.nothing.held.square)))] = 0.0
         excess[~np.tile(self.present, 2)] = 0.0
         found = excess >= max(EXCESSIVE * float(excess.max(initial=0.0)), 1e-9)
         for place in range(len(model.causes) if len(model.causes) > 1 else 0):
             shown = self.shown(model, place)
             found |= (shown >= OWN_ROWS * shown.max()) & (excess > 0.5)
-        return found if found.any() else ~episode & np.tile(self.present, 2)
+        return found if found.any() else self.calm & np.tile(self.present, 2)
 
     def gap(self, square: np.ndarray, rows: np.ndarray, blocks: np.ndarray | None = None) -> np.ndarray:
         """Root mean square over some rows, each over its floor `()` or `(k,)`; squares as of `held_out.Held`."""

@@ -85,7 +85,7 @@ def _slip(foot: str, place: int, signals: Sequence[Signals], references: Sequenc
         loads = np.concatenate([one.load for one in logs])
         parts = list(zip(*(np.split(values, [len(ratios) // 2]) for values in (loads, ratios)), strict=True))
     load, told = (np.concatenate(values) for values in zip(*parts, strict=True))
-    others = [float(np.median(np.concatenate([r for i, (_, r) in enumerate(parts) if i != place]))) for place in range(len(parts))]
+    others = [float(np.median(np.concatenate([r for i, (_, r) in enumerate(parts) if i != left_out]))) for left_out in range(len(parts))]
     size = float(np.sqrt(np.mean((load * (told - usual)) ** 2)))
     left = float(np.sqrt(np.mean((load * (told - np.repeat(others, [len(r) for _, r in parts]))) ** 2)))
     reach = INTERVAL * scale * float(np.hypot(unsure, _spread(told) / 2))

@@ -111,7 +111,7 @@ def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives(share, ef
     assert _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect),))) is seldom
 
 
-def rows_of(shown, bare, left, nothing, gain=20.0, effect="coulomb_friction"):
+def rows_of(shown, bare, left, nothing, effect="coulomb_friction"):
     """A judge and a model of one cause, by what there is in two rows and their episodes."""
     samples = SimpleNamespace(rows=(SimpleNamespace(name="hip", balance="motion"), SimpleNamespace(name="knee", balance="motion")))
     held = {k: np.array(v) for k, v in (("bare", bare), ("left", left), ("nothing", nothing), ("shown", shown))}
@@ -120,7 +120,7 @@ def rows_of(shown, bare, left, nothing, gain=20.0, effect="coulomb_friction"):
     judge.own = lambda model, place: np.array([False, True, False, False])
     judge.nothing = SimpleNamespace(held=SimpleNamespace(square="nothing"))
     cause = SimpleNamespace(effect=effect)
-    return judge, SimpleNamespace(causes=(cause,), gain=gain, held=SimpleNamespace(bare="bare", square="left"))
+    return judge, SimpleNamespace(causes=(cause,), held=SimpleNamespace(bare="bare", square="left"))
 
 
 def test_a_small_cause_stands_out_if_it_is_most_of_what_there_is():
