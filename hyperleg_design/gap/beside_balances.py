@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 
 from hyperleg_design.gap import experiment
 from hyperleg_design.gap.diagnosis import LEAST_SHARE, MOST_RIVALS, Diagnosis, Named, Place, Shrinkage
+from hyperleg_design.gap.heard import KNOCKING, RINGING, UNSTABLE
 from hyperleg_design.gap.imu_offset import OFFSET, PLACE
-from hyperleg_design.gap.loose import KNOCKING, RINGING
 from hyperleg_design.gap.sinking import SINKS
 from hyperleg_design.gap.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.slipping import SLIPS
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.heard import Heard
     from hyperleg_design.gap.imu_offset import Offset
-    from hyperleg_design.gap.loose import Loose
     from hyperleg_design.gap.underfoot import Underfoot
 
-APART = (RINGING, KNOCKING, OFFSET, SLIPS, SINKS)
+APART = (RINGING, KNOCKING, UNSTABLE, OFFSET, SLIPS, SINKS)
 """Shapes by which such causes are known."""
 OTHER_SENSOR = 0.05
 """Probability that what differs from an IMU is wrong instead of it (assumed)."""
@@ -28,33 +28,36 @@ OTHER_GROUND = 0.05
 OF_FEET = 0.5
 """Share of an unknown gap in the ground under feet that tell of it, from which it is theirs."""
 OTHERWISE = 0.15
-"""Probability at most that something else makes a belt's noises (assumed): it would have explained them."""
+"""Probability at most that something else makes such noises (assumed): it would have explained them."""
 
 
-def of_belt(told: Diagnosis, belt: Loose) -> Diagnosis:
-    """A diagnosis with the belt that rings or lets its joints knock: beside what is named already, or instead of nothing.
+def of_heard(told: Diagnosis, heard: Heard) -> Diagnosis:
+    """A diagnosis with what is heard of belts and control loops: beside what is named already, or instead of nothing.
 
-    Where nothing is named, the gap is that of the belt: what rings is in no balance.
+    Where nothing is named, the gap is that of the noise: what rings is in no balance.
     """
-    names = tuple((c.effect, c.location) for c in belt.causes)
+    names = tuple((c.effect, c.location) for c in heard.causes)
     rivals = [r for r in told.rivals if (r.effect, r.location) not in names]
     beside = sum(r.probability for r in rivals)
     likely = 1 - (OTHERWISE if told.causes else min(beside, OTHERWISE))
-    first, second = (replace(c, probability=likely * c.probability) for c in belt.causes)
-    noise = {"shape": belt.shape, "location": belt.motor, "says": belt.says, "closed_beyond": belt.closed, "gain": 0.0}
+    first, *others = (replace(c, probability=likely * c.probability) for c in heard.causes)
+    noise = {"shape": heard.shape, "location": heard.location, "says": heard.says, "closed_beyond": heard.closed, "gain": 0.0}
     shapes = (noise, *(s for s in told.residual_shape if s["shape"] != "chatter"))
+    sets = (names,) if others else ()
     if told.causes:
         return replace(
-            told, verdict="ambiguous", causes=(*told.causes, first), rivals=(*rivals, second)[:MOST_RIVALS], equivalent=(*told.equivalent, names),
-            residual_shape=shapes,
+            told, verdict="ambiguous" if others else told.verdict, causes=(*told.causes, first), rivals=(*rivals, *others)[:MOST_RIVALS],
+            equivalent=(*told.equivalent, *sets), residual_shape=shapes,
         )  # fmt: skip
     rivals = [replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12), closed=0.0) for r in rivals]  # of what is heard
-    trial = experiment.separating(names)
-    ordered = sorted(belt.shares.items(), key=lambda item: (-item[1], item[0]))
+    trial = experiment.separating(names) if others else None
+    ordered = sorted(heard.shares.items(), key=lambda item: (-item[1], item[0]))
+    size = heard.size
     return replace(
-        told, verdict="ambiguous", gap=Shrinkage(belt.missed, (1 - belt.closed) * belt.missed, 0.0, belt.closed, belt.closed_interval, "Nm"),
-        where=tuple(Place(motor, "motor", "all", share) for motor, share in ordered if share >= LEAST_SHARE),
-        causes=(first,), rivals=(second, *rivals)[:MOST_RIVALS], equivalent=(names,),
+        told, verdict="ambiguous" if others else "explained",
+        gap=Shrinkage(size, (1 - heard.closed) * size, 0.0, heard.closed, heard.closed_interval, heard.unit),
+        where=tuple(Place(place, heard.kind, "all", share) for place, share in ordered if share >= LEAST_SHARE),
+        causes=(first,), rivals=(*others, *rivals)[:MOST_RIVALS], equivalent=sets,
         separating_experiment=None if trial is None else experiment.as_mapping(trial, names),
         residual_shape=shapes,
     )  # fmt: skip

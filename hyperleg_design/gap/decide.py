@@ -14,16 +14,18 @@ import numpy as np
 
 from hyperleg_design.gap import screen, shaping
 from hyperleg_design.gap.base import Base
-from hyperleg_design.gap.chatter import unsettled
+from hyperleg_design.gap.chatter import UNSETTLING, unsettled
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import moved_joints
 from hyperleg_design.gap.episodes import together
 from hyperleg_design.gap.fit import Cause, Design, Fit, parts
+from hyperleg_design.gap.heard import KNOCKING, Heard
 from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
 from hyperleg_design.gap.knocking import knocking
-from hyperleg_design.gap.loose import Loose, loose
+from hyperleg_design.gap.loose import PLAY, SPRING, loose
 from hyperleg_design.gap.subject import FULL
+from hyperleg_design.gap.unstable import unstable
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.samples import Samples
@@ -46,6 +48,8 @@ AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.95
 """Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
+BELTS = (PLAY, SPRING)
+"""Effects of belts that give."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
 SEVERAL = 2
@@ -77,9 +81,9 @@ class Decision:
     together: float
     """Share of the time in which most drives at once do not do what they were told, beside the causes; 0 where that is little."""
     chatter: tuple[str, ...]
-    """Joints that chatter though none of the causes can make them, nor a belt beside causes that explain the rest."""
-    belt: Loose | None
-    """That rings, or lets its joints knock about."""
+    """Joints that chatter though none of the causes can make them, nor what is heard beside causes that explain the rest."""
+    heard: Heard | None
+    """What rings, lets joints knock about, or makes control loops swing."""
     failing: dict[int, float]
     """Rows that are far off for a share of the time which no cause explains, where nothing else is wrong."""
     not_judged: tuple[screen.NotJudged, ...]
@@ -115,9 +119,11 @@ def decide(
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     swung += [screen.NotJudged(*name, "its voltage is that of the reference logs") for name in supplied]
     signals = [sieve.signals for sieve in base.samples.sieves]
-    belt = loose(signals) if shaken and not lost else None
+    heard = (loose(signals) or unstable(signals)) if shaken and not lost else None
+    if heard is None and any(c.effect in UNSETTLING for c in chosen.causes):
+        shaken = ()  # joints shake each other
     verdict = _verdict(judge, chosen, rows, shaped)
-    if belt is not None and verdict == "explained" and (others := _elsewhere(chosen, belt, signals[0].subject)):
+    if heard is not None and verdict == "explained" and (others := _elsewhere(chosen, heard, signals[0].subject)):
         if len(others) < len(chosen.causes):  # what it leaves at its own motor and joints looks like limits and constants
             chosen = judge.model(others)
             rows, slots = judge.excess_rows(chosen), [(chosen,) for _ in others]
@@ -129,11 +135,11 @@ def decide(
         verdict = "unknown"
     if verdict == "none" and shaping.tells(thresholds, chosen, pushes := shaping.of_base(judge)):
         verdict, shaped = "unknown", pushes
-    if belt is None and not lost:
-        belt = knocking(signals, references, [_motion(chosen, one) for one in signals] if verdict == "explained" else ())
-        if belt is not None and verdict == "explained" and len(_elsewhere(chosen, belt, signals[0].subject)) < len(chosen.causes):
-            belt = None
-    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, belt, failing, (*not_judged, *swung))
+    if heard is None and not lost:
+        heard = knocking(signals, references, [_motion(chosen, one) for one in signals] if verdict == "explained" else ())
+        if heard is not None and verdict == "explained" and len(_elsewhere(chosen, heard, signals[0].subject)) < len(chosen.causes):
+            heard = None
+    return judge, Decision(verdict, chosen, rows, tuple(singles), tuple(slots), shaped, lost, shaken, heard, failing, (*not_judged, *swung))
 
 
 def _calm(judge: Judge, rows: np.ndarray) -> np.ndarray:
@@ -142,10 +148,11 @@ def _calm(judge: Judge, rows: np.ndarray) -> np.ndarray:
     return calm if calm.any() else judge.excess_rows(judge.nothing)
 
 
-def _elsewhere(chosen: Model, belt: Loose, subject: Subject) -> tuple[Cause, ...]:
-    """Causes that are not at the motor or the joints of a belt that gives."""
-    own = {belt.motor, *moved_joints(subject, subject.motors.index(belt.motor))}
-    return tuple(c for c in chosen.causes if c.location not in own)
+def _elsewhere(chosen: Model, heard: Heard, subject: Subject) -> tuple[Cause, ...]:
+    """Causes that are not at the motor or the joints of what is heard; nor belts, where one is heard that shakes all joints."""
+    own = {heard.location, *(moved_joints(subject, subject.motors.index(heard.location)) if heard.location in subject.motors else ())}
+    belts = BELTS if heard.shape != KNOCKING and heard.causes[0].effect in BELTS else ()
+    return tuple(c for c in chosen.causes if c.location not in own and c.effect not in belts)
 
 
 def _motion(model: Model, signals: Signals) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 from hyperleg_design import provenance
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import experiment, screen
-from hyperleg_design.gap.beside_balances import of_belt, of_feet, of_imu
+from hyperleg_design.gap.beside_balances import of_feet, of_heard, of_imu
 from hyperleg_design.gap.chatter import swings
 from hyperleg_design.gap.check import Check, check_log
 from hyperleg_design.gap.conditioning import condition
@@ -199,7 +199,7 @@ class _Report:
             residual_shape=self.shape(), checks=doubts, nuisance=self.nuisance(), provenance=self.provenance(),
             at_rest=tuple({"location": j, "torque": t, "says": sticks(j, t)} for j, t in judge.holds.items()),
         )  # fmt: skip
-        return told if found.belt is None else of_belt(told, found.belt)
+        return told if found.heard is None else of_heard(told, found.heard)
 
     def doubtful(self, table: dict[tuple[tuple[str, str], ...], float], alike_first: Sequence[Model]) -> bool:
         """Whether the first cause and what is like it are rather not it, with a gap that the floor's own doubt may be."""

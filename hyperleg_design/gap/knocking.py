@@ -17,7 +17,8 @@ from hyperleg_design.gap import rigid
 from hyperleg_design.gap.diagnosis import Named
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import moved_joints
-from hyperleg_design.gap.loose import KNOCKING, LIKELIER, PLAY, SPRING, Loose, sided, valued
+from hyperleg_design.gap.heard import KNOCKING, Heard
+from hyperleg_design.gap.loose import LIKELIER, PLAY, SPRING, sided, valued
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -63,7 +64,7 @@ class _Knocks(NamedTuple):
     """Of the whole log."""
 
 
-def knocking(signals: Sequence[Signals], references: Sequence[Signals] = (), known: Sequence[np.ndarray] = ()) -> Loose | None:
+def knocking(signals: Sequence[Signals], references: Sequence[Signals] = (), known: Sequence[np.ndarray] = ()) -> Heard | None:
     """The belt whose joints knock about where encoders do not see it; None where none does, and of robots that stand on their feet.
 
     Args:
@@ -98,7 +99,8 @@ def knocking(signals: Sequence[Signals], references: Sequence[Signals] = (), kno
     )
     causes = _causes(signals, place, closed)
     fair = shares / shares.sum()
-    return Loose(place, KNOCKING, says, np.nan, missed, closed, (min(each), max(each)), dict(zip(subject.motors, fair.tolist(), strict=True)), causes)
+    all_shares = dict(zip(subject.motors, fair.tolist(), strict=True))
+    return Heard(place, KNOCKING, says, np.nan, missed, "Nm", closed, (min(each), max(each)), "motor", all_shares, causes)
 
 
 def struck(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

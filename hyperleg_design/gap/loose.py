@@ -10,25 +10,25 @@ must be more than friction: the bristles of a joint that hardly moves are a spri
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap import rigid
-from hyperleg_design.gap.channels import applied, resampled
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.diagnosis import Named, Value
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.belt import rotor
+from hyperleg_design.gap.heard import RINGING, Heard
 from hyperleg_design.gap.smoothing import bridged
+from hyperleg_design.gap.swing import Swing, band, loudest, rms, sharp, swing
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
 
-HALF_WIDTH = 6 / 256
-"""Of the chatter's line, over the log's rate; its frequency wanders with posture and load."""
 LARGEST_RATIO = 0.75
 """|H| up to which a belt is to blame; gains as wrong as they get, and rotors as light, leave more."""
 COHERENT = 0.95
@@ -37,11 +37,6 @@ WORST = 0.5
 """Torque that is missed, over that of the worst log, from which a log counts."""
 CLEARLY = 2.0
 """Torque that the motor misses, over that of any other, each over its limit."""
-FOLDS, UNLIKE = 3, 1.35
-"""Multiples of a log's rate that frequencies are looked for beside; frequency by speed over swing, over the true one or its inverse, at most:
-drives filter the speeds that they tell."""
-HARMONIC = 0.05
-"""Third harmonic of the swing over its first, from which play is likelier than a spring."""
 LIKELIER = 0.7
 """Probability of the likelier of the two (in development it was that in about eight cases of ten)."""
 UNCERTAIN = 0.2
@@ -50,35 +45,7 @@ WIDTH = 1.5
 """Play over how far the rotor swings to one side: to and fro, it passes both its ends by a third (measured on simulated belts)."""
 BLOCK = 100
 """Ticks that are held out together where there is one log."""
-SHOWN_PERIODS = 10
-"""Of chatter, for the eye."""
-THIRD = 3
 PLAY, SPRING = "backlash", "transmission_elasticity"
-RINGING, KNOCKING = "ringing", "knocking"
-"""How a belt that gives is known: here, or by `knocking`."""
-
-
-@dataclass(frozen=True)
-class Loose:
-    """A belt that gives."""
-
-    motor: str
-    shape: str
-    """How it is known: `RINGING` or `KNOCKING`."""
-    says: str
-    """For people."""
-    frequency: float
-    """Of the chatter in the log where most torque is missed [Hz]; NaN of knocks."""
-    missed: float
-    """Torque that the joints take and the motor does not give, or that nobody told of, root mean square [Nm]."""
-    closed: float
-    """Share of it that is explained, in data that it was not taken from."""
-    closed_interval: tuple[float, float]
-    """Of the logs, or of odd and even blocks."""
-    shares: Mapping[str, float]
-    """Of all motors, in the squares of what is missed."""
-    causes: tuple[Named, Named]
-    """Play and a spring, the likelier first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,13 +59,10 @@ class _Line:
     """The joints alone `(t, m)` [Nm]."""
     torque: np.ndarray
     """That is believed of the motors `(t, m)` [Nm]."""
-    turn: np.ndarray
-    """Of the motors with their joints `(t, m)` [rad]."""
-    third: np.ndarray
-    """At three times the frequency `(t, m)` [rad]."""
+    swing: Swing
 
 
-def loose(signals: Sequence[Signals]) -> Loose | None:
+def loose(signals: Sequence[Signals]) -> Heard | None:
     """The belt that makes joints chatter; None where none does, or it is not clear which, and of robots that stand on their feet."""
     subject = signals[0].subject
     if subject.floating:  # what a foot on the ground feels at such frequencies nobody knows
@@ -111,14 +75,14 @@ def loose(signals: Sequence[Signals]) -> Loose | None:
     size = np.maximum(own.real, 1e-300)
     ratio = np.abs(both) / size
     coherence = np.abs(both) / np.sqrt(size * np.maximum(given.real, 1e-300))
-    missed = _rms(need - torque)
+    missed = rms(need - torque)
     share = coherence * missed / _limit(subject, torque)
     first, second = (*np.argsort(-share, kind="stable").tolist(), -1)[:2]
     beaten = second >= 0 and share[first] < CLEARLY * share[second]
     held = float(np.abs(subject.motor_from_joint[first]) @ subject.coulomb)
     if ratio[first] > LARGEST_RATIO or coherence[first] < COHERENT or beaten or missed[first] <= held:
         return None
-    most = max(lines, key=lambda one: float(_rms((one.need - one.torque)[:, first])))
+    most = max(lines, key=lambda one: float(rms((one.need - one.torque)[:, first])))
     closed, interval = _closed(lines, first)
     shares = dict(zip(subject.motors, (share**2 / np.sum(share**2)).tolist(), strict=True))
     lacking = float(missed[first])
@@ -126,7 +90,8 @@ def loose(signals: Sequence[Signals]) -> Loose | None:
         f"rings at {most.frequency:.0f} Hz on its belt: its joints take {lacking:.2g} Nm (rms) there that it does not give; "
         "the belt is soft or has play"
     )
-    return Loose(subject.motors[first], RINGING, says, most.frequency, lacking, closed, interval, shares, _causes(subject, first, most, closed))
+    causes = _causes(subject, first, most, closed)
+    return Heard(subject.motors[first], RINGING, says, most.frequency, lacking, "Nm", closed, interval, "motor", shares, causes)
 
 
 def ringing(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
@@ -139,69 +104,34 @@ def ringing(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.nd
         return None
     column = signals.subject.motors.index(motor)
     need, torque = line.need[:, column], line.torque[:, column]
-    half = round(SHOWN_PERIODS / 2 / line.frequency / signals.step)
-    middle = min(max(int(np.argmax(np.abs(need))), half), len(need) - 1 - half)
-    part = slice(max(middle - half, 0), middle + half + 1)
+    part = loudest(np.abs(need), line.frequency, signals.step)
     return signals.time[part], need[part].real, torque[part].real
 
 
 def _worst(lines: Sequence[_Line], subject: Subject) -> list[_Line]:
     """Those logs in which about as much torque is missed as in the worst."""
-    missed = [float((_rms(line.need - line.torque) / _limit(subject, line.torque)).max()) for line in lines]
+    missed = [float((rms(line.need - line.torque) / _limit(subject, line.torque)).max()) for line in lines]
     return [line for line, one in zip(lines, missed, strict=True) if one >= WORST * max(missed)]
 
 
 def _line(signals: Signals) -> _Line | None:
-    if signals.chatter is None or not signals.chatter.joints.any():
+    found = swing(signals)
+    if found is None:
         return None
     subject, step = signals.subject, signals.step
-    shaken = np.flatnonzero(signals.chatter.joints)
-    strongest = int(shaken[np.argmax(np.mean(signals.chatter.speed[:, shaken] ** 2, 0))])
-    seen = float(signals.chatter.frequency[strongest])
-    apart, faster = _apart(signals, "position", signals.position), _apart(signals, "velocity", signals.velocity)
-    swing = _band(apart, step, seen)
-    size, speed = (float(_rms(x[:, strongest])) for x in (swing, _band(faster, step, seen)))
-    frequency = seen if speed == 0 else _unfolded(seen, 1 / step, speed / size) if size > 0 else None
-    if frequency is None:
-        return None
-    acceleration = -((2 * np.pi * frequency) ** 2) * swing
+    acceleration = -((2 * np.pi * found.frequency) ** 2) * found.angle
     parts = rigid.accelerating(subject, signals.position, (acceleration.real, acceleration.imag))
     need = applied(subject.motor_from_joint, parts[0]) + 1j * applied(subject.motor_from_joint, parts[1])
     inertias = np.array([rotor(subject, m) for m in range(len(subject.motors))])
-    third = _folded(THIRD * frequency, 1 / step)
     return _Line(
-        frequency, need, need - inertias * (acceleration @ subject.joint_from_motor), _band(_filled(signals.believed), step, seen),
-        swing @ subject.joint_from_motor, _band(apart, step, third, HALF_WIDTH / 2) @ subject.joint_from_motor,
+        found.frequency, need, need - inertias * (acceleration @ subject.joint_from_motor), band(_filled(signals.believed), step, found.seen),
+        found,
     )  # fmt: skip
-
-
-def _folded(frequency: float, rate: float) -> float:
-    """Where a log's rate shows a frequency [Hz]."""
-    return min(frequency % rate, -frequency % rate)
-
-
-def _unfolded(seen: float, rate: float, told: float) -> float | None:
-    """The frequency that a log's rate may show as another, by speed over swing [rad/s]; None where that fits none."""
-    able = [abs(turn * rate + sign * seen) for turn in range(FOLDS) for sign in (1, -1)]
-    nearest = min(able, key=lambda one: abs(np.log(told / (2 * np.pi * one))))
-    return nearest if 1 / UNLIKE < told / (2 * np.pi * nearest) < UNLIKE else None
-
-
-def _apart(signals: Signals, kind: str, smooth: np.ndarray) -> np.ndarray:
-    """Logged motion less the smoothed, on the ticks `(t, n)`; 0 where it is unknown."""
-    found = resampled(signals.log.time, signals.log.stack(kind, signals.subject.joints), signals.time) - smooth
-    return np.where(np.isfinite(found), found, 0.0)
 
 
 def _filled(values: np.ndarray) -> np.ndarray:
     """Torques without gaps; 0 where nothing is known."""
     return np.stack([bridged(column) if np.isfinite(column).any() else np.zeros(len(column)) for column in values.T], -1)
-
-
-def _band(values: np.ndarray, step: float, frequency: float, width: float = HALF_WIDTH) -> np.ndarray:
-    """Amplitude and phase of a line `(t, k)`, complex: the signal about a frequency, those below 0 left out."""
-    about = np.abs(np.fft.fftfreq(len(values), step) - frequency) <= width / step
-    return np.asarray(np.fft.ifft(2 * about[:, None] * np.fft.fft(values, axis=0), axis=0))
 
 
 def _limit(subject: Subject, torque: np.ndarray) -> np.ndarray:
@@ -228,26 +158,20 @@ def _causes(subject: Subject, motor: int, line: _Line, closed: float) -> tuple[N
     """Play and spring, the likelier first, with what the swing of a log says of their sizes."""
     place, radians = subject.motors[motor], 2 * np.pi * line.frequency
     swings = (line.need - line.torque)[:, motor] / (rotor(subject, motor) * radians**2)
-    lines = (line.joints, line.torque, line.need, line.turn, line.third)
-    apart, through, given, need, turned, third = (_rms(x) for x in (swings, *(x[:, motor] for x in lines)))
+    apart, through, given, need = (rms(x) for x in (swings, *(x[:, motor] for x in (line.joints, line.torque, line.need))))
     # the phase of a believed torque is uncertain, so that all of it may be missed beside the need, or none
     missed = apart * rotor(subject, motor) * radians**2
     compliance = apart / through
     spring = compliance, compliance * abs(need - given) / missed / (1 + UNCERTAIN), compliance * (need + given) / missed * (1 + UNCERTAIN)
     seen = float(np.percentile(np.abs(swings), 95)) / float(np.abs(subject.joint_from_motor[:, motor]).max())
     play = WIDTH * seen, seen, 2 * seen * (1 + UNCERTAIN)
-    likely = LIKELIER if third > HARMONIC * turned else 1 - LIKELIER
+    likely = LIKELIER if sharp(line.swing, subject, motor) else 1 - LIKELIER
     named = [
         Named(effect, place, share, closed, valued(effect, subject, place, size))
         for effect, share, size in ((PLAY, likely, play), (SPRING, 1 - likely, spring))
     ]
     first, second = sorted(named, key=lambda one: -one.probability)
     return first, second
-
-
-def _rms(values: np.ndarray) -> np.ndarray:
-    """Of complex rows `(t, ...)`, `(...)`."""
-    return np.asarray(np.sqrt(np.mean(np.abs(values) ** 2, 0)))
 
 
 def sided(effect: str, subject: Subject, place: str, side: float) -> np.ndarray:

@@ -125,6 +125,21 @@ def ringing_figure(motor: str, log: str, time: np.ndarray, need: np.ndarray, tor
         return figure
 
 
+def swinging_figure(joints: Sequence[str], log: str, time: np.ndarray, speed: np.ndarray) -> Figure:
+    """Joints that swing to and fro by themselves: their speeds about that frequency `(t, n)` [rad/s], some periods of it [s]."""
+    with figure_style():
+        import matplotlib.pyplot as plt
+
+        figure, panel = plt.subplots(figsize=(10.5, 3.0), layout="constrained")
+        for joint, values in zip(joints, speed.T, strict=True):
+            panel.plot(time, values, marker=".", label=joint)
+        panel.set_xlabel("time [s]")
+        panel.set_ylabel("speed [rad/s]")
+        panel.set_title(log)
+        panel.legend(ncols=len(joints), loc="upper center", bbox_to_anchor=(0.5, -0.2))
+        return figure
+
+
 def knocking_figure(joints: Sequence[str], log: str, time: np.ndarray, left: np.ndarray, explained: np.ndarray) -> Figure:
     """A joint that knocks about unseen: torques that the model lacks, beside those of a hidden motion, `(t, n)` [Nm] over [s]."""
     with figure_style():

@@ -12,12 +12,14 @@ from hyperleg_design import provenance
 from hyperleg_design.gap.beside_balances import APART
 from hyperleg_design.gap.evidence import Evidence, evidence
 from hyperleg_design.gap.ground import footings
+from hyperleg_design.gap.heard import KNOCKING, RINGING, UNSTABLE
 from hyperleg_design.gap.knocking import struck
-from hyperleg_design.gap.loose import KNOCKING, RINGING, ringing
+from hyperleg_design.gap.loose import ringing
 from hyperleg_design.gap.sinking import EFFECT as SOFT
 from hyperleg_design.gap.sinking import SINKS, bearings
 from hyperleg_design.gap.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.slipping import SLIPS, contacts
+from hyperleg_design.gap.swing import swinging
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_text import chosen
 from hyperleg_design.report.page import Cell, Details, Heading, Page, Picture, Section, Table, render
@@ -35,6 +37,8 @@ VERDICTS = {
     "unknown": "There is a gap, and no effect of the catalogue closes it; the shape of what is left is described below.",
 }
 
+MOST_SWINGING = 4
+"""Joints that are drawn as they swing by themselves."""
 LEAST_CLOSED = 0.05
 """Share of the excess that a cause must close to be said to close the gap."""
 
@@ -49,18 +53,18 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     """
     (folder / FIGURES).mkdir(exist_ok=True)
     causes, rivals, gap = list(diagnosis["causes"]), list(diagnosis["rivals"]), diagnosis["gap"]
-    shape, motor = _belt(diagnosis)
+    shape, noisy = _heard(diagnosis)
     slid, sunk = _feet(diagnosis, SLIPS), _feet(diagnosis, SINKS)
     of_feet = {*((SLIPPERY, foot) for foot in slid), *((SOFT, foot) for foot in sunk)}
-    others = [one for one in causes if one["location"] != motor and (one["effect"], one["location"]) not in of_feet]
-    apart = shape == RINGING or bool(of_feet)  # what rings is in no balance, and what feet tell in none in which it is the largest
+    others = [one for one in causes if one["location"] != noisy and (one["effect"], one["location"]) not in of_feet]
+    apart = shape in (RINGING, UNSTABLE) or bool(of_feet)  # what rings is in no balance, and what feet tell in none in which it is the largest
     shown = [] if apart and not others else [evidence(one, others or causes, _balance(one, others or causes)) for one in signals]
     shown = [one for one in shown if np.isfinite(one.before).any()]  # joints that stand all the time show nothing
     pictures = [
-        *(_noises(folder, shape, motor, signals) if motor else []),
+        *(_noises(folder, shape, noisy, signals) if noisy else []),
         *_slipping(folder, slid, signals),
         *_sinking(folder, sunk, signals),
-        *(_traces(folder, shown, others) if others or not (motor or of_feet) else []),
+        *(_traces(folder, shown, others) if others or not (noisy or of_feet) else []),
     ]
     sections = [
         Section("Where the gap lies", _where(folder, diagnosis, signals, shown)),
@@ -177,15 +181,31 @@ def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[st
     return content
 
 
-def _belt(diagnosis: Mapping[str, Any]) -> tuple[str, str]:
-    """How a belt that gives is known, and its motor, if that is what is named."""
+def _heard(diagnosis: Mapping[str, Any]) -> tuple[str, str]:
+    """How a cause is known that is heard, and its place, if that is what is named."""
     shapes = diagnosis.get("residual_shape", ())
-    return next(((str(one["shape"]), str(one["location"])) for one in shapes if one["shape"] in (RINGING, KNOCKING)), ("", ""))
+    return next(((str(one["shape"]), str(one["location"])) for one in shapes if one["shape"] in (RINGING, KNOCKING, UNSTABLE)), ("", ""))
 
 
-def _noises(folder: Path, shape: str, motor: str, signals: Sequence[Signals]) -> list[Any]:
-    """Torques by which a belt is known that rings, or lets its joints knock about."""
-    return _ringing(folder, motor, signals) if shape == RINGING else _knocking(folder, motor, signals)
+def _noises(folder: Path, shape: str, place: str, signals: Sequence[Signals]) -> list[Any]:
+    """Torques by which a belt is known that rings, or lets its joints knock about, or joints that swing by themselves."""
+    if shape == UNSTABLE:
+        return _swinging(folder, signals)
+    return _ringing(folder, place, signals) if shape == RINGING else _knocking(folder, place, signals)
+
+
+def _swinging(folder: Path, signals: Sequence[Signals]) -> list[Any]:
+    """Joints that swing by themselves, those that do most."""
+    content: list[Any] = []
+    found = [(one, *shown) for one in signals if (shown := swinging(one)) is not None]
+    found.sort(key=lambda row: -float(np.abs(row[2]).max()))
+    for i, (one, time, speed) in enumerate(found[:2]):
+        most = np.argsort(-np.mean(speed**2, 0), kind="stable")[:MOST_SWINGING]
+        name, joints = f"swinging-{i + 1}.png", one.subject.joints
+        save(gap_figures.swinging_figure([joints[j] for j in most], one.log.name, time, speed[:, most]), folder / FIGURES / name)
+        says = "nothing commands this; the proportions and phases of the joints tell which loop it is."
+        content.append(Picture(f"{FIGURES}/{name}", f"{one.log.name}, where its joints swing most, about that frequency: {says}"))
+    return content
 
 
 def _ringing(folder: Path, motor: str, signals: Sequence[Signals]) -> list[Any]:

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from diagnosed import run
 
-from hyperleg_design.gap.beside_balances import of_belt, of_feet, of_imu
+from hyperleg_design.gap.beside_balances import of_feet, of_heard, of_imu
 from hyperleg_design.gap.diagnose import diagnose
 from hyperleg_design.gap.diagnosis import Named, Place, Value
+from hyperleg_design.gap.heard import KNOCKING, Heard
 from hyperleg_design.gap.imu_offset import PLACE, Offset
-from hyperleg_design.gap.loose import KNOCKING, Loose
 from hyperleg_design.gap.underfoot import Underfoot
 from hyperleg_design.report.gap_text import diagnosis_text
 
 OTHER = Named("coulomb_friction", "hip", 0.9, 0.8, {})
 PLAY, SPRING = (Named(effect, "m_back", share, 0.7, {}) for effect, share in (("backlash", 0.7), ("transmission_elasticity", 0.3)))
-BELT = Loose("m_back", KNOCKING, "knocks about", np.nan, 2.0, 0.7, (0.6, 0.8), {"m_front": 0.2, "m_back": 0.8}, (PLAY, SPRING))
+BELT = Heard("m_back", KNOCKING, "knocks about", np.nan, 2.0, "Nm", 0.7, (0.6, 0.8), "motor", {"m_front": 0.2, "m_back": 0.8}, (PLAY, SPRING))
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +77,7 @@ def test_a_vertical_that_leans_is_an_unknown_gap_and_no_cause(none, offset):
 
 
 def test_a_belt_is_the_cause_where_nothing_else_is(none):
-    told = of_belt(none, BELT)
+    told = of_heard(none, BELT)
     assert told.verdict == "ambiguous"
     assert names(told.causes) == [("backlash", "m_back")]
     assert told.equivalent == ((("backlash", "m_back"), ("transmission_elasticity", "m_back")),)
@@ -90,7 +90,7 @@ def test_a_belt_is_the_cause_where_nothing_else_is(none):
 
 def test_a_belt_beside_another_cause_leaves_that_ones_gap_as_it_is(none):
     explained = replace(none, verdict="explained", causes=(OTHER,))
-    told = of_belt(explained, BELT)
+    told = of_heard(explained, BELT)
     assert names(told.causes) == [("coulomb_friction", "hip"), ("backlash", "m_back")]
     assert told.gap == explained.gap
     assert (told.verdict, told.residual_shape[0]["location"]) == ("ambiguous", "m_back")

@@ -112,7 +112,7 @@ def test_the_model_is_the_same_arm(robot):
 def test_the_joint_that_has_play_is_told_by_the_other_one(robot, place):
     play = tuple(0.02 * (i == place) for i in range(2))
     found = heard(robot, arm(play, seed=1), arm(play, seed=2), references=[arm(seed=3, role="reference")])
-    assert found.motor == JOINTS[place]
+    assert found.location == JOINTS[place]
     assert found.closed_interval[0] <= found.closed <= found.closed_interval[1]
     angle = next(c for c in found.causes if c.effect == "backlash").parameters["angle"]
     assert angle.low < 0.02 < angle.high
@@ -145,7 +145,7 @@ def test_slow_logs_hear_no_knocks(robot, every):
     whole = arm((0.0, 0.02), seed=1)
     log = Log("slow", whole.time[::every], {k: v[::every] for k, v in whole.signals.items()}, whole.metadata)
     found = heard(robot, log)
-    assert found is None or (every == 4 and found.motor == "elbow")
+    assert found is None or (every == 4 and found.location == "elbow")
 
 
 def test_one_joint_alone_has_nothing_to_tell_motion_from_torque_by(tmp_path):

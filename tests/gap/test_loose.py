@@ -9,7 +9,7 @@ import pytest
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.diagnose import diagnose
 from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.loose import _unfolded, loose
+from hyperleg_design.gap.loose import loose
 from hyperleg_design.gap.metadata import Metadata
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.report.gap_page import write_gap_page
@@ -72,7 +72,7 @@ def belt(robot, *rows, **options):
 @pytest.mark.parametrize("velocity", [True, False])
 def test_stiffness_of_a_soft_belt_follows_from_its_ringing(robot, velocity):
     found = belt(robot, recorded(spring=2000.0), velocity=velocity)
-    assert found.motor == "hinge"
+    assert found.location == "hinge"
     first, second = found.causes
     assert (first.effect, second.effect) == ("transmission_elasticity", "backlash")
     stiffness = first.parameters["stiffness"]
@@ -95,9 +95,6 @@ def test_a_line_that_the_rate_folds_is_unfolded_by_speed_over_swing(robot):
     whole, folded = belt(robot, rows), belt(robot, rows, every=2)
     assert whole.frequency > 50  # above half the lower rate
     assert folded is None or folded.frequency == pytest.approx(whole.frequency, rel=0.1)
-    assert _unfolded(30.0, 100.0, 2 * np.pi * 62) == pytest.approx(70.0)
-    assert _unfolded(30.0, 100.0, 2 * np.pi * 29) == pytest.approx(30.0)
-    assert _unfolded(30.0, 100.0, 2 * np.pi * 48) is None
 
 
 @pytest.mark.parametrize("torque", [True, False])
@@ -117,7 +114,7 @@ def test_what_friction_may_hold_is_no_belts(robot, tmp_path):
     sticky = tmp_path / "sticky.xml"
     sticky.write_text(MJCF.replace('frictionloss="0.05"', 'frictionloss="500"'))
     rows = recorded(spring=2000.0)
-    assert belt(robot, rows).missed < 500
+    assert belt(robot, rows).size < 500
     assert belt(sticky, rows) is None
 
 
