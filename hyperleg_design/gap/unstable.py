@@ -44,6 +44,8 @@ LOWER, HIGHER = 0.15, 0.35
 """Of the chatter's frequency below and above the mode's: spread of its logarithm (assumed, see above)."""
 ALIKE = 4.0
 """Log-likelihood per logarithm of the share of the swing that a mode explains (in development, true causes explain 0.8 to 1)."""
+FREE = 1.2
+"""Log-likelihood that a belt pays for its compliance, with which it rings at any frequency: the range of `RINGS` over `HIGHER`."""
 MISSING = -25.0
 """Log-likelihood of a log in which a cause makes no mode unstable."""
 GOOD = -1.5
@@ -95,7 +97,7 @@ def unstable(signals: Sequence[Signals]) -> Heard | None:
         return None
     missing = _Match(MISSING, np.zeros(0), 0.0, 0.0)
     full = {name: [*found, *[missing] * (len(heard) - len(found))] for name, found in matches.items()}
-    score = {name: sum(match.score for match in found) for name, found in full.items()}
+    score = {name: sum(match.score for match in found) - FREE * (name[0] == SPRING) for name, found in full.items()}
     order = sorted(score, key=lambda name: (-score[name], name))
     best = order[0]
     near = [name for name in order if score[name] > score[best] - APART]
