@@ -216,7 +216,7 @@ def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequen
 def _named(judge: Judge, model: Model) -> bool:
     """Whether the first cause is worth its name: by all rows with excess or, where it is beyond doubt, by those where it shows."""
     rules = judge.thresholds
-    if model.gain < rules.evident * (CHATTERING if model.causes[-1].unsettling else 1.0):
+    if model.gain < rules.evident * (CHATTERING if model.causes[-1].unsettling else 1.0) and not _large(judge, model):
         return False
     if _rests(judge, model):
         return True
@@ -229,6 +229,16 @@ def _named(judge: Judge, model: Model) -> bool:
     if model.gain < rules.second_evident:
         return False
     return _closes_own(judge, model, judge.nothing, OWN_WORTH, rules.least_gap) or _stands_out(judge, model)
+
+
+def _large(judge: Judge, model: Model) -> bool:
+    """Whether a cause explains a gap that is clearly over the floor, of a robot whose base is held: then less evidence will do.
+
+    It is calibration errors that would have to be as large else, several of them together.
+    """
+    rules, subject = judge.thresholds, judge.base.samples.sieves[0].signals.subject
+    gap = float(judge.gap(model.held.bare, judge.excess_rows(model)))
+    return not subject.floating and model.gain >= rules.evident_large and gap >= rules.largest_excess
 
 
 def _stands_out(judge: Judge, model: Model) -> bool:
@@ -296,10 +306,12 @@ def _visible(judge: Judge, model: Model) -> bool:
 
 
 def _seldom(judge: Judge, model: Model) -> bool:
-    """Whether the last cause is a weak battery that shows in rare episodes alone, on drives whose limits nobody declared."""
+    """Whether the last cause is a weak battery, on drives whose limits nobody declared, that shows in rare episodes alone, or by no voltage."""
     samples = judge.base.samples
     if model.causes[-1].effect != SAG or np.isfinite(samples.sieves[0].signals.subject.stall_torque).all():
         return False
+    if model.causes[-1].unseen and judge.thresholds.seldom > 0:  # healthy drives have such limits, too
+        return True
     episode, most = divmod(int(judge.shown(model, len(model.causes) - 1).argmax()), len(samples.rows))
     return bool(episode) and _of_time(samples, most) < judge.thresholds.seldom
 

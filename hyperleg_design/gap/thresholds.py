@@ -26,6 +26,7 @@ class Thresholds:
     visible: float
     least_gap: float
     evident: float
+    evident_large: float
     worth: float
     second_worth: float
     second_evident: float

@@ -96,19 +96,23 @@ def test_a_drive_that_often_fails_its_commands_is_a_gap():
     assert not _fails(told, rules), "drives that were measured do what they are told"
 
 
-@pytest.mark.parametrize(("share", "effect", "line", "episode", "seldom"), [
-    (0.01, "voltage_sag", np.inf, True, True),
-    (0.03, "voltage_sag", np.inf, True, False),
-    (0.01, "voltage_sag", 3.0, True, False),
-    (0.01, "voltage_sag", np.inf, False, False),
-    (0.01, "torque_saturation", np.inf, True, False),
+@pytest.mark.parametrize(("share", "effect", "line", "episode", "unseen", "seldom"), [
+    (0.01, "voltage_sag", np.inf, True, False, True),
+    (0.03, "voltage_sag", np.inf, True, False, False),
+    (0.03, "voltage_sag", np.inf, True, True, True),
+    (0.03, "voltage_sag", 3.0, True, True, False),
+    (0.01, "voltage_sag", 3.0, True, False, False),
+    (0.01, "voltage_sag", np.inf, False, False, False),
+    (0.01, "torque_saturation", np.inf, True, False, False),
 ])  # fmt: skip
-def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives(share, effect, line, episode, seldom):
+def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives_or_by_its_voltage(share, effect, line, episode, unseen, seldom):
     samples = in_episodes(share)
     samples.sieves = [SimpleNamespace(signals=SimpleNamespace(subject=SimpleNamespace(stall_torque=np.array([line]))))]
     judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
     judge.shown = lambda model, place: np.array([0.5, 9.0] if episode else [9.0, 0.5])
-    assert _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect),))) is seldom
+    assert _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect, unseen=unseen),))) is seldom
+    judge.thresholds = replace(judge.thresholds, seldom=0.0)  # of reference logs: what they show is no cause
+    assert not _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect, unseen=unseen),)))
 
 
 def rows_of(shown, bare, left, nothing, effect="coulomb_friction"):

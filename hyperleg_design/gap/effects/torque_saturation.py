@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _QUANTILES = (0.97, 0.9, 0.8, 0.6)
 _NEEDED = 0.95
+LEAST = 0.03
+"""Limit over the torque that the motor is made for (assumed: current limits of 5 % are set by nobody)."""
 
 
 class TorqueSaturation(Effect):
@@ -60,6 +62,11 @@ class TorqueSaturation(Effect):
         """A limit that slow motion reaches, the lower the larger."""
         return np.array([size / (0.1 * motor_strength(subject, subject.motors.index(location)))])
 
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """A drive that gives next to nothing is no limited one."""
+        low, high = super().bounds(location, subject)
+        return np.array([low, np.minimum(high, 1 / (LEAST * motor_strength(subject, subject.motors.index(location))))])
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The torque that the motion hardly ever needs more than, and torques that the command of this log exceeds ever more often."""
         motor = signals.subject.motors.index(location)
@@ -68,7 +75,7 @@ class TorqueSaturation(Effect):
         asked = np.abs(limited(signals, motor, commanded(signals, motor)))
         needed = np.abs(applied(signals.subject.motor_from_joint[motor : motor + 1], signals.rigid))
         limits = np.append(np.nanquantile(needed, _NEEDED), np.nanquantile(asked, _QUANTILES))
-        return np.asarray(np.minimum(1 / np.maximum(limits, 1e-9), self.parameters[0].high)[:, None])
+        return np.asarray(np.minimum(1 / np.maximum(limits, 1e-9), self.bounds(location, signals.subject)[1])[:, None])
 
     def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
         """The limit."""
