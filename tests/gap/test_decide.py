@@ -5,7 +5,7 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.decide import _as_healthy, _fails, _likelier, _seldom, _stands_out, _sticks_alone, _verdict, decide
+from hyperleg_design.gap.decide import _as_healthy, _fails, _large, _likelier, _seldom, _stands_out, _sticks_alone, _verdict, decide
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.judge import Judge, rank
 from hyperleg_design.gap.screen import places
@@ -113,6 +113,17 @@ def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives_or_by_its
     assert _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect, unseen=unseen),))) is seldom
     judge.thresholds = replace(judge.thresholds, seldom=0.0)  # of reference logs: what they show is no cause
     assert not _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect, unseen=unseen),)))
+
+
+@pytest.mark.parametrize(("gain", "gap", "floating", "large"), [
+    (7.5, 2.0, False, True), (6.5, 2.0, False, False), (7.5, 1.5, False, False), (7.5, 2.0, True, False),
+])  # fmt: skip
+def test_less_evidence_will_do_for_a_gap_clearly_over_the_floor_of_a_held_base(gain, gap, floating, large):
+    subject = SimpleNamespace(floating=floating)
+    samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=subject))])
+    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
+    judge.gap, judge.excess_rows = lambda square, rows: np.asarray(gap), lambda model: np.ones(2, bool)
+    assert _large(judge, SimpleNamespace(gain=gain, held=SimpleNamespace(bare=None))) is large
 
 
 def rows_of(shown, bare, left, nothing, effect="coulomb_friction"):

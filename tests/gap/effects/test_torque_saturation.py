@@ -1,7 +1,9 @@
 import numpy as np
+import pytest
 from pendulum import Wrong, misfit
 
 from hyperleg_design.gap.effects import effect
+from hyperleg_design.gap.effects.torque_saturation import LEAST
 
 SATURATION = effect("torque_saturation")
 
@@ -44,3 +46,12 @@ def test_without_commands_there_is_no_trace(pendulum):
 
     signals = dataclasses.replace(pendulum(Wrong()), command=None)
     assert SATURATION.trace(signals, "swing", np.array([[1.0]])) == {}
+
+
+def test_a_drive_that_gives_next_to_nothing_is_no_limited_one(pendulum):
+    signals = pendulum(Wrong())
+    low, high = SATURATION.bounds("swing", signals.subject)[:, 0]
+    strength = 1 / (0.6 * SATURATION.usual("swing", signals.subject)[0])
+    assert low == 0
+    assert 1 / high == pytest.approx(LEAST * strength)
+    assert np.all(SATURATION.starts(signals, "swing") <= high)
