@@ -232,13 +232,14 @@ def _named(judge: Judge, model: Model) -> bool:
 
 
 def _large(judge: Judge, model: Model) -> bool:
-    """Whether a cause explains a gap that is clearly over the floor, of a robot whose base is held: then less evidence will do.
+    """Whether a cause explains all of a gap that is clearly over the floor, of a robot whose base is held: then less evidence will do.
 
     It is calibration errors that would have to be as large else, several of them together.
     """
     rules, subject = judge.thresholds, judge.base.samples.sieves[0].signals.subject
-    gap = float(judge.gap(model.held.bare, judge.excess_rows(model)))
-    return not subject.floating and model.gain >= rules.evident_large and gap >= rules.largest_excess
+    rows = judge.excess_rows(model)
+    gap, left = float(judge.gap(model.held.bare, rows)), float(judge.gap(model.held.square, rows))
+    return not subject.floating and model.gain >= rules.evident_large and gap >= rules.largest_excess and left < rules.least_gap
 
 
 def _stands_out(judge: Judge, model: Model) -> bool:
@@ -306,14 +307,22 @@ def _visible(judge: Judge, model: Model) -> bool:
 
 
 def _seldom(judge: Judge, model: Model) -> bool:
-    """Whether the last cause is a weak battery, on drives whose limits nobody declared, that shows in rare episodes alone, or by no voltage."""
-    samples = judge.base.samples
-    if model.causes[-1].effect != SAG or np.isfinite(samples.sieves[0].signals.subject.stall_torque).all():
+    """Whether the last cause is a weak battery that these logs cannot show.
+
+    On drives whose limits nobody declared: one that shows in rare episodes alone, or by no voltage. And one by no voltage that would have to
+    take all torque that it can.
+    """
+    samples, rules, last = judge.base.samples, judge.thresholds, model.causes[-1]
+    if last.effect != SAG:
         return False
-    if model.causes[-1].unseen and judge.thresholds.seldom > 0:  # healthy drives have such limits, too
+    if last.unseen and bool((model.values(len(model.causes) - 1) >= last.high)[~last.shape].any()):
+        return True
+    if np.isfinite(samples.sieves[0].signals.subject.stall_torque).all():
+        return False
+    if last.unseen and rules.seldom > 0:  # healthy drives have such limits, too
         return True
     episode, most = divmod(int(judge.shown(model, len(model.causes) - 1).argmax()), len(samples.rows))
-    return bool(episode) and _of_time(samples, most) < judge.thresholds.seldom
+    return bool(episode) and _of_time(samples, most) < rules.seldom
 
 
 def _of_time(samples: Samples, row: int) -> float:

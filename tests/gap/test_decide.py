@@ -96,6 +96,11 @@ def test_a_drive_that_often_fails_its_commands_is_a_gap():
     assert not _fails(told, rules), "drives that were measured do what they are told"
 
 
+def of_battery(effect, unseen):
+    """A cause of two sizes, of which the second is 4 at most."""
+    return SimpleNamespace(effect=effect, unseen=unseen, high=np.array([20.0, 4.0]), shape=np.zeros(2, bool))
+
+
 @pytest.mark.parametrize(("share", "effect", "line", "episode", "unseen", "seldom"), [
     (0.01, "voltage_sag", np.inf, True, False, True),
     (0.03, "voltage_sag", np.inf, True, False, False),
@@ -110,20 +115,24 @@ def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives_or_by_its
     samples.sieves = [SimpleNamespace(signals=SimpleNamespace(subject=SimpleNamespace(stall_torque=np.array([line]))))]
     judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
     judge.shown = lambda model, place: np.array([0.5, 9.0] if episode else [9.0, 0.5])
-    assert _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect, unseen=unseen),))) is seldom
+    model = SimpleNamespace(causes=(of_battery(effect, unseen),), values=lambda place: np.array([1.0, 0.5]))
+    assert _seldom(judge, model) is seldom
     judge.thresholds = replace(judge.thresholds, seldom=0.0)  # of reference logs: what they show is no cause
-    assert not _seldom(judge, SimpleNamespace(causes=(SimpleNamespace(effect=effect, unseen=unseen),)))
+    assert not _seldom(judge, model)
+    model.values = lambda place: np.array([1.0, 4.0])
+    assert _seldom(judge, model) is (unseen and effect == "voltage_sag"), "a battery that nobody measured takes no more than all torque"
 
 
-@pytest.mark.parametrize(("gain", "gap", "floating", "large"), [
-    (7.5, 2.0, False, True), (6.5, 2.0, False, False), (7.5, 1.5, False, False), (7.5, 2.0, True, False),
+@pytest.mark.parametrize(("gain", "gap", "left", "floating", "large"), [
+    (7.5, 2.0, 1.0, False, True), (6.5, 2.0, 1.0, False, False), (7.5, 1.5, 1.0, False, False), (7.5, 2.0, 1.0, True, False),
+    (7.5, 9.0, 4.0, False, False),
 ])  # fmt: skip
-def test_less_evidence_will_do_for_a_gap_clearly_over_the_floor_of_a_held_base(gain, gap, floating, large):
+def test_less_evidence_will_do_to_explain_all_of_a_gap_clearly_over_the_floor_of_a_held_base(gain, gap, left, floating, large):
     subject = SimpleNamespace(floating=floating)
     samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=subject))])
     judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
-    judge.gap, judge.excess_rows = lambda square, rows: np.asarray(gap), lambda model: np.ones(2, bool)
-    assert _large(judge, SimpleNamespace(gain=gain, held=SimpleNamespace(bare=None))) is large
+    judge.gap, judge.excess_rows = lambda square, rows: np.asarray(square), lambda model: np.ones(2, bool)
+    assert _large(judge, SimpleNamespace(gain=gain, held=SimpleNamespace(bare=gap, square=left))) is large
 
 
 def rows_of(shown, bare, left, nothing, effect="coulomb_friction"):
