@@ -1,7 +1,7 @@
 """Which causes are named: by what they predict of data that they were not fitted to, never by the fit itself.
 
 One cause must beat none on held-out blocks by `evident`, close `worth` of the excess gap and be `visible` over the floor; a further
-one must do so beside those before it. What no list of effects explains is `unknown`. All rules are `thresholds.Thresholds`.
+one must do so beside those before it (`naming`). What no list of effects explains is `unknown`. All rules are `thresholds.Thresholds`.
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ from hyperleg_design.gap.chatter import UNSETTLING, unsettled
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import moved_joints
-from hyperleg_design.gap.episodes import together
-from hyperleg_design.gap.fit import Cause, Design, Fit, parts
+from hyperleg_design.gap.episodes import of_time, together
+from hyperleg_design.gap.fit import Cause, Design, Fit
 from hyperleg_design.gap.heard import KNOCKING, Heard
-from hyperleg_design.gap.judge import OWN_ROWS, ROUNDS, Judge, Model, rank
+from hyperleg_design.gap.judge import ROUNDS, Judge, Model, rank
 from hyperleg_design.gap.knocking import knocking
 from hyperleg_design.gap.loose import PLAY, SPRING, loose
+from hyperleg_design.gap.naming import HELD, SAG, likelier, sticks_alone, worth_adding, worth_naming
 from hyperleg_design.gap.subject import FULL
 from hyperleg_design.gap.unstable import unstable
 
@@ -38,28 +39,14 @@ FINALISTS = 10
 REFINED = 24
 """Candidates that are fitted to the end before that."""
 MOST_CAUSES = 3
-OWN_WORTH = 0.5
-"""Least share of the excess squares, in the rows where it shows, that the first cause closes where it closes little of all."""
-SAG, SAGGED = "voltage_sag", 0.03
-"""Effect of a weak battery; share of the voltage that must be missing where reference logs tell what it is when all is well."""
-CLEARER = 0.8
-"""Share of the squares that calibration errors leave of a small gap which its cause leaves at most."""
-AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.95
-"""Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
-SHARED = 0.5
-"""Change of a cause's trace, over its size, from which a further cause has taken part of it."""
+SAGGED = 0.03
+"""Share of the voltage that must be missing for a weak battery where reference logs tell what it is when all is well."""
 BELTS = (PLAY, SPRING)
 """Effects of belts that give."""
-CHATTERING = 0.5
-"""Share of the evidence that what can make loops unstable needs where one chatters."""
 SEVERAL = 2
 """Joints that must be off at times for it to be a gap where nobody measured drives: one alone may have its own friction."""
-PLAIN = 2.0
-"""Times the evidence that a further cause needs from which it need only be as large as the floor to stand for large calibration errors."""
 LIMITS_AT_ONCE = 2
 """Drives that give less than their limit at once, from which there is rather something common to them: firmware that shapes motion, a supply."""
-HELD = 0.5
-"""Share of what a joint holds that friction must explain."""
 SMALL_EXCESS, QUIET = 1.2, 3.0
 """Gap over floor up to which a shape must be so many times more evident to be told, as no cause was named."""
 
@@ -172,16 +159,16 @@ def shown_already(base: Base, thresholds: Thresholds, wanted: Sequence[tuple[str
 
 def _chosen(judge: Judge, wanted: Sequence[tuple[str, str]], singles: list[Model]) -> tuple[Model, list[tuple[Model, ...]]]:
     """The causes that are worth their names, one after the other, and the rivals of each."""
-    best = next((m for m in singles if _named(judge, m)), None)
+    best = next((m for m in singles if worth_naming(judge, m)), None)
     if best is None:
         return judge.nothing, []
     chosen, slots = best, [_from(singles, best)]
     while len(chosen.causes) < MOST_CAUSES:
         more, _ = _finalists(judge, wanted, chosen.causes)
-        further = next((m for m in more if _further(judge, m, chosen)), None)
+        further = next((m for m in more if worth_adding(judge, m, chosen)), None)
         if further is None:
             break
-        further = _likelier(judge, more, further)
+        further = likelier(judge, more, further)
         chosen, slots = further, [*slots, _from(more, further)]
         if len(chosen.causes) == 2:
             chosen, slots = _swapped(judge, wanted, chosen, slots)
@@ -213,131 +200,13 @@ def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequen
     return found + screen.at_rest(base.samples, *candidate.name)
 
 
-def _named(judge: Judge, model: Model) -> bool:
-    """Whether the first cause is worth its name: by all rows with excess or, where it is beyond doubt, by those where it shows."""
-    rules = judge.thresholds
-    if model.gain < rules.evident * (CHATTERING if model.causes[-1].unsettling else 1.0) and not _large(judge, model):
-        return False
-    if _rests(judge, model):
-        return True
-    if not _visible(judge, model) or _seldom(judge, model):
-        return False
-    rows = judge.excess_rows(model)
-    large = float(judge.gap(model.held.bare, rows)) >= rules.least_gap
-    if large and judge.closed(model.held, rows, model.held) >= rules.worth:
-        return True
-    if model.gain < rules.second_evident:
-        return False
-    return _closes_own(judge, model, judge.nothing, OWN_WORTH, rules.least_gap) or _stands_out(judge, model)
-
-
-def _large(judge: Judge, model: Model) -> bool:
-    """Whether a cause explains all of a gap that is clearly over the floor, of a robot whose base is held: then less evidence will do.
-
-    It is calibration errors that would have to be as large else, several of them together.
-    """
-    rules, subject = judge.thresholds, judge.base.samples.sieves[0].signals.subject
-    rows = judge.excess_rows(model)
-    gap, left = float(judge.gap(model.held.bare, rows)), float(judge.gap(model.held.square, rows))
-    return not subject.floating and model.gain >= rules.evident_large and gap >= rules.largest_excess and left < rules.least_gap
-
-
-def _stands_out(judge: Judge, model: Model) -> bool:
-    """Whether a lone cause, however small over the floor, makes up half of what there is where it shows, even beside calibration errors."""
-    if model.causes[0].effect in AT_LIMITS:
-        return False
-    own = np.flatnonzero(judge.own(model, 0) & (judge.shown(model, 0) >= judge.thresholds.visible**2))
-    bare, left, nothing = (float(judge.rows(v)[own].sum()) for v in (model.held.bare, model.held.square, judge.nothing.held.square))
-    return bool(own.size) and left <= (1 - OWN_WORTH) * bare and left <= CLEARER * nothing
-
-
-def _further(judge: Judge, model: Model, before: Model) -> bool:
-    """Whether one more cause is worth its name beside those before it: in the rows where it shows, over what they leave.
-
-    Or instead of calibration errors that are much larger than usual.
-    """
-    rules, already = judge.thresholds, len(before.causes)
-    gain = model.gain - before.gain
-    if gain >= rules.second_evident * already and _rests(judge, model) and not _rests(judge, before):
-        return True
-    if not _visible(judge, model) or _seldom(judge, model):
-        return False
-    if gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth, 1.0):
-        return True
-    # Large calibration errors may hide what it leaves; then it must show clearly, away from episodes, and be likelier than they are.
-    calm = judge.shown(model, already)[judge.calm]
-    least = 1.0 if gain >= PLAIN * rules.second_evident * already else rules.second_visible
-    if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or float(np.sqrt(calm.max())) < least:
-        return False
-    return _kept(model, before)
-
-
-def _likelier(judge: Judge, more: Sequence[Model], further: Model) -> Model:
-    """A model that is much likelier than the one that shows that a further cause is needed: that one imitates it."""
-    least = rank(further) + judge.thresholds.alike
-    found = (m for m in more if m.causes[-1].effect not in AT_LIMITS and _visible(judge, m) and not _seldom(judge, m))
-    return next((m for m in found if rank(m) > least), further)
-
-
-def _kept(model: Model, before: Model) -> bool:
-    """Whether the causes before the last leave about the traces that they left without it: else two share what one of them does."""
-    for part, cause in zip(parts(before.causes), before.causes, strict=True):
-        own, moved = before.fit.phi[part] @ cause.columns, (model.fit.phi[part] - before.fit.phi[part]) @ cause.columns
-        if float(moved @ moved) > SHARED**2 * float(own @ own):
-            return False
-    return True
-
-
-def _rests(judge: Judge, model: Model) -> set[str]:
-    """Joints of which a model explains what they show at rest, which is in no row."""
-    return {joint for joint in judge.holds if judge.held(model, joint) >= HELD}
-
-
-def _sticks_alone(judge: Judge, model: Model, rows: np.ndarray) -> bool:
-    """Whether a model explains what joints show at rest, and only these still have a gap."""
-    held = _rests(judge, model)
-    large = rows & (judge.rows(model.held.square) > judge.thresholds.largest_excess**2)
-    names = {judge.base.samples.rows[i % len(judge.base.samples.rows)].name for i in np.flatnonzero(large).tolist()}
-    return bool(held) and names <= held
-
-
-def _visible(judge: Judge, model: Model) -> bool:
-    """Whether the last cause shows over the floor."""
-    return float(np.sqrt(judge.shown(model, len(model.causes) - 1).max())) >= judge.thresholds.visible
-
-
-def _seldom(judge: Judge, model: Model) -> bool:
-    """Whether the last cause is a weak battery that these logs cannot show.
-
-    On drives whose limits nobody declared: one that shows in rare episodes alone, or by no voltage. And one by no voltage that would have to
-    take all torque that it can.
-    """
-    samples, rules, last = judge.base.samples, judge.thresholds, model.causes[-1]
-    if last.effect != SAG:
-        return False
-    if last.unseen and bool((model.values(len(model.causes) - 1) >= last.high)[~last.shape].any()):
-        return True
-    if np.isfinite(samples.sieves[0].signals.subject.stall_torque).all():
-        return False
-    if last.unseen and rules.seldom > 0:  # healthy drives have such limits, too
-        return True
-    episode, most = divmod(int(judge.shown(model, len(model.causes) - 1).argmax()), len(samples.rows))
-    return bool(episode) and _of_time(samples, most) < rules.seldom
-
-
-def _of_time(samples: Samples, row: int) -> float:
-    """Share of a row that is in episodes."""
-    own = samples.row == row
-    return float(samples.share[own & samples.episodic[samples.group]].sum() / max(samples.share[own].sum(), 1e-300))
-
-
 def _fails(samples: Samples, rules: Thresholds) -> dict[int, float]:
     """Rows of drives that do not do what they are told, more often than healthy ones at their limits, and for how much of the time.
 
     Where nobody measured what drives give, of joints, if several are so often off.
     """
     balance = "drive" if any(row.balance == "drive" for row in samples.rows) else "motion"
-    shares = {place: _of_time(samples, place) for place, row in enumerate(samples.rows) if row.balance == balance}
+    shares = {place: of_time(samples, place) for place, row in enumerate(samples.rows) if row.balance == balance}
     found = {place: share for place, share in shares.items() if share > rules.failing}
     return found if balance == "drive" or len(found) >= SEVERAL else {}
 
@@ -347,29 +216,6 @@ def _as_healthy(samples: Samples) -> bool:
     voltages = [s.signals.voltage for s in samples.sieves]
     nominal = samples.sieves[0].signals.subject.voltage
     return bool(np.isfinite(nominal)) and all(v is not None and float(np.nanpercentile(v, 100 - FULL)) > (1 - SAGGED) * nominal for v in voltages)
-
-
-def _closes_own(judge: Judge, model: Model, before: Model, worth: float, least: float = 0.0) -> bool:
-    """Whether the last cause closes a share of the excess squares in the rows where it shows, with their episodes or without.
-
-    Args:
-        judge: of the models.
-        model: with the cause.
-        before: without it.
-        worth: least share.
-        least: gap over floor that there must be.
-    """
-    shown = judge.shown(model, len(model.causes) - 1)
-    own = (shown >= OWN_ROWS * shown.max()) & (shown > 0)
-    without, with_it = judge.rows(before.held.square), judge.rows(model.held.square)
-    in_episodes = max(worth, AT_LIMITS_WORTH) if model.causes[-1].effect in AT_LIMITS else worth
-    for rows, share in ((own & judge.calm, worth), (own, in_episodes)):
-        if not rows.any():
-            continue
-        left, less = float(without[rows].mean()), float(with_it[rows].mean())
-        if left >= least**2 and left - less >= share * max(left - min(1.0, less), 1e-9):
-            return True
-    return False
 
 
 def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots: list[tuple[Model, ...]]) -> tuple[Model, list[tuple[Model, ...]]]:
@@ -414,7 +260,7 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[sha
     left = float(judge.gap(chosen.held.square, rows))
     far = rules.far_required ** (1 / len(chosen.causes))  # several causes that still leave much are the less likely
     needed = far if left > rules.far else rules.required if left > rules.largest_excess else -np.inf
-    short = judge.closed(chosen.held, rows, chosen.held) < needed and not _sticks_alone(judge, chosen, rows)
+    short = judge.closed(chosen.held, rows, chosen.held) < needed and not sticks_alone(judge, chosen, rows)
     limited = sum(c.effect == "torque_saturation" for c in chosen.causes)
     if beyond or short or limited >= LIMITS_AT_ONCE:
         return "unknown"

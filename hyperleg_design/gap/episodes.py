@@ -103,3 +103,9 @@ def together(samples: Samples, left: np.ndarray, balance: str = "drive") -> floa
             wild[place[mine & (plain > EPISODE * _spread(plain[mine]))]] = True
         count += wild
     return float((count[seen] >= max(len(drives) / 2, 2)).mean())
+
+
+def of_time(samples: Samples, row: int) -> float:
+    """Share of a row that is in episodes."""
+    own = samples.row == row
+    return float(samples.share[own & samples.episodic[samples.group]].sum() / max(samples.share[own].sum(), 1e-300))

@@ -16,13 +16,14 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap import filtering, floor, nuisance, screen
 from hyperleg_design.gap.base import Base, Prior
 from hyperleg_design.gap.chatter import newly
-from hyperleg_design.gap.decide import AT_LIMITS, shown_already
+from hyperleg_design.gap.decide import shown_already
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import episodes
 from hyperleg_design.gap.fit import Design, Fit
 from hyperleg_design.gap.held_out import predict
 from hyperleg_design.gap.holding import noticed
 from hyperleg_design.gap.learned import Learned, learned, unsaid
+from hyperleg_design.gap.naming import AT_LIMITS
 from hyperleg_design.gap.samples import LOGS, Samples, gather
 from hyperleg_design.gap.screen import reach
 

@@ -63,3 +63,18 @@ def knee_friction(viscous_ready):
     from hyperleg_design.gap.screen import linearise
 
     return linearise(viscous_ready.base.samples, EFFECTS["viscous_friction"], "knee", np.zeros(1))
+
+
+@pytest.fixture(scope="session")
+def judged(robot_files):
+    """Judge and decision on a coupled rig whose knee has viscous friction."""
+    import diagnosed
+
+    from hyperleg_design.gap.decide import decide
+    from hyperleg_design.gap.screen import places
+    from hyperleg_design.gap.thresholds import load_thresholds
+
+    ready = diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1)))
+    subject = ready.base.samples.sieves[0].signals.subject
+    friction = ("viscous_friction", "coulomb_friction", "stribeck_friction", "torque_constant")
+    return decide(ready.base, load_thresholds(), places(subject, friction))

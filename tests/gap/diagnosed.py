@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import robots
 
@@ -54,3 +56,12 @@ def prepared(robot, *logs, references=()):
     """What causes are fitted on."""
     signals = conditioned(robot, *logs, *references)
     return prepare(signals[: len(logs)], signals[len(logs) :], load_thresholds())
+
+
+def in_episodes(share, *balances):
+    """Rows of 1000 samples each in two groups, the second their episodes."""
+    balances = balances or ("drive",)
+    group = np.tile((np.arange(1000) < 1000 * share).astype(int), len(balances))
+    rows = tuple(SimpleNamespace(balance=balance) for balance in balances)
+    row = np.repeat(np.arange(len(balances)), 1000)
+    return SimpleNamespace(rows=rows, row=row, group=group, episodic=np.array([False, True]), share=np.full(len(row), 0.5))

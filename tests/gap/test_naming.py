@@ -1,0 +1,93 @@
+"""Rules by which causes are named, on judges that know just what a rule asks."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from diagnosed import in_episodes
+
+from hyperleg_design.gap.judge import rank
+from hyperleg_design.gap.naming import clearly_large, likelier, stands_out, sticks_alone, unshown
+from hyperleg_design.gap.thresholds import load_thresholds
+
+
+def of_battery(effect, unseen):
+    """A cause of two sizes, of which the second is 4 at most."""
+    return SimpleNamespace(effect=effect, unseen=unseen, high=np.array([20.0, 4.0]), shape=np.zeros(2, bool))
+
+
+@pytest.mark.parametrize(("share", "effect", "line", "episode", "unseen", "seldom"), [
+    (0.01, "voltage_sag", np.inf, True, False, True),
+    (0.03, "voltage_sag", np.inf, True, False, False),
+    (0.03, "voltage_sag", np.inf, True, True, True),
+    (0.03, "voltage_sag", 3.0, True, True, False),
+    (0.01, "voltage_sag", 3.0, True, False, False),
+    (0.01, "voltage_sag", np.inf, False, False, False),
+    (0.01, "torque_saturation", np.inf, True, False, False),
+])  # fmt: skip
+def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives_or_by_its_voltage(share, effect, line, episode, unseen, seldom):
+    samples = in_episodes(share)
+    samples.sieves = [SimpleNamespace(signals=SimpleNamespace(subject=SimpleNamespace(stall_torque=np.array([line]))))]
+    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
+    judge.shown = lambda model, place: np.array([0.5, 9.0] if episode else [9.0, 0.5])
+    model = SimpleNamespace(causes=(of_battery(effect, unseen),), values=lambda place: np.array([1.0, 0.5]))
+    assert unshown(judge, model) is seldom
+    judge.thresholds = replace(judge.thresholds, seldom=0.0)  # of reference logs: what they show is no cause
+    assert not unshown(judge, model)
+    model.values = lambda place: np.array([1.0, 4.0])
+    assert unshown(judge, model) is (unseen and effect == "voltage_sag"), "a battery that nobody measured takes no more than all torque"
+
+
+@pytest.mark.parametrize(("gain", "gap", "left", "floating", "large"), [
+    (7.5, 2.0, 1.0, False, True), (6.5, 2.0, 1.0, False, False), (7.5, 1.5, 1.0, False, False), (7.5, 2.0, 1.0, True, False),
+    (7.5, 9.0, 4.0, False, False),
+])  # fmt: skip
+def test_less_evidence_will_do_to_explain_all_of_a_gap_clearly_over_the_floor_of_a_held_base(gain, gap, left, floating, large):
+    subject = SimpleNamespace(floating=floating)
+    samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=subject))])
+    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
+    judge.gap, judge.excess_rows = lambda square, rows: np.asarray(square), lambda model: np.ones(2, bool)
+    assert clearly_large(judge, SimpleNamespace(gain=gain, held=SimpleNamespace(bare=gap, square=left))) is large
+
+
+def rows_of(shown, bare, left, nothing, effect="coulomb_friction"):
+    """A judge and a model of one cause, by what there is in two rows and their episodes."""
+    samples = SimpleNamespace(rows=(SimpleNamespace(name="hip", balance="motion"), SimpleNamespace(name="knee", balance="motion")))
+    held = {k: np.array(v) for k, v in (("bare", bare), ("left", left), ("nothing", nothing), ("shown", shown))}
+    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds(), rows=lambda kind: held[kind], holds={})
+    judge.shown = lambda model, place: held["shown"]
+    judge.own = lambda model, place: np.array([False, True, False, False])
+    judge.nothing = SimpleNamespace(held=SimpleNamespace(square="nothing"))
+    cause = SimpleNamespace(effect=effect)
+    return judge, SimpleNamespace(causes=(cause,), held=SimpleNamespace(bare="bare", square="left"))
+
+
+def test_a_small_cause_stands_out_if_it_is_most_of_what_there_is():
+    shown = (0.0, 0.9, 0.0, 0.0)
+    assert stands_out(*rows_of(shown, (0.5, 1.0, 0, 0), (0.5, 0.2, 0, 0), (0.5, 0.4, 0, 0)))
+    assert not stands_out(*rows_of(shown, (0.5, 1.0, 0, 0), (0.5, 0.6, 0, 0), (0.5, 0.9, 0, 0)))
+    assert not stands_out(*rows_of(shown, (0.5, 1.0, 0, 0), (0.5, 0.2, 0, 0), (0.5, 0.2, 0, 0))), "calibration errors leave as little"
+    assert not stands_out(*rows_of((0.0, 0.1, 0.0, 0.0), (0.5, 1.0, 0, 0), (0.5, 0.2, 0, 0), (0.5, 0.4, 0, 0))), "hardly to be seen"
+    limited = rows_of(shown, (0.5, 1.0, 0, 0), (0.5, 0.2, 0, 0), (0.5, 0.4, 0, 0), effect="torque_saturation")
+    assert not stands_out(*limited), "healthy drives reach limits"
+
+
+def test_a_joint_that_sticks_excuses_its_own_gap_alone():
+    rows = np.array([True, True, False, False])
+    for left, excused in (((9.0, 1.0, 0, 0), True), ((9.0, 9.0, 0, 0), False)):
+        judge, model = rows_of((1.0, 1.0, 0, 0), (9.0, 9.0, 0, 0), left, (9.0, 9.0, 0, 0))
+        judge.holds, judge.held = {"hip": 2.0}, lambda model, joint: 0.9
+        assert sticks_alone(judge, model, rows) is excused
+        judge.held = lambda model, joint: 0.1
+        assert not sticks_alone(judge, model, rows)
+
+
+def test_what_is_much_likelier_is_named_and_not_what_imitates_it(judged):
+    judge, found = judged
+    right, imitation = found.slots[0][0], found.slots[0][1]
+    assert rank(right) > rank(imitation) + judge.thresholds.alike
+    assert likelier(judge, found.slots[0], imitation).names == right.names
+    assert likelier(judge, found.slots[0][1:], imitation).names == imitation.names
+    unseen = replace(right, causes=(replace(right.causes[0], effect="torque_saturation"),))
+    assert likelier(judge, [unseen, imitation], imitation).names == imitation.names
