@@ -71,15 +71,6 @@ def loudest(size: np.ndarray, frequency: float, step: float) -> slice:
     return slice(max(middle - half, 0), middle + half + 1)
 
 
-def swinging(signals: Signals) -> tuple[np.ndarray, np.ndarray] | None:
-    """Where a log chatters most: time `(t,)` [s], and the joints' speeds about that frequency `(t, n)` [rad/s]; None where it does not."""
-    found = swing(signals)
-    if found is None:
-        return None
-    part = loudest(np.linalg.norm(found.angle, axis=1), found.frequency, signals.step)
-    return signals.time[part], (2j * np.pi * found.frequency * found.angle[part]).real
-
-
 def _folded(frequency: float, rate: float) -> float:
     """Where a log's rate shows a frequency [Hz]."""
     return min(frequency % rate, -frequency % rate)

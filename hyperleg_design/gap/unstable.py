@@ -22,7 +22,7 @@ from hyperleg_design.gap.effects.placing import ROBOT
 from hyperleg_design.gap.heard import UNSTABLE, Heard
 from hyperleg_design.gap.loose import LIKELIER, PLAY, SPRING, WIDTH, valued
 from hyperleg_design.gap.stability import Loops, Modes, inertia, modes
-from hyperleg_design.gap.swing import Swing, rms, sharp, swing
+from hyperleg_design.gap.swing import Swing, loudest, rms, sharp, swing
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -81,6 +81,8 @@ class _Match:
     """Of the swing's squares."""
     stretch: float
     """Of its belt, on the motor's side [rad]."""
+    mode: np.ndarray
+    """Its shape, complex, of length 1 `(n,)`."""
 
 
 def unstable(signals: Sequence[Signals]) -> Heard | None:
@@ -95,7 +97,7 @@ def unstable(signals: Sequence[Signals]) -> Heard | None:
             matches.setdefault(name, []).append(match)
     if not matches:
         return None
-    missing = _Match(MISSING, np.zeros(0), 0.0, 0.0)
+    missing = _Match(MISSING, np.zeros(0), 0.0, 0.0, np.zeros(0))
     full = {name: [*found, *[missing] * (len(heard) - len(found))] for name, found in matches.items()}
     score = {name: sum(match.score for match in found) - FREE * (name[0] == SPRING) for name, found in full.items()}
     order = sorted(score, key=lambda name: (-score[name], name))
@@ -124,6 +126,19 @@ def unstable(signals: Sequence[Signals]) -> Heard | None:
     )  # fmt: skip
 
 
+def swinging(signals: Signals, effect: str, location: str) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Where a log chatters most: time `(t,)` [s], the joints' speeds about that frequency, and what of them goes with the mode that a cause
+    makes unstable `(t, n)` [rad/s]; None where the log does not chatter, or the cause makes none.
+    """
+    found = swing(signals)
+    match = None if found is None else _matched(signals, found).get((SPRING if effect == PLAY else effect, location))
+    if found is None or match is None:
+        return None
+    part = loudest(np.linalg.norm(found.angle, axis=1), found.frequency, signals.step)
+    speed = 2j * np.pi * found.frequency * found.angle[part]
+    return signals.time[part], speed.real, ((speed @ match.mode.conj())[:, None] * match.mode).real
+
+
 def _matched(signals: Signals, found: Swing) -> dict[tuple[str, str], _Match]:
     """Causes that make a mode near the chatter of a log unstable."""
     subject, angle = signals.subject, found.angle
@@ -142,7 +157,8 @@ def _matched(signals: Signals, found: Swing) -> dict[tuple[str, str], _Match]:
             k = int(np.argmax(score))
             name = one.effect, one.location
             if score[k] > MISSING and score[k] > (best[name].score if name in best else MISSING):
-                best[name] = _Match(float(score[k]), one.values[k], float(share[k]), float(mode.stretch[k] * np.percentile(size, 95)))
+                stretch = float(mode.stretch[k] * np.percentile(size, 95))
+                best[name] = _Match(float(score[k]), one.values[k], float(share[k]), stretch, mode.shape[k])
     return best
 
 

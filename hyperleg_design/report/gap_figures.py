@@ -125,14 +125,15 @@ def ringing_figure(motor: str, log: str, time: np.ndarray, need: np.ndarray, tor
         return figure
 
 
-def swinging_figure(joints: Sequence[str], log: str, time: np.ndarray, speed: np.ndarray) -> Figure:
-    """Joints that swing to and fro by themselves: their speeds about that frequency `(t, n)` [rad/s], some periods of it [s]."""
+def swinging_figure(joints: Sequence[str], log: str, time: np.ndarray, speed: np.ndarray, mode: np.ndarray) -> Figure:
+    """Joints that swing by themselves: speeds about that frequency, and what of them goes with a mode, `(t, n)` [rad/s] over [s]."""
     with figure_style():
         import matplotlib.pyplot as plt
 
-        figure, panel = plt.subplots(figsize=(10.5, 3.0), layout="constrained")
-        for joint, values in zip(joints, speed.T, strict=True):
-            panel.plot(time, values, marker=".", label=joint)
+        figure, panel = plt.subplots(figsize=(10.5, 3.2), layout="constrained")
+        for joint, measured, predicted in zip(joints, speed.T, mode.T, strict=True):
+            (line,) = panel.plot(time, measured, marker=".", label=joint)
+            panel.plot(time, predicted, linestyle="--", color=line.get_color())
         panel.set_xlabel("time [s]")
         panel.set_ylabel("speed [rad/s]")
         panel.set_title(log)

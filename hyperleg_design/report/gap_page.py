@@ -19,7 +19,7 @@ from hyperleg_design.gap.sinking import EFFECT as SOFT
 from hyperleg_design.gap.sinking import SINKS, bearings
 from hyperleg_design.gap.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.slipping import SLIPS, contacts
-from hyperleg_design.gap.swing import swinging
+from hyperleg_design.gap.unstable import swinging
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_text import chosen
 from hyperleg_design.report.page import Cell, Details, Heading, Page, Picture, Section, Table, render
@@ -61,7 +61,7 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     shown = [] if apart and not others else [evidence(one, others or causes, _balance(one, others or causes)) for one in signals]
     shown = [one for one in shown if np.isfinite(one.before).any()]  # joints that stand all the time show nothing
     pictures = [
-        *(_noises(folder, shape, noisy, signals) if noisy else []),
+        *(_noises(folder, shape, noisy, causes, signals) if noisy else []),
         *_slipping(folder, slid, signals),
         *_sinking(folder, sunk, signals),
         *(_traces(folder, shown, others) if others or not (noisy or of_feet) else []),
@@ -187,23 +187,25 @@ def _heard(diagnosis: Mapping[str, Any]) -> tuple[str, str]:
     return next(((str(one["shape"]), str(one["location"])) for one in shapes if one["shape"] in (RINGING, KNOCKING, UNSTABLE)), ("", ""))
 
 
-def _noises(folder: Path, shape: str, place: str, signals: Sequence[Signals]) -> list[Any]:
+def _noises(folder: Path, shape: str, place: str, causes: Sequence[Mapping[str, Any]], signals: Sequence[Signals]) -> list[Any]:
     """Torques by which a belt is known that rings, or lets its joints knock about, or joints that swing by themselves."""
     if shape == UNSTABLE:
-        return _swinging(folder, signals)
+        effect = next((str(one["effect"]) for one in reversed(causes) if one["location"] == place), "")
+        return _swinging(folder, effect, place, signals)
     return _ringing(folder, place, signals) if shape == RINGING else _knocking(folder, place, signals)
 
 
-def _swinging(folder: Path, signals: Sequence[Signals]) -> list[Any]:
-    """Joints that swing by themselves, those that do most."""
+def _swinging(folder: Path, effect: str, place: str, signals: Sequence[Signals]) -> list[Any]:
+    """Joints that swing by themselves, those that do most, and what of it goes with the mode that the cause makes unstable."""
     content: list[Any] = []
-    found = [(one, *shown) for one in signals if (shown := swinging(one)) is not None]
+    found = [(one, *shown) for one in signals if (shown := swinging(one, effect, place)) is not None]
     found.sort(key=lambda row: -float(np.abs(row[2]).max()))
-    for i, (one, time, speed) in enumerate(found[:2]):
+    for i, (one, time, speed, mode) in enumerate(found[:2]):
         most = np.argsort(-np.mean(speed**2, 0), kind="stable")[:MOST_SWINGING]
         name, joints = f"swinging-{i + 1}.png", one.subject.joints
-        save(gap_figures.swinging_figure([joints[j] for j in most], one.log.name, time, speed[:, most]), folder / FIGURES / name)
-        says = "nothing commands this; the proportions and phases of the joints tell which loop it is."
+        drawn = gap_figures.swinging_figure([joints[j] for j in most], one.log.name, time, speed[:, most], mode[:, most])
+        save(drawn, folder / FIGURES / name)
+        says = f"nothing commands this; dashed, what of it goes with the mode that {effect} at {place} makes unstable."
         content.append(Picture(f"{FIGURES}/{name}", f"{one.log.name}, where its joints swing most, about that frequency: {says}"))
     return content
 

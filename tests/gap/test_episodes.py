@@ -4,7 +4,7 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.episodes import episodes, together
+from hyperleg_design.gap.episodes import episodes, of_time, together
 
 TICKS, STEP = 4000, 0.005
 
@@ -59,3 +59,10 @@ def test_joints_tell_where_nobody_measured_the_drives():
     samples.rows = [SimpleNamespace(balance="motion")] * 3
     assert together(samples, left) == 0.0
     assert 0.08 <= together(samples, left, "motion") <= 0.12
+
+
+def test_how_much_of_the_time_a_row_is_in_episodes():
+    samples = diagnosed.in_episodes(0.25, "drive", "motion")
+    assert of_time(samples, 0) == pytest.approx(0.25)
+    samples.group[samples.row == 1] = 0
+    assert of_time(samples, 1) == 0

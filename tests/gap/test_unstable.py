@@ -11,7 +11,7 @@ from hyperleg_design.gap.diagnose import diagnose
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.metadata import Metadata
 from hyperleg_design.gap.subject import load_subject
-from hyperleg_design.gap.unstable import unstable
+from hyperleg_design.gap.unstable import swinging, unstable
 from hyperleg_design.report.gap_page import write_gap_page
 
 MASS, CENTRE, SPIN, LENGTH, ROTORS = (1.2, 0.6), (0.15, 0.12), (0.02, 0.006), 0.3, np.array([0.02, 0.01])
@@ -142,9 +142,16 @@ def test_a_diagnosis_names_what_makes_the_loops_unstable(robot, tmp_path):
     assert "elbow rings at" in page  # the torques are those that the controllers ask for
 
 
-def test_the_page_shows_the_joints_that_swing(robot, tmp_path):
+def test_the_page_shows_the_joints_that_swing_beside_the_mode(robot, tmp_path):
     test = log(TIGHT, late=4)
-    found = diagnose(robot, [test], [log(TIGHT, role="reference")], threads=1)
-    assert (found.causes[0].effect, found.causes[0].location) == ("command_delay", "robot")
-    page = write_gap_page(tmp_path, found.mapping(), [condition(test, load_subject(robot, [test]))]).read_text()
-    assert "swings to and fro by itself" in page or "trace-1" in page
+    signals = condition(test, load_subject(robot, [test]))
+    _, speed, mode = swinging(signals, "command_delay", "robot")
+    assert np.sum((speed - mode) ** 2) < 0.1 * np.sum(speed**2)
+    assert swinging(signals, "command_delay", "elbow") is None
+    found = diagnose(robot, [test], threads=1).mapping()
+    found["causes"] = [{"effect": "command_delay", "location": "robot", "probability": 0.9, "closed": 0.8, "parameters": {}}]
+    found["residual_shape"] = [{"shape": "unstable", "location": "robot", "says": "has unstable control loops", "closed_beyond": 0.8, "gain": 0.0}]
+    page = write_gap_page(tmp_path, found, [signals]).read_text()
+    assert "robot has unstable control loops." in page
+    assert (tmp_path / "figures" / "swinging-1.png").is_file()
+    assert "the mode that command_delay at robot makes unstable" in page
