@@ -140,7 +140,9 @@ def _kept(model: Model, before: Model) -> bool:
 
 def _visible(judge: Judge, model: Model) -> bool:
     """Whether the last cause shows over the floor."""
-    return float(np.sqrt(judge.shown(model, len(model.causes) - 1).max())) >= judge.thresholds.visible
+    rules, floating = judge.thresholds, judge.base.samples.sieves[0].signals.subject.floating
+    least = rules.visible_afoot if floating else rules.visible
+    return float(np.sqrt(judge.shown(model, len(model.causes) - 1).max())) >= least
 
 
 def _closes_own(judge: Judge, model: Model, before: Model, worth: float, least: float = 0.0) -> bool:

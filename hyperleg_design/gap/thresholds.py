@@ -24,6 +24,7 @@ class Thresholds:
     floor_weight: float
     information: float
     visible: float
+    visible_afoot: float
     least_gap: float
     evident: float
     evident_large: float

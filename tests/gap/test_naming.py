@@ -8,7 +8,7 @@ import pytest
 from diagnosed import in_episodes
 
 from hyperleg_design.gap.judge import rank
-from hyperleg_design.gap.naming import clearly_large, likelier, stands_out, sticks_alone, unshown
+from hyperleg_design.gap.naming import _visible, clearly_large, likelier, stands_out, sticks_alone, unshown
 from hyperleg_design.gap.thresholds import load_thresholds
 
 
@@ -91,3 +91,13 @@ def test_what_is_much_likelier_is_named_and_not_what_imitates_it(judged):
     assert likelier(judge, found.slots[0][1:], imitation).names == imitation.names
     unseen = replace(right, causes=(replace(right.causes[0], effect="torque_saturation"),))
     assert likelier(judge, [unseen, imitation], imitation).names == imitation.names
+
+
+def test_a_cause_on_a_walk_must_be_nearly_as_large_as_the_floor():
+    rules = load_thresholds()
+    for floating, least in ((False, rules.visible), (True, rules.visible_afoot)):
+        samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=SimpleNamespace(floating=floating)))])
+        judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=rules)
+        for size in (0.9 * least, 1.1 * least):
+            judge.shown = lambda model, place, size=size: np.array([0.1, size]) ** 2
+            assert _visible(judge, SimpleNamespace(causes=(None,))) is (size > least)
