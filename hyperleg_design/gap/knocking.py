@@ -99,8 +99,8 @@ def knocking(signals: Sequence[Signals], references: Sequence[Signals] = (), kno
     )
     causes = _causes(signals, place, closed)
     fair = shares / shares.sum()
-    all_shares = dict(zip(subject.motors, fair.tolist(), strict=True))
-    return Heard(place, KNOCKING, says, np.nan, missed, "Nm", closed, (min(each), max(each)), "motor", all_shares, causes)
+    of_motors = dict(zip(subject.motors, fair.tolist(), strict=True))
+    return Heard(place, KNOCKING, says, np.nan, missed, "Nm", closed, (min(each), max(each)), "motor", of_motors, causes)
 
 
 def struck(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

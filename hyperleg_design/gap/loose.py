@@ -156,7 +156,7 @@ def _closed(lines: Sequence[_Line], motor: int) -> tuple[float, tuple[float, flo
 
 def _causes(subject: Subject, motor: int, line: _Line, closed: float) -> tuple[Named, Named]:
     """Play and spring, the likelier first, with what the swing of a log says of their sizes."""
-    place, radians = subject.motors[motor], 2 * np.pi * line.frequency
+    radians = 2 * np.pi * line.frequency
     swings = (line.need - line.torque)[:, motor] / (rotor(subject, motor) * radians**2)
     apart, through, given, need = (rms(x) for x in (swings, *(x[:, motor] for x in (line.joints, line.torque, line.need))))
     # the phase of a believed torque is uncertain, so that all of it may be missed beside the need, or none
@@ -165,9 +165,26 @@ def _causes(subject: Subject, motor: int, line: _Line, closed: float) -> tuple[N
     spring = compliance, compliance * abs(need - given) / missed / (1 + UNCERTAIN), compliance * (need + given) / missed * (1 + UNCERTAIN)
     seen = float(np.percentile(np.abs(swings), 95)) / float(np.abs(subject.joint_from_motor[:, motor]).max())
     play = WIDTH * seen, seen, 2 * seen * (1 + UNCERTAIN)
-    likely = LIKELIER if sharp(line.swing, subject, motor) else 1 - LIKELIER
+    return play_and_spring(subject, motor, line.swing, play, spring, closed)
+
+
+def play_and_spring(
+    subject: Subject, motor: int, found: Swing, play: Sequence[float], spring: Sequence[float], closed: float, side: float = 0.0
+) -> tuple[Named, Named]:
+    """Play and spring of a belt on which joints swing, the likelier first; their probabilities are 1 together.
+
+    Args:
+        subject: the robot.
+        motor: whose belt gives.
+        found: chatter that tells play from a spring.
+        play: angle: value, low and high.
+        spring: compliance: the same.
+        closed: share of what is heard that is explained.
+        side: of the encoders, see `valued`.
+    """
+    place, likely = subject.motors[motor], LIKELIER if sharp(found, subject, motor) else 1 - LIKELIER
     named = [
-        Named(effect, place, share, closed, valued(effect, subject, place, size))
+        Named(effect, place, share, closed, valued(effect, subject, place, size, side))
         for effect, share, size in ((PLAY, likely, play), (SPRING, 1 - likely, spring))
     ]
     first, second = sorted(named, key=lambda one: -one.probability)

@@ -123,10 +123,11 @@ def clearly_large(judge: Judge, model: Model) -> bool:
 
     It is calibration errors that would have to be as large else, several of them together.
     """
-    rules, subject = judge.thresholds, judge.base.samples.sieves[0].signals.subject
+    rules = judge.thresholds
+    if model.gain < rules.evident_large or judge.base.samples.sieves[0].signals.subject.floating:
+        return False
     rows = judge.excess_rows(model)
-    gap, left = float(judge.gap(model.held.bare, rows)), float(judge.gap(model.held.square, rows))
-    return not subject.floating and model.gain >= rules.evident_large and gap >= rules.largest_excess and left < rules.least_gap
+    return float(judge.gap(model.held.bare, rows)) >= rules.largest_excess and float(judge.gap(model.held.square, rows)) < rules.least_gap
 
 
 def _kept(model: Model, before: Model) -> bool:

@@ -10,7 +10,7 @@ move stiffer, and nobody knows by how much. No torque is needed.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,9 +20,9 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.belt import rotor
 from hyperleg_design.gap.effects.placing import ROBOT
 from hyperleg_design.gap.heard import UNSTABLE, Heard
-from hyperleg_design.gap.loose import LIKELIER, PLAY, SPRING, WIDTH, valued
+from hyperleg_design.gap.loose import PLAY, SPRING, WIDTH, play_and_spring
 from hyperleg_design.gap.stability import Loops, Modes, inertia, modes
-from hyperleg_design.gap.swing import Swing, loudest, rms, sharp, swing
+from hyperleg_design.gap.swing import Swing, loudest, rms, swing
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -64,8 +64,6 @@ class _Variants:
 
     effect: str
     location: str
-    joint: int
-    """Whose gains; -1 of other causes."""
     values: np.ndarray
     """Parameters of the effect, its sizes `(g, k)`."""
     loops: Loops
@@ -91,37 +89,33 @@ def unstable(signals: Sequence[Signals]) -> Heard | None:
     if subject.floating or not np.isfinite(subject.gains[~subject.passive]).all():
         return None
     heard = [(one, found) for one in signals if (found := swing(one)) is not None]
-    matches: dict[tuple[str, str], list[_Match]] = {}
-    for one, found in heard:
-        for name, match in _matched(one, found).items():
-            matches.setdefault(name, []).append(match)
-    if not matches:
+    matches = [_matched(*pair) for pair in heard]
+    names = {name for found in matches for name in found}
+    if not names:
         return None
-    missing = _Match(MISSING, np.zeros(0), 0.0, 0.0, np.zeros(0))
-    full = {name: [*found, *[missing] * (len(heard) - len(found))] for name, found in matches.items()}
-    score = {name: sum(match.score for match in found) - FREE * (name[0] == SPRING) for name, found in full.items()}
+    score = {name: sum(found[name].score if name in found else MISSING for found in matches) - FREE * (name[0] == SPRING) for name in names}
     order = sorted(score, key=lambda name: (-score[name], name))
     best = order[0]
     near = [name for name in order if score[name] > score[best] - APART]
     if score[best] < GOOD * len(heard) or len(near) > MOST:
         return None
-    weight = {name: float(np.exp(score[name] - score[best])) for name in order}
+    shares = [found[best].share if best in found else 0.0 for found in matches]
+    closed, *each = (float(1 - np.sqrt(1 - share)) for share in (float(np.mean(shares)), *shares))
     speeds = [2 * np.pi * found.frequency * found.angle for _, found in heard]
-    loudest = max(range(len(heard)), key=lambda i: float(rms(speeds[i]).max()))
-    shares = [match.share for match in full[best]]
-    closed, *each = (float(1 - np.sqrt(1 - min(share, 1.0))) for share in (float(np.mean(shares)), *shares))
+    worst = heard[max(range(len(heard)), key=lambda i: float(rms(speeds[i]).max()))][1]
+    weight = {name: float(np.exp(score[name] - score[best])) for name in order}
     total = sum(weight.values())
-    told = (c for name in near for c in _named(subject, name, full[name], heard[loudest][1], weight[name] / total, closed))
+    told = (c for name in near for c in _named(subject, name, [f[name] for f in matches if name in f], worst, weight[name] / total, closed))
     causes = sorted(told, key=lambda cause: -cause.probability)
     size = rms(np.concatenate(speeds))
-    joint, frequency = subject.joints[int(np.argmax(size))], heard[loudest][1].frequency
+    joint = subject.joints[int(np.argmax(size))]
     says = (
-        f"has unstable control loops: {joint} swings to and fro by itself at {frequency:.0f} Hz, and "
+        f"has unstable control loops: {joint} swings to and fro by itself at {worst.frequency:.0f} Hz, and "
         f"{100 * float(np.mean(shares)):.0f} % of how all joints swing together goes with the mode that the model's loops then have"
     )
     spread = dict(zip(subject.joints, (size**2 / np.sum(size**2)).tolist(), strict=True))
     return Heard(
-        causes[0].location, UNSTABLE, says, frequency, float(np.linalg.norm(size)), "rad/s", closed, (min(each), max(each)), "joint", spread,
+        causes[0].location, UNSTABLE, says, worst.frequency, float(np.linalg.norm(size)), "rad/s", closed, (min(each), max(each)), "joint", spread,
         tuple(causes),
     )  # fmt: skip
 
@@ -177,45 +171,42 @@ def _variants(subject: Subject, moved: np.ndarray) -> Iterator[_Variants]:
 
     sizes = np.geomspace(*LATE)
     late, slow, gains = loops(len(sizes))
-    yield _Variants("command_delay", ROBOT, -1, sizes[:, None], Loops(late + sizes, slow, gains))
+    yield _Variants("command_delay", ROBOT, sizes[:, None], Loops(late + sizes, slow, gains))
     for joint in np.flatnonzero(moved & ~subject.passive).tolist():
         for ways, changes in ((((1, 0), (0, 1), (1, 1)), LOUDER), (((0, 1),), WEAKER)):
             for way in ways:
                 late, slow, gains = loops(len(changes))
                 scales = 1 + changes[:, None] * np.array(way)
                 gains[:, joint] *= scales
-                yield _Variants("controller_gain", subject.joints[joint], joint, scales, Loops(late, slow, gains))
+                yield _Variants("controller_gain", subject.joints[joint], scales, Loops(late, slow, gains))
     for motor in np.flatnonzero((np.abs(subject.joint_from_motor[moved]) > 0).any(0)).tolist():
         sizes = np.geomspace(*SLOW)
         late, slow, gains = loops(len(sizes))
         slow[:, motor] = sizes
-        yield _Variants("actuator_bandwidth", subject.motors[motor], -1, sizes[:, None], Loops(late, slow, gains))
+        yield _Variants("actuator_bandwidth", subject.motors[motor], sizes[:, None], Loops(late, slow, gains))
         springs = rotor(subject, motor) * (2 * np.pi * RINGS) ** 2
         late, slow, gains = loops(len(springs))
         for side in (False, True):
             belt = Loops(late, slow, gains, motor, springs, side)
-            yield _Variants(SPRING, subject.motors[motor], -1, np.column_stack([1 / springs, np.full(len(springs), float(side))]), belt)
+            yield _Variants(SPRING, subject.motors[motor], np.column_stack([1 / springs, np.full(len(springs), float(side))]), belt)
 
 
-def _named(subject: Subject, name: tuple[str, str], found: Sequence[_Match], loudest: Swing, probability: float, closed: float) -> Iterator[Named]:
+def _named(subject: Subject, name: tuple[str, str], found: Sequence[_Match], worst: Swing, probability: float, closed: float) -> Sequence[Named]:
     """A cause with its parameters; of a belt, the spring and play as wide as it would swing."""
     effect, place = name
-    values = [match.values for match in found if len(match.values)]
+    values = [match.values for match in found]
     if effect == SPRING:
-        side = values[0][1]
-        size = float(np.exp(np.mean([np.log(v[0]) for v in values])))
         motor = subject.motors.index(place)
+        size = float(np.exp(np.mean([np.log(v[0]) for v in values])))
         play = WIDTH * max(match.stretch for match in found) / float(np.abs(subject.joint_from_motor[:, motor]).max())
-        likely = LIKELIER if sharp(loudest, subject, motor) else 1 - LIKELIER
-        for one, middle, share in sorted(((PLAY, play, likely), (SPRING, size, 1 - likely)), key=lambda item: -item[2]):
-            yield Named(one, place, share * probability, closed, valued(one, subject, place, _about(middle), side))
-        return
+        both = play_and_spring(subject, motor, worst, _about(play), _about(size), closed, side=values[0][1])
+        return [replace(one, probability=one.probability * probability) for one in both]
     mean, null = np.mean(values, 0), EFFECTS[effect].nulls
     parameters = {}
     for parameter, value, zero in zip(EFFECTS[effect].parameters, mean, null, strict=True):
         ends = [zero + (value - zero) * factor for factor in _about(1.0)[1:]]
         parameters[parameter.name] = Value(float(value), float(max(min(ends), parameter.low)), float(min(max(ends), parameter.high)), parameter.unit)
-    yield Named(effect, place, probability, closed, parameters)
+    return [Named(effect, place, probability, closed, parameters)]
 
 
 def _about(size: float) -> tuple[float, float, float]:
