@@ -218,7 +218,7 @@ def _arm() -> Chain:
         name="arm", links=tree_links(model), motors=tuple(model.actuator(i).name for i in range(model.nu)), joint_from_motor=np.eye(model.nu),
         rotor_inertia=model.dof_armature.copy(), coulomb=model.dof_frictionloss.copy(), viscous=model.dof_damping.copy(),
         stiffness=np.array([900.0, 1200.0, 400.0, 500.0, 90.0, 90.0, 60.0]), damping=np.array([40.0, 50.0, 14.0, 16.0, 2.5, 2.5, 1.8]),
-        peak_torque=peak, stall_torque=3.0 * peak, no_load_speed=np.array([4.2, 4.2, 4.2, 4.2, 6.2, 6.2, 6.2]),
+        peak_torque=peak, stall_torque=3.0 * peak, no_load_speed=np.array([9.0, 9.0, 9.0, 9.0, 13.0, 13.0, 13.0]),
         torque_constant=np.array([0.11, 0.11, 0.10, 0.10, 0.06, 0.06, 0.06]) * gear,
         low=model.jnt_range[:, 0].copy(), high=model.jnt_range[:, 1].copy(),
         rest=np.array([0.1, -0.5, 0.2, 0.7, 0.1, 0.4, 0.0]), voltage=48.0, mjcf=ARM_MJCF, robot=ROBOT_FILE,
