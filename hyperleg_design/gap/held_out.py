@@ -30,6 +30,8 @@ class Held:
     """Sum of the squares that are left, by block and group, in the residual's unit `(B, G)`."""
     left: np.ndarray
     """What is left of every sample, weighted `(S,)`."""
+    over: float
+    """Log-likelihood of all blocks had no group less noise than its floor: what models tell of less than the floor does not count."""
     bare: np.ndarray
     """As `square`, had the causes not been there: the same calibration errors, without the causes' traces `(B, G)`."""
 
@@ -73,13 +75,15 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
     nu, scale = (np.bincount(inverse, v * samples.share) / size for v in (freedom, spread))
     each = -0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale)
     likelihood = np.bincount(cells // samples.groups, each, base.blocks)
+    floored = np.maximum(scale, 1.0)
+    over = float((-0.5 * (nu + size) * np.log1p(square / (nu * floored)) - 0.5 * size * np.log(floored)).sum())
     for fold in range(samples.folds(way) if design.factors else 0):
         share = np.bincount(samples.block, samples.share * (fold_of == fold), base.blocks)
         likelihood = likelihood + scaled[fold] * share / samples.share.sum()
     squares, whole = (
         np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups) for v in (left, bare)
     )
-    return Held(likelihood, squares, left, whole)
+    return Held(likelihood, squares, left, over, whole)
 
 
 def doubt(base: Base, way: int = BLOCKS) -> np.ndarray:

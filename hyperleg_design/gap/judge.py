@@ -163,6 +163,10 @@ class Judge:
         """Log-likelihood of held-out blocks over that of no cause, the cost of the calibration errors taken into account."""
         return held.total - self.nothing.held.total + self.nothing.fit.implausible - fit.implausible
 
+    def over(self, model: Model) -> float:
+        """As `gain`, were no noise less than its floor: what a model makes better of less than that is no evidence of a gap."""
+        return model.gain - (model.held.total - model.held.over) + (self.nothing.held.total - self.nothing.held.over)
+
     def shown(self, model: Model, place: int) -> np.ndarray:
         """Mean square of one cause's trace in each row, and in its episodes, over the floor `(2 rows,)`."""
         cause, samples = model.causes[place], self.base.samples

@@ -38,7 +38,7 @@ def worth_naming(judge: Judge, model: Model) -> bool:
         return False
     if at_rest(judge, model):
         return True
-    if not _visible(judge, model) or unshown(judge, model):
+    if judge.over(model) < rules.evident_over or not _visible(judge, model) or unshown(judge, model):
         return False
     rows = judge.excess_rows(model)
     large = float(judge.gap(model.held.bare, rows)) >= rules.least_gap

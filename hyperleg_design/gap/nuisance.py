@@ -58,6 +58,8 @@ WIDE = {
     "encoder_offset": 4.0, "link_mass": 4.0, "link_com": 4.0, "rotor_inertia": 5.0, "joint_spring": 6.0, "command_delay": 6.0,
     "actuator_bandwidth": 6.0, "controller_gain": 3.0, "imu_bias": 4.0, "ground_friction": 3.0, "ground_compliance": 2.0,
 }  # fmt: skip
+DESCRIBED = {"load_dependent_friction": 3.0}
+"""Instead of `WIDE` at joints of whose friction the model tells: reference logs hardly tell friction under load from friction."""
 DAY = {
     "coulomb_friction": 0.3, "viscous_friction": 0.4, "stribeck_friction": 0.3, "load_dependent_friction": 0.5, "torque_constant": 0.4,
     "encoder_offset": 0.35, "link_mass": 0.1, "link_com": 0.1, "rotor_inertia": 0.1, "joint_spring": 0.6, "command_delay": 0.3,
@@ -177,7 +179,7 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
     all of them together could scale the noise away, masses and loads along with it, which no motion contradicts.
     """
     needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)
-    modelled = replace(signals, believed=np.where(np.isfinite(needed), needed, signals.believed))
+    modelled = replace(signals, believed=np.where(np.isfinite(needed), needed, signals.believed), target=None)
     steered = _steered(signals)
     found = []
     for one in errors:
@@ -327,3 +329,10 @@ def columns(sieve: Sieve, errors: Sequence[Usual]) -> dict[int, np.ndarray]:
 def spreads(errors: Sequence[Usual], factors: Mapping[str, float]) -> np.ndarray:
     """Factor of each error's effect `(errors,)`."""
     return np.array([factors.get(one.effect, 1.0) for one in errors])
+
+
+def for_life(errors: Sequence[Usual], subject: Subject) -> np.ndarray:
+    """Deviation of each error of a healthy robot, in usual ones `(errors,)`."""
+    told = {joint for joint, coulomb in zip(subject.joints, subject.coulomb, strict=True) if coulomb > 0}
+    described = np.array([one.location in told and one.effect in DESCRIBED for one in errors], bool)
+    return np.where(described, spreads(errors, DESCRIBED), spreads(errors, WIDE))

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.filtering import Sieve
     from hyperleg_design.gap.judge import Model
     from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.subject import Subject
     from hyperleg_design.gap.thresholds import Thresholds
 
 MOST_SESSIONS = 4
@@ -77,7 +78,7 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
         healthy = _columns(references, usual, thresholds, np.zeros(len(references), int))
         kept |= _showing(healthy)
         errors = [one for one, k in zip(usual, kept, strict=True) if k]
-        base = healthy.base(kept, _wide(errors), thresholds)
+        base = healthy.base(kept, _wide(errors, subject), thresholds)
         limits = [name for name in AT_LIMITS if name != "voltage_sag" or any(s.voltage is not None for s in references)]
         before = shown_already(base, thresholds, [*screen.places(subject, limits), *unsaid(subject)], threads)
         prior = _after(base, before.fit, errors)
@@ -114,9 +115,9 @@ def _showing(columns: _Columns) -> np.ndarray:
     return np.array([reach(columns.samples, row[None]) > nuisance.LEAST for row in columns.errors], bool)
 
 
-def _wide(errors: Sequence[nuisance.Usual]) -> Prior:
+def _wide(errors: Sequence[nuisance.Usual], subject: Subject) -> Prior:
     """Of errors for life."""
-    return Prior(np.zeros(len(errors)), np.diag(nuisance.spreads(errors, nuisance.WIDE) ** 2))
+    return Prior(np.zeros(len(errors)), np.diag(nuisance.for_life(errors, subject) ** 2))
 
 
 def sessions_of(signals: Sequence[Signals]) -> np.ndarray:

@@ -28,6 +28,7 @@ class Thresholds:
     least_gap: float
     evident: float
     evident_large: float
+    evident_over: float
     worth: float
     second_worth: float
     second_evident: float

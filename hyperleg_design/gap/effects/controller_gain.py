@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, limited
+from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, is_logged, limited
 from hyperleg_design.simulation.alteration import Alteration, Machine
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class ControllerGain(Effect):
             if subject.motors[motor] not in driven_motors(subject) or not is_commanded(signals, motor):
                 continue
             share = subject.motor_from_joint[motor, joint] * (signals.supplied[:, motor] * spring - damper)
-            if _logged(signals, motor):
+            if is_logged(signals, motor):
                 if "control" in signals.residual:
                     control = np.zeros((*share.shape, len(subject.motors))) if control is None else control
                     control[..., motor] = share
@@ -69,11 +69,6 @@ class ControllerGain(Effect):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Softer and stiffer, with and without the damping."""
         return np.array([[0.8, 0.8], [1.25, 1.25], [0.8, 1.0], [1.25, 1.0], [1.0, 0.8], [1.0, 1.25]])
-
-
-def _logged(signals: Signals, motor: int) -> bool:
-    subject, log = signals.subject, signals.log
-    return any(log.has("motor_torque_command", name) for name in (subject.motors[motor], subject.motor_aliases[motor]))
 
 
 @dataclass(frozen=True, eq=False)

@@ -88,6 +88,29 @@ def commanded(signals: Signals, motor: int) -> np.ndarray:
     return signals.command[:, motor]
 
 
+def is_logged(signals: Signals, motor: int) -> bool:
+    """Whether a log tells what the controller asks of this motor."""
+    subject, log = signals.subject, signals.log
+    return any(log.has("motor_torque_command", name) for name in (subject.motors[motor], subject.motor_aliases[motor]))
+
+
+def given(signals: Signals, motor: int) -> np.ndarray:
+    """Torque believed of a motor `(t,)` [Nm].
+
+    One that gains and targets alone tell, from smoothed motion: noise of the sensors is in the balance already, and no effect scales it.
+    """
+    believed = signals.believed[:, motor]
+    if signals.target is None or is_measured(signals, motor) or is_logged(signals, motor):
+        return believed
+    subject = signals.subject
+    stiffness, damping = np.where(subject.passive[:, None], 0.0, subject.gains).T
+    share = subject.motor_from_joint[motor]
+    own = share != 0
+    spring = (signals.target - signals.position)[:, own] @ (stiffness * share)[own]
+    asked = signals.supplied[:, motor] * spring - signals.velocity[:, own] @ (damping * share)[own]
+    return np.where(np.isfinite(asked), limited(signals, motor, asked), believed)
+
+
 def motor_position(signals: Signals, motor: int) -> np.ndarray:
     """M^T q of one motor `(t,)` [rad]."""
     return np.asarray(signals.position @ signals.subject.joint_from_motor[:, motor])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import at_motor, driven_motors, machine, motor_strength
+from hyperleg_design.gap.effects.placing import at_motor, driven_motors, given, machine, motor_strength
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class ThermalDerating(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
-        torque = signals.believed[:, motor]
+        torque = given(signals, motor)
         return at_motor(signals, motor, np.atleast_2d(values)[:, :1] * (rise(signals, motor) * torque))
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:

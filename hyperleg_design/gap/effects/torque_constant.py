@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import at_motor, before_measurement, driven_motors, is_commanded, is_measured
+from hyperleg_design.gap.effects.placing import at_motor, before_measurement, driven_motors, given, is_commanded, is_measured
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class TorqueConstant(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         scale, reading = np.atleast_2d(np.asarray(values, float)).T[..., None]
-        lost = (1.0 - scale) * signals.believed[:, motor]
+        lost = (1.0 - scale) * given(signals, motor)
         found = at_motor(signals, motor, lost)
         if reading.any() and _told_twice(signals, motor):
             found |= before_measurement(signals, {motor: reading * lost})

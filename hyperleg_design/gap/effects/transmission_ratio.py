@@ -12,7 +12,7 @@ import numpy as np
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.needed import as_logged, needed
-from hyperleg_design.gap.effects.placing import SIDES, at_motor, driven_motors, motor_velocity
+from hyperleg_design.gap.effects.placing import SIDES, at_motor, driven_motors, given, motor_velocity
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
@@ -50,7 +50,7 @@ class TransmissionRatio(Effect):
         scale, side = np.atleast_2d(np.asarray(values, float)).T[..., None]
         rotor = subject.rotor_inertia[motor] * (signals.acceleration @ subject.joint_from_motor[:, motor])
         turning = (1 - side) * (scale**2 - 1.0) + side * (scale - 1.0)
-        found = at_motor(signals, motor, (1.0 - scale) * signals.believed[:, motor] + turning * rotor)
+        found = at_motor(signals, motor, (1.0 - scale) * given(signals, motor) + turning * rotor)
         found |= turned(signals, motor, (1 - side) * (scale - 1.0) * motor_velocity(signals, motor))
         if not side.any():
             return found
