@@ -34,13 +34,15 @@ HELD = 0.5
 def worth_naming(judge: Judge, model: Model) -> bool:
     """Whether the first cause is worth its name: by all rows with excess or, where it is beyond doubt, by those where it shows."""
     rules = judge.thresholds
-    if model.gain < rules.evident * (CHATTERING if model.causes[-1].unsettling else 1.0) and not clearly_large(judge, model):
+    rows = judge.excess_rows(model)
+    partly = float(judge.gap(model.held.square, rows)) >= rules.least_gap
+    least = (rules.evident_doubtful if partly or _floating(judge) else rules.evident) * (CHATTERING if model.causes[-1].unsettling else 1.0)
+    if model.gain < least:
         return False
     if at_rest(judge, model):
         return True
-    if judge.over(model) < rules.evident_over or not _visible(judge, model) or unshown(judge, model):
+    if judge.over(model) < least or not _visible(judge, model) or unshown(judge, model):
         return False
-    rows = judge.excess_rows(model)
     large = float(judge.gap(model.held.bare, rows)) >= rules.least_gap
     if large and judge.closed(model.held, rows, model.held) >= rules.worth:
         return True
@@ -118,16 +120,8 @@ def stands_out(judge: Judge, model: Model) -> bool:
     return bool(own.size) and left <= (1 - OWN_WORTH) * bare and left <= CLEARER * nothing
 
 
-def clearly_large(judge: Judge, model: Model) -> bool:
-    """Whether a cause explains all of a gap that is clearly over the floor, of a robot whose base is held: then less evidence will do.
-
-    It is calibration errors that would have to be as large else, several of them together.
-    """
-    rules = judge.thresholds
-    if model.gain < rules.evident_large or judge.base.samples.sieves[0].signals.subject.floating:
-        return False
-    rows = judge.excess_rows(model)
-    return float(judge.gap(model.held.bare, rows)) >= rules.largest_excess and float(judge.gap(model.held.square, rows)) < rules.least_gap
+def _floating(judge: Judge) -> bool:
+    return judge.base.samples.sieves[0].signals.subject.floating
 
 
 def _kept(model: Model, before: Model) -> bool:
@@ -141,8 +135,7 @@ def _kept(model: Model, before: Model) -> bool:
 
 def _visible(judge: Judge, model: Model) -> bool:
     """Whether the last cause shows over the floor."""
-    rules, floating = judge.thresholds, judge.base.samples.sieves[0].signals.subject.floating
-    least = rules.visible_afoot if floating else rules.visible
+    least = judge.thresholds.visible_afoot if _floating(judge) else judge.thresholds.visible
     return float(np.sqrt(judge.shown(model, len(model.causes) - 1).max())) >= least
 
 

@@ -27,8 +27,7 @@ class Thresholds:
     visible_afoot: float
     least_gap: float
     evident: float
-    evident_large: float
-    evident_over: float
+    evident_doubtful: float
     worth: float
     second_worth: float
     second_evident: float

@@ -40,6 +40,17 @@ def test_a_trace_is_as_large_as_what_leaving_it_out_leaves(judge, right):
     assert shown[knee] == pytest.approx(bare[knee], rel=0.3)
 
 
+def test_what_is_under_the_floor_is_no_evidence(judge, right, knee_friction):
+    """The same data over a floor a hundred and fifty times as high: a model foretells them as much better, but all of it is under that floor."""
+    base, high = judge.base, 150.0
+    samples = replace(base.samples, floor=high * base.samples.floor)
+    noisy = Judge(replace(base, samples=samples, errors=base.errors / high, value=base.value / high), judge.thresholds, 1)
+    faint = noisy.model([knee_friction])
+    assert judge.over(right) > 0.6 * right.gain
+    errors = noisy.nothing.fit.implausible - faint.fit.implausible  # which explain it otherwise, and are unlikely over any floor
+    assert noisy.over(faint) - errors < judge.thresholds.evident < faint.gain - errors
+
+
 def test_every_block_once_is_all_blocks(judge, right):
     rows = judge.excess_rows(right)
     drawn = np.stack([np.ones(judge.base.blocks), np.eye(judge.base.blocks)[0]])
