@@ -31,7 +31,10 @@ class Held:
     left: np.ndarray
     """What is left of every sample, weighted `(S,)`."""
     over: float
-    """Log-likelihood of all blocks had no group less noise than its floor: what models tell of less than the floor does not count."""
+    """Log-likelihood of all blocks had no group less noise than its floor: what models tell of less than the floor does not count.
+
+    Nor does what causes that scale torques have of it (`endogenous`), which shrinks noise however small.
+    """
     bare: np.ndarray
     """As `square`, had the causes not been there: the same calibration errors, without the causes' traces `(B, G)`."""
 
@@ -73,10 +76,8 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
     size = np.bincount(inverse, samples.share)
     square = np.bincount(inverse, left**2 / (1 + open_to / spread))
     nu, scale = (np.bincount(inverse, v * samples.share) / size for v in (freedom, spread))
-    each = -0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale)
-    likelihood = np.bincount(cells // samples.groups, each, base.blocks)
-    floored = np.maximum(scale, 1.0)
-    over = float((-0.5 * (nu + size) * np.log1p(square / (nu * floored)) - 0.5 * size * np.log(floored)).sum())
+    likelihood = np.bincount(cells // samples.groups, _student(square, size, nu, scale), base.blocks)
+    over = float(_student(square, size, nu, np.maximum(scale, 1.0)).sum())
     for fold in range(samples.folds(way) if design.factors else 0):
         share = np.bincount(samples.block, samples.share * (fold_of == fold), base.blocks)
         likelihood = likelihood + scaled[fold] * share / samples.share.sum()
@@ -84,6 +85,11 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
         np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups) for v in (left, bare)
     )
     return Held(likelihood, squares, left, over, whole)
+
+
+def _student(square: np.ndarray, size: np.ndarray, nu: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Log density of cells of `size` numbers whose squares sum up to `square`, of a t-distribution of `nu` and `scale`; each `(cells,)`."""
+    return np.asarray(-0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale))
 
 
 def doubt(base: Base, way: int = BLOCKS) -> np.ndarray:
