@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import diagnosed
 import numpy as np
 import pytest
@@ -6,7 +8,7 @@ import robots
 from hyperleg_design.gap.diagnose import diagnose
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.filtering import sieve
-from hyperleg_design.gap.nuisance import DAY, TURNOVER, UNLISTED, WIDE, columns, spreads, stop, traces, usual_errors
+from hyperleg_design.gap.nuisance import DAY, DESCRIBED, TURNOVER, UNLISTED, WIDE, columns, for_life, spreads, stop, traces, usual_errors
 
 
 @pytest.fixture(scope="module")
@@ -26,6 +28,15 @@ def test_every_error_belongs_to_the_catalogue_and_to_a_place_of_the_robot(signal
     assert set(WIDE) == set(DAY) <= set(EFFECTS)
     assert np.all(spreads(errors, DAY) <= 1)
     assert np.all(spreads(errors, WIDE) >= 1)
+
+
+def test_friction_under_load_is_narrow_only_where_the_model_tells_of_friction(signals, errors):
+    subject, knee = signals.subject, signals.subject.joints.index("knee")
+    bare = replace(subject, coulomb=np.where(np.arange(len(subject.joints)) == knee, 0.3, 0.0))
+    found = dict(zip([(e.effect, e.location) for e in errors], for_life(errors, bare), strict=True))
+    assert found["load_dependent_friction", "knee"] == DESCRIBED["load_dependent_friction"] < WIDE["load_dependent_friction"]
+    assert found["load_dependent_friction", "hip"] == WIDE["load_dependent_friction"]
+    assert found["viscous_friction", "knee"] == WIDE["viscous_friction"]
 
 
 def test_usual_errors_are_smaller_than_usual_causes(signals, errors):
