@@ -220,7 +220,7 @@ def plausible(model: Model) -> float:
 
 
 def _odds(cause: Cause, values: np.ndarray) -> float:
-    free = len(cause.nulls) - (int(cause.shape.sum()) if cause.linear else 0)
+    free = int((~cause.shape).sum() if cause.linear else (cause.high > cause.low).sum())
     found = -PER_PARAMETER * free + RARE.get(cause.effect, 0.0)
     if cause.unsettling:
         found += CHATTERS

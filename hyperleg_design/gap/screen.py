@@ -104,6 +104,8 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         columns, constant = found, np.zeros(found.shape[1])
     else:
         values = np.clip(values, low, high)
+        fixed = effect.fixed(values)
+        low, high = np.where(fixed, values, low), np.where(fixed, values, high)
         step = effect.steps(location, subject)
         tried = np.clip(np.where(values + step <= high, values + step, values - step), low, high)
         divide = (tried - values) / usual

@@ -39,6 +39,8 @@ class Belt(Alteration):
     """Whole width of the dead zone [rad], `()` or `(n,)`."""
     damping: Any = None
     """Of the belt while it is taut [Nms/rad], `()` or `(n,)`; by default that of `DAMPING_RATIO`."""
+    stiffening: Any = 0.0
+    """1 over the stretch at which it is twice as stiff [1/rad], `()` or `(n,)`: torque grows as s (1 + (stiffening s)^2)."""
     side: Any = 0.0
     """Where the encoder that tells of the joints sits, `()` or `(n,)`: 0 at the joints, 1 at the rotor, which it takes for them."""
 
@@ -72,15 +74,16 @@ class _Rotor(Live):
         given = compliance > 0
         # Stiffer belts than can be resolved, and play without compliance, get the stiffest that is.
         self.inertia = np.where(inertia > 0, inertia, LIGHTEST)
-        stiffest = self.inertia * fastest
+        self.stiffest = stiffest = self.inertia * fastest
         self.stiffness = np.where(given, np.minimum(1 / np.where(given, compliance, 1.0), stiffest), stiffest)
         standard = 2 * DAMPING_RATIO * np.sqrt(self.stiffness * self.inertia)
         self.damping = standard if belt.damping is None else full(belt.damping)
-        rate = float(np.sqrt(self.stiffness / self.inertia)[self.loose].max(initial=1.0))
+        highest = np.where(full(belt.stiffening) > 0, stiffest, self.stiffness)
+        rate = float(np.sqrt(highest / self.inertia)[self.loose].max(initial=1.0))
         self.inner = max(4, int(np.ceil(self.step * rate / FINENESS)))
         self.angle, self.speed, self.begun, self.way, self.torque, self.drag = (np.zeros(self.count) for _ in range(6))
         self.stretch, self.rate = np.zeros(self.count), np.zeros(self.count)
-        self.side = full(belt.side)
+        self.side, self.stiffening = full(belt.side), full(belt.stiffening)
 
     def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
         for name in self.kept:
@@ -128,7 +131,9 @@ class _Rotor(Live):
             angle += step / 2 * speed
             stretch = angle - (way + (number + 0.5) * step * velocity)
             taut = np.where(np.abs(stretch) >= half, 1.0, 0.0)
-            pull = self.stiffness * (stretch - np.clip(stretch, -half, half))
+            beyond = stretch - np.clip(stretch, -half, half)
+            stiffer = np.minimum(self.stiffness * (1 + (self.stiffening * beyond) ** 2), self.stiffest)
+            pull = stiffer * beyond
             damping = taut * self.damping
             # damping at the mean of the old and the new speed, drag at the new one
             free = self.inertia * speed + step * (torque - pull - damping * (speed / 2 - velocity))
@@ -157,6 +162,6 @@ def joined(alterations: Sequence[Alteration]) -> list[Alteration]:
         assert isinstance(two, Belt)
         dampings = [np.asarray(b.damping, float) for b in (one, two) if b.damping is not None]
         damping = None if not dampings else dampings[0] if len(dampings) == 1 else dampings[0] * dampings[1] / (dampings[0] + dampings[1])
-        side = np.maximum(one.side, two.side)
-        found[twin] = Belt(one.motor, np.asarray(one.compliance) + two.compliance, np.asarray(one.play) + two.play, damping, side)
+        side, stiffening = (np.maximum(getattr(one, name), getattr(two, name)) for name in ("side", "stiffening"))
+        found[twin] = Belt(one.motor, np.asarray(one.compliance) + two.compliance, np.asarray(one.play) + two.play, damping, stiffening, side)
     return found

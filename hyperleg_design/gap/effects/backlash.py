@@ -44,7 +44,7 @@ class Backlash(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         angle, side, coasting = np.atleast_2d(np.asarray(values, float)).T
-        return belt.trace(signals, motor, belt.slack(signals, motor, angle * _ratio(signals.subject, motor), side, coasting), side)
+        return belt.trace(signals, motor, belt.slack(signals, motor, angle * belt.moved_most(signals.subject, motor), side, coasting), side)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`; its ends are as hard as simulations resolve, and damped to bounce as in the trace."""
@@ -52,15 +52,10 @@ class Backlash(Effect):
         bounce = np.log(belt.RESTITUTION)
         damping = 2 * abs(bounce) / np.hypot(np.pi, bounce) * belt.rotor(subject, motor) * 2 * np.pi * STIFFEST
         values = np.asarray(values, float)
-        return Belt(location, play=values[..., 0] * _ratio(subject, motor), damping=float(damping), side=values[..., 1])
+        return Belt(location, play=values[..., 0] * belt.moved_most(subject, motor), damping=float(damping), side=values[..., 1])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Small and large angles, with encoders on either side, or carried over; where ends are met depends on the angle."""
         rotors = [[angle, 0.0, 1.0] for angle in (0.003, 0.01, 0.03)]
         joints = [[angle, 1.0, 1.0] for angle in (0.003, 0.005, 0.008, 0.013, 0.02, 0.032, 0.05)]
         return np.array([*rotors, *joints, [0.01, 0.0, 0.0], [0.04, 0.0, 0.0]])
-
-
-def _ratio(subject: Subject, motor: int) -> float:
-    """Angle of a motor over that of the joint that it moves most [-]."""
-    return float(np.abs(subject.joint_from_motor[:, motor]).max())

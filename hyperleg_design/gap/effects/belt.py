@@ -5,7 +5,9 @@ belt's torque, and a rotor whose own speed is logged turns s' faster than its jo
 the joints' (`side` 1), the joints stand s / M behind, and need another torque for that. Between, encoders on both sides are mixed.
 
 A belt that gives is stretched by what the joints need through it, u = [M^-1 (needed torque less the rotors')]: s = compliance u,
-filtered by the belt's damping. In a dead zone of width w nothing is transmitted, and s moves by itself,
+filtered by the belt's damping; one that stiffens, k (1 + (stiffening s)^2) s = u with `stiffening` at the joint that it moves most.
+Behind a soft belt (`behind` 1) joints that rub stay where they are while the rotor turns round, and turn round themselves later: there
+the belt is stretched by what the motor gives it, and friction follows the joint's own way. In a dead zone of width w nothing is transmitted, and s moves by itself,
 
     side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque
     side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need
@@ -27,6 +29,7 @@ from hyperleg_design.gap import rigid
 from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.placing import at_motor, joint_inertia, motor_velocity
 from hyperleg_design.gap.effects.series import band_limited, first_derivative, lagged, second_derivative
+from hyperleg_design.gap.rigid import turned as turned_over
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.two_mass import LIGHTEST
 
@@ -41,8 +44,16 @@ RESTITUTION = 0.3
 CROSSING, CROSSING_BAND = 0.8, 0.15
 """c, the load below which a rotor that does not coast is on its way across; band of its crossing, over the log's rate (assumed)."""
 
+CHOSEN = 0.5
+"""From which a choice between 0 and 1 is 1."""
+BEHIND_BAND = 15.0
+"""Of what stretches a belt whose joint rubs behind it [Hz]; above, noise of the torque would make a joint at rest turn round (assumed)."""
+BRISTLES = 3e-3
+"""Way over which a joint behind its belt turns its friction over [rad]; assumed: as well as its place is known."""
+
 _LOADS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 _GIVEN: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
+_OWN: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 
 
 def rotor(subject: Subject, motor: int) -> float:
@@ -73,7 +84,19 @@ def transmitted(signals: Signals, motor: int) -> np.ndarray:
     return kept[motor]
 
 
-def stretch(signals: Signals, through: np.ndarray, motor: int, compliance: np.ndarray, damping_ratio: np.ndarray) -> np.ndarray:
+def given(signals: Signals, motor: int) -> np.ndarray:
+    """Torque that a motor gives its belt, where positions are those of the rotors `(t,)` [Nm]."""
+    kept = _OWN.setdefault(signals, {})
+    if motor not in kept:
+        spun = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
+        own = signals.believed[:, motor] - rotor(signals.subject, motor) * spun
+        kept[motor] = band_limited(own, signals.step, min(BEHIND_BAND, BAND / signals.step))
+    return kept[motor]
+
+
+def stretch(
+    signals: Signals, through: np.ndarray, motor: int, compliance: np.ndarray, damping_ratio: np.ndarray, stiffening: np.ndarray | None = None
+) -> np.ndarray:
     """How far a rotor turns beyond its joints under load, on its side of M `(k, t)` [rad].
 
     Args:
@@ -82,9 +105,26 @@ def stretch(signals: Signals, through: np.ndarray, motor: int, compliance: np.nd
         motor: place of the motor.
         compliance: `(k,)` [rad/Nm].
         damping_ratio: of the rotor on its belt `(k,)`.
+        stiffening: 1 over the joint's angle at which the belt is twice as stiff `(k,)` [1/rad]; by default 0.
     """
     late = 2 * damping_ratio * np.sqrt(rotor(signals.subject, motor) * compliance)
-    return np.asarray(compliance[:, None] * lagged(through, late, signals.step))
+    moved = np.asarray(compliance[:, None] * lagged(through, late, signals.step))
+    if stiffening is not None and stiffening.any():
+        bend = stiffening / moved_most(signals.subject, motor)
+        stiff = bend > 0
+        moved[stiff] = _eased(moved[stiff], bend[stiff, None])
+    return moved
+
+
+def _eased(straight: np.ndarray, bend: np.ndarray) -> np.ndarray:
+    """Stretch s of a belt that would stretch by `straight` were it not stiffening: s (1 + (bend s)^2) = straight."""
+    size = 2 / np.sqrt(3)
+    return np.asarray(size / bend * np.sinh(np.arcsinh(3 / size * bend * straight) / 3))
+
+
+def moved_most(subject: Subject, motor: int) -> float:
+    """Angle of a motor over that of the joint that it moves most [-]."""
+    return float(np.abs(subject.joint_from_motor[:, motor]).max())
 
 
 def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coasting: np.ndarray) -> np.ndarray:
@@ -103,7 +143,7 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coas
     for row, width in enumerate(play):
         if width <= 0:
             continue
-        at_rotor = bool(side[row] >= 0.5)
+        at_rotor = bool(side[row] >= CHOSEN)
         free = 1.0 if at_rotor else float(coasting[row])
         if free > 0:
             if at_rotor not in kicks:
@@ -154,7 +194,9 @@ def _joint_alone(signals: Signals, motor: int) -> np.ndarray:
     return load(signals, motor) / float(share**2 @ joint_inertia(signals.subject))
 
 
-def trace(signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray, seen: np.ndarray | None = None) -> dict[str, np.ndarray]:
+def trace(
+    signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray, seen: np.ndarray | None = None, behind: np.ndarray | None = None
+) -> dict[str, np.ndarray]:
     """What stretch leaves in the balances of motion and transmission, see above.
 
     Args:
@@ -163,6 +205,7 @@ def trace(signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray, see
         moved: stretch `(k, t)` [rad].
         side: on which the positions were logged `(k,)`.
         seen: stretch in the balance of transmission, as the rotor's side tells it `(k, t)` [rad]; by default the same.
+        behind: whether joints rub behind the belt, with positions logged on side 1 `(k,)`; by default not.
     """
     at_joints = 1 - side[:, None]
     found = at_motor(signals, motor, at_joints * rotor(signals.subject, motor) * second_derivative(moved, signals.step))
@@ -177,4 +220,28 @@ def trace(signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray, see
             logged = signals.position, signals.velocity, signals.acceleration
             q, v, a = (x - np.multiply.outer(rate, share) for x, rate in zip(logged, rates, strict=True))
             found["motion"][row] += side[row] * (rigid.inverse_dynamics(subject, q, v, a, signals.base, rotors=False) - nominal)
+        if behind is not None and (rubbing := behind >= CHOSEN).any():
+            found["motion"][rubbing] += _rubbed(signals, moved[rubbing], share)
+    return found
+
+
+def _rubbed(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Nominal friction of joints that turn round later than their rotors, less that of the logged motion `(k, t, n)` [Nm]."""
+    subject = signals.subject
+    found = np.zeros((len(moved), *signals.position.shape))
+    own = np.flatnonzero(share)
+    way = np.nan_to_num(signals.position[:, own]) - moved[..., None] * share[own]
+    turns = _dragged(way) - turned_over(signals.velocity[:, own], subject.friction_speed[own])
+    rate = first_derivative(moved, signals.step)[..., None] * share[own]
+    found[..., own] = subject.coulomb[own] * turns - subject.viscous[own] * rate
+    return found
+
+
+def _dragged(way: np.ndarray) -> np.ndarray:
+    """Friction over its size, of bristles that bend along ways `(k, t, j)`: it turns over within `BRISTLES`, and stays at rest (Dahl)."""
+    step = np.diff(way, axis=1)
+    keep, pull = np.exp(-np.abs(step) / BRISTLES), np.sign(step)
+    found = np.zeros_like(way)
+    for tick in range(step.shape[1]):
+        found[:, tick + 1] = pull[:, tick] + (found[:, tick] - pull[:, tick]) * keep[:, tick]
     return found

@@ -24,6 +24,11 @@ SLOWEST = 0.5
 """Lowest frequency of a rotor on its belt that is searched [Hz]."""
 
 
+RUBBING = ("joints rub before the belt", "joints rub behind the belt")
+STIFFER = 30.0
+"""Stiffening that a search starts from, too [1/rad]: twice as stiff at 2 degrees."""
+
+
 class TransmissionElasticity(Effect):
     """A motor and its joints are joined by a spring, on the motor's side of the transmission; see `belt`.
 
@@ -37,6 +42,8 @@ class TransmissionElasticity(Effect):
         Parameter("compliance", "rad/Nm", 0.0, 0.0, 1e4, 0.01, "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor"),
         Parameter("damping_ratio", "", DAMPING_RATIO, 0.0, 1.0, 0.05, "steel-corded belts ring for a few periods (assumed)", shape=True),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
+        Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=RUBBING),
+        Parameter("stiffening", "1/rad", 0.0, 0.0, 200.0, 30.0, "gears are two to three times as stiff beyond some mrad (data sheets)", shape=True),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -46,11 +53,14 @@ class TransmissionElasticity(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
-        compliance, damping_ratio, side = np.atleast_2d(np.asarray(values, float)).T
+        compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(np.asarray(values, float)).T
         needed, given = belt.load(signals, motor), belt.transmitted(signals, motor)
-        moved = belt.stretch(signals, needed, motor, compliance, damping_ratio)
-        seen = None if given is needed else belt.stretch(signals, given, motor, compliance, damping_ratio)
-        return belt.trace(signals, motor, moved, side, seen)
+        moved = belt.stretch(signals, needed, motor, compliance, damping_ratio, stiffening)
+        if (rubbing := behind >= belt.CHOSEN).any():
+            own = belt.given(signals, motor)
+            moved[rubbing] = belt.stretch(signals, own, motor, *(v[rubbing] for v in (compliance, damping_ratio, stiffening)))
+        seen = None if given is needed else belt.stretch(signals, given, motor, compliance, damping_ratio, stiffening)
+        return belt.trace(signals, motor, moved, side, seen, behind)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
@@ -58,7 +68,8 @@ class TransmissionElasticity(Effect):
         compliance, ratio = values[..., 0], values[..., 1]
         inertia = belt.rotor(subject, subject.motors.index(location))
         damping = 2 * ratio * np.sqrt(inertia / np.where(compliance > 0, compliance, np.inf))
-        return Belt(location, compliance=compliance, damping=damping, side=values[..., 2])
+        bend = values[..., 4] / belt.moved_most(subject, subject.motors.index(location))
+        return Belt(location, compliance=compliance, damping=damping, side=values[..., 2], stiffening=bend)
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """Compliance at which the rotor rings at the usual frequency."""
@@ -72,10 +83,16 @@ class TransmissionElasticity(Effect):
         found[1, 0] = min(found[1, 0], self._compliance(SLOWEST, location, subject))
         return found
 
+    def fixed(self, values: np.ndarray) -> np.ndarray:
+        """Where joints rub; if behind the belt, encoders sit on the rotors, else it is straight."""
+        behind = values[3] >= belt.CHOSEN
+        return np.array([False, False, behind, True, not behind])
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Several resonances, with encoders on either side."""
+        """Several resonances, with encoders on either side, and with joints that rub behind a belt, which may stiffen."""
         stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
-        return np.array([[c, DAMPING_RATIO, side] for side in (0.0, 1.0) for c in stiff])
+        plain = [[c, DAMPING_RATIO, side, 0.0, 0.0] for side in (0.0, 1.0) for c in stiff]
+        return np.array(plain + [[c, DAMPING_RATIO, 1.0, 1.0, bend] for bend in (0.0, STIFFER) for c in stiff[1:3]])
 
     def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
         """Stiffness on the motor's side, and the frequency of the rotor on its belt."""

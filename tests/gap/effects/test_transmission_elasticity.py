@@ -9,9 +9,9 @@ SOFT = (8.0, 0.3)
 
 def test_trace_is_what_a_belt_leaves_with_encoders_on_either_side(pendulum):
     joint = pendulum(Wrong(compliance=0.005), gains=SOFT)
-    assert misfit(joint, ELASTICITY.trace(joint, "swing", np.array([[0.005, 0.05, 0.0]]))) < 0.15
+    assert misfit(joint, ELASTICITY.trace(joint, "swing", np.array([[0.005, 0.05, 0.0, 0.0, 0.0]]))) < 0.15
     motor = pendulum(Wrong(compliance=0.01, motor_side=True))
-    right, wrong = (ELASTICITY.trace(motor, "swing", np.array([[0.01, 0.05, side]])) for side in (1.0, 0.0))
+    right, wrong = (ELASTICITY.trace(motor, "swing", np.array([[0.01, 0.05, side, 0.0, 0.0]])) for side in (1.0, 0.0))
     assert misfit(motor, right) < 0.2
     assert misfit(motor, wrong) > 1
 
@@ -21,9 +21,9 @@ def test_simulation_with_it_leaves_its_trace(pendulum):
 
     # softer gains: a stiff loop around a belt with its encoder at the joint is not stable
     subject = pendulum(Wrong(), gains=SOFT).subject
-    added = ELASTICITY.alteration("swing", np.array([0.01, 0.05, 0.0]), subject)
+    added = ELASTICITY.alteration("swing", np.array([0.01, 0.05, 0.0, 0.0, 0.0]), subject)
     signals = altered(subject, (added,), lambda time: [waves(time)])
-    assert misfit(signals, ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, 0.0]]))) < 0.45
+    assert misfit(signals, ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, 0.0, 0.0, 0.0]]))) < 0.45
 
 
 def test_usual_compliance_rings_at_the_usual_frequency(pendulum):
@@ -43,14 +43,14 @@ def test_people_read_stiffness_and_resonance(pendulum):
 
 
 def test_simulation_with_encoders_at_the_rotor_leaves_the_trace_of_these(simulated):
-    signals = simulated("transmission_elasticity", [0.01, 0.05, 1.0])
-    right, wrong = (ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, side]])) for side in (1.0, 0.0))
+    signals = simulated("transmission_elasticity", [0.01, 0.05, 1.0, 0.0, 0.0])
+    right, wrong = (ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, side, 0.0, 0.0]])) for side in (1.0, 0.0))
     assert misfit(signals, right) < 0.2
     assert misfit(signals, wrong) > 1
 
 
 def test_rotors_show_it_beside_their_joints(pendulum):
-    values = np.array([[0.01, 0.05, 0.0]])
+    values = np.array([[0.01, 0.05, 0.0, 0.0, 0.0]])
     signals = pendulum(Wrong(compliance=0.01), gains=SOFT, sees=("motor_torque", "motor_velocity"))
     assert misfit(signals, ELASTICITY.trace(signals, "swing", values), "transmission") < 0.1
     from altered import altered
@@ -61,4 +61,4 @@ def test_rotors_show_it_beside_their_joints(pendulum):
     # positions told by the rotor agree with it
     rotor = pendulum(Wrong(compliance=0.01, motor_side=True), sees=("motor_torque", "motor_velocity"))
     assert np.abs(rotor.residual["transmission"]).max() < 0.02 * np.abs(rotor.velocity).max()
-    assert not ELASTICITY.trace(rotor, "swing", np.array([[0.01, 0.05, 1.0]]))["transmission"].any()
+    assert not ELASTICITY.trace(rotor, "swing", np.array([[0.01, 0.05, 1.0, 0.0, 0.0]]))["transmission"].any()
