@@ -26,6 +26,8 @@ TURNING, TURNING_TIME = 0.006, 0.05
 """Way on which friction may turn over [rad], half of it; and time around it for which that counts [s]."""
 FAST = 10.0
 """Speed that a motor is made for where nobody gives its limits [rad/s]; assumed."""
+AT_MOST, ENOUGH = 1.5, 16
+"""Noise over all that a band shows, at most, and samples that tell what it shows."""
 LEAST = 1e-4
 """Floor over the torque that a joint is made for, at least: what single precision and rounding in logs leave."""
 
@@ -41,18 +43,18 @@ def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, n
     moving = load[one.balance][:, one.column]
     constant = still[one.balance][one.column]
     residual = np.where(sieve.mask[row], signals.residual[one.balance][:, one.column], 0.0)
-    density = _white(residual, sieve.mask[row], one.cutoff, signals.step)
+    density = _capped(sieve, row, residual, _white(residual, sieve.mask[row], one.cutoff, signals.step))
     samples = sieve.sample(row, np.nan_to_num(moving)[None])[0]
     level, _, _ = sieve.labels(row)
     whole = np.sqrt(np.nanmean(np.where(sieve.mask[row], moving, np.nan) ** 2)) if sieve.mask[row].any() else 0.0
     turning = _turning(sieve, row) if constant > 0 else np.zeros(len(signals.time))
     sinking = _smoothed(_sinking(sieve, row) ** 2, NEAR / signals.step)
     found, start = np.empty(len(samples)), 0
-    for band in sieve.bands[row]:
+    for band, white in zip(sieve.bands[row], density, strict=True):
         part = slice(start, start + len(band.kept))
         start = part.stop
         local = _smoothed(samples[part] ** 2, band.count / (sieve.length * signals.step) * NEAR)
-        noise = density * (band.high - band.low) + _of_acceleration(sieve, row, band.low, band.high)
+        noise = white * (band.high - band.low) + _of_acceleration(sieve, row, band.low, band.high)
         share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
         dry = ((thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant) ** 2 / len(sieve.bands[row])
         found[part] = np.sqrt(noise + share + dry + _at(sinking, band) + (LEAST * _strength(sieve, row)) ** 2)
@@ -136,6 +138,20 @@ def _white(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -
     passed = passed * (1 - (1 - np.cos(2 * np.pi * frequency[high] * step)) / 3)  # mean of linear interpolation at any place
     density = np.median(power[high] / passed) / np.log(2)
     return float(2 * step * density / np.sum(np.hanning(len(third)) ** 2))
+
+
+def _capped(sieve: Sieve, row: int, residual: np.ndarray, white: float) -> np.ndarray:
+    """Density of white noise in each band `(bands,)`, no more than what that band, or a faster one, shows in all [unit^2/Hz].
+
+    What knocks or rings at high frequencies is not white: it is no reason for noise at low ones.
+    """
+    samples, start = sieve.sample(row, residual[None])[0], 0
+    found = []
+    for band in sieve.bands[row]:
+        part = samples[start : start + len(band.kept)]
+        start += len(band.kept)
+        found.append(AT_MOST * float(np.mean(part**2)) / (band.high - band.low) if len(part) >= ENOUGH else np.inf)
+    return np.minimum.accumulate(np.r_[white, found[::-1]])[:0:-1]
 
 
 def _of_acceleration(sieve: Sieve, row: int, low: float, high: float) -> float:

@@ -173,6 +173,12 @@ class Judge:
         trace = cause.trace((model.values(place) - cause.nulls) / cause.usual)
         return np.bincount(self.group_row, self._means(trace**2), 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
 
+    def shown_in_bands(self, model: Model, place: int) -> np.ndarray:
+        """As `shown`, of each band of a row by itself `(G,)`: what is slow may be clear where the row's fast noise is large."""
+        cause = model.causes[place]
+        trace = cause.trace((model.values(place) - cause.nulls) / cause.usual)
+        return self._means(trace**2) / np.maximum(self.floor, 1e-300)
+
     @cached_property
     def calm(self) -> np.ndarray:
         """Rows that are no episodes `(2 rows,)` of bool."""

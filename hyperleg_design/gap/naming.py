@@ -62,16 +62,20 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
     gain = model.gain - before.gain
     if gain >= rules.second_evident * already and at_rest(judge, model) and not at_rest(judge, before):
         return True
-    if not _visible(judge, model) or unshown(judge, model):
+    if unshown(judge, model):
         return False
-    if gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth, 1.0):
+    visible = _visible(judge, model)
+    if visible and gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth, 1.0):
         return True
     # Large calibration errors may hide what it leaves; then it must show clearly, away from episodes, and be likelier than they are.
-    calm = judge.shown(model, already)[judge.calm]
-    least = 1.0 if gain >= PLAIN * rules.second_evident * already else rules.second_visible
-    if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or float(np.sqrt(calm.max())) < least:
+    if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or not _kept(model, before):
         return False
-    return _kept(model, before)
+    plain = gain >= PLAIN * rules.second_evident * already
+    calm = judge.shown(model, already)[judge.calm]
+    if visible and float(np.sqrt(calm.max())) >= (1.0 if plain else rules.second_visible):
+        return True
+    bands = judge.shown_in_bands(model, already)[~judge.base.samples.episodic]
+    return plain and judge.over(model) - judge.over(before) >= rules.second_evident * already and float(np.sqrt(bands.max())) >= 1.0
 
 
 def likelier(judge: Judge, more: Sequence[Model], further: Model) -> Model:

@@ -7,7 +7,8 @@ the joints' (`side` 1), the joints stand s / M behind, and need another torque f
 A belt that gives is stretched by what the joints need through it, u = [M^-1 (needed torque less the rotors')]: s = compliance u,
 filtered by the belt's damping; one that stiffens, k (1 + (stiffening s)^2) s = u with `stiffening` at the joint that it moves most.
 Behind a soft belt (`behind` 1) joints that rub stay where they are while the rotor turns round, and turn round themselves later: there
-the belt is stretched by what the motor gives it, and friction follows the joint's own way. In a dead zone of width w nothing is transmitted, and s moves by itself,
+the belt is stretched by what the motor gives it, and friction follows the joint's own way. In a dead zone of width w nothing is
+transmitted, and s moves by itself,
 
     side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque
     side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need

@@ -122,7 +122,7 @@ class Effect(ABC):
         """Least and largest values that are possible at a place of a robot `(2, parameters)`; never wider than the parameters' own."""
         return np.array([[p.low for p in self.parameters], [p.high for p in self.parameters]])
 
-    def fixed(self, values: np.ndarray) -> np.ndarray:  # noqa: ARG002
+    def fixed(self, values: np.ndarray) -> np.ndarray:
         """Which parameters stay as a search begins with them, as nothing lies between their choices `(k,)` of bool."""
         return np.zeros(len(self.parameters), bool)
 
