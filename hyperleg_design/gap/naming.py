@@ -23,7 +23,7 @@ AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.95
 """Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
-RELIEVED = 0.7
+RELIEVED = 1.0
 """Share of the evidence that must be over the floor where a cause relieves calibration errors, too."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""

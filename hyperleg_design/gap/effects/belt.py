@@ -30,7 +30,6 @@ from hyperleg_design.gap import rigid
 from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.placing import at_motor, joint_inertia, motor_velocity
 from hyperleg_design.gap.effects.series import band_limited, first_derivative, lagged, second_derivative
-from hyperleg_design.gap.rigid import turned as turned_over
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.two_mass import LIGHTEST
 
@@ -231,8 +230,8 @@ def _rubbed(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarra
     subject = signals.subject
     found = np.zeros((len(moved), *signals.position.shape))
     own = np.flatnonzero(share)
-    way = np.nan_to_num(signals.position[:, own]) - moved[..., None] * share[own]
-    turns = _dragged(way) - turned_over(signals.velocity[:, own], subject.friction_speed[own])
+    way = np.nan_to_num(signals.position[:, own])
+    turns = _dragged(way - moved[..., None] * share[own]) - _dragged(way[None])
     rate = first_derivative(moved, signals.step)[..., None] * share[own]
     found[..., own] = subject.coulomb[own] * turns - subject.viscous[own] * rate
     return found
