@@ -41,6 +41,8 @@ class Factor:
     """Independent numbers in the rows that it scales."""
     shows: float = 1.0
     """Share of a gain that counts."""
+    row: int = 0
+    """Row of the joint that it scales most."""
 
     def log(self, phi: float) -> float:
         """N mean log of the factor."""
@@ -71,7 +73,7 @@ def factor(samples: Samples, effect: str, location: str, usual: np.ndarray) -> F
         return None
     number = float(samples.share[samples.row == rows[0]].sum())
     slopes = np.concatenate([_slope(s.signals, effect, motor, joint) for s in samples.sieves]) * usual[0]
-    return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint))
+    return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint), rows[0])
 
 
 def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:

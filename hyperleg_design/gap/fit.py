@@ -281,9 +281,23 @@ class Design:
         evidence += self.scaled(phi) * float(number.sum() / base.number.sum())
         return Fit(phi, covariance, errors, scale, evidence, rss, 0.5 * cost)
 
-    def scaled(self, phi: np.ndarray) -> float:
-        """Log-likelihood of all samples by which causes that scale torques pay for it."""
-        return sum(one.log(float(phi[at])) for at, one in self.factors)
+    def scaled(self, phi: np.ndarray, scale: np.ndarray | None = None) -> float:
+        """Log-likelihood of all samples by which causes that scale torques pay for it.
+
+        Args:
+            phi: of all causes.
+            scale: variance over the floor's by group `(G,)`; with it, were no noise less than its floor.
+        """
+        found = 0.0
+        for at, one in self.factors:
+            found += one.log(float(phi[at])) * (1.0 if scale is None else self._over(one.row, scale))
+        return found
+
+    def _over(self, row: int, scale: np.ndarray) -> float:
+        """Noise of a row, as far as it is less than the floor, over the floor: mean of its variance over the floor's, at most 1."""
+        samples = self.base.samples
+        own = samples.row == row
+        return float(np.average(np.minimum(scale[samples.group[own]], 1.0), weights=samples.share[own]))
 
     def trace(self, phi: np.ndarray) -> np.ndarray:
         """What the causes leave in every sample, weighted `(S,)`."""

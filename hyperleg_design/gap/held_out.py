@@ -59,12 +59,13 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
     samples = base.samples
     left, spread, freedom = np.zeros(len(samples.value)), np.ones(len(samples.value)), np.ones(len(samples.value))
     bare, open_to = np.zeros(len(samples.value)), doubt(base, way)
-    scaled = []
+    scaled, faint = [], []
     fold_of = samples.fold[way][samples.part]
     for fold in range(samples.folds(way)):
         found = design.fit(way, fold, start, rounds=ROUNDS if start is None else 2)
         errors = found.errors
         scaled.append(design.scaled(found.phi))
+        faint.append(design.scaled(found.phi, found.scale))
         # a session that was held out whole has no fit of its own: its errors stay at the prior mean
         here = fold_of == fold
         rest, trace = design.left(found.phi, errors), design.trace(found.phi)
@@ -81,6 +82,7 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
     for fold in range(samples.folds(way) if design.factors else 0):
         share = np.bincount(samples.block, samples.share * (fold_of == fold), base.blocks)
         likelihood = likelihood + scaled[fold] * share / samples.share.sum()
+        over += faint[fold] * float(share.sum() / samples.share.sum())
     squares, whole = (
         np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups) for v in (left, bare)
     )

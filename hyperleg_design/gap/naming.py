@@ -23,8 +23,6 @@ AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.95
 """Effects that must close nearly all of their episodes: healthy drives reach limits too, which models often do not know."""
 SHARED = 0.5
 """Change of a cause's trace, over its size, from which a further cause has taken part of it."""
-RELIEVED = 1.0
-"""Share of the evidence that must be over the floor where a cause relieves calibration errors, too."""
 CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
 PLAIN = 2.0
@@ -43,7 +41,7 @@ def worth_naming(judge: Judge, model: Model) -> bool:
         return False
     if at_rest(judge, model):
         return True
-    if not _over_the_floor(judge, model, least) or not _visible(judge, model) or unshown(judge, model):
+    if judge.over(model) < least or not _visible(judge, model) or unshown(judge, model):
         return False
     large = float(judge.gap(model.held.bare, rows)) >= rules.least_gap
     if large and judge.closed(model.held, rows, model.held) >= rules.worth:
@@ -124,15 +122,6 @@ def stands_out(judge: Judge, model: Model) -> bool:
     own = np.flatnonzero(judge.own(model, 0) & (judge.shown(model, 0) >= judge.thresholds.visible**2))
     bare, left, nothing = (float(judge.rows(v)[own].sum()) for v in (model.held.bare, model.held.square, judge.nothing.held.square))
     return bool(own.size) and left <= (1 - OWN_WORTH) * bare and left <= CLEARER * nothing
-
-
-def _over_the_floor(judge: Judge, model: Model, least: float) -> bool:
-    """Whether there is evidence enough over the floor: somewhat less will do where much is under it and calibration errors get likelier."""
-    over = judge.over(model)
-    if over >= least:
-        return True
-    likelier_errors = over >= RELIEVED * least and model.gain >= judge.thresholds.evident_doubtful
-    return likelier_errors and model.fit.implausible < judge.nothing.fit.implausible
 
 
 def _floating(judge: Judge) -> bool:
