@@ -35,6 +35,21 @@ def test_white_torque_noise_is_told_from_the_log_itself(one):
         assert 0.9 * real < noise_of(noisy_sieve, floors, 0)[b] < 1.6 * real
 
 
+def test_what_rings_at_high_frequencies_is_no_noise_at_low_ones(one):
+    nothing = dataclasses.replace(load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0)
+    rng = np.random.default_rng(1)
+    quiet = 0.05 * rng.normal(size=one.signals.residual["motion"].shape)
+    rung = np.zeros_like(quiet)
+    for frequency in np.linspace(25, 45, 400):  # a dense ringing above all bands
+        rung += 0.03 * np.sin(2 * np.pi * frequency * one.signals.time[:, None] + rng.uniform(0, 2 * np.pi))
+    floors = []
+    for residual in (quiet, quiet + rung):
+        noisy = sieve(dataclasses.replace(one.signals, residual={"motion": residual}))
+        floors.append(noise_of(noisy, expected(noisy, nothing), 0))
+    low = sorted(floors[0])[1:3]
+    assert all(floors[1][b] < 1.6 * floors[0][b] for b in low)
+
+
 def test_a_worse_known_torque_raises_the_floor(one):
     rules = load_thresholds()
     low = expected(one, rules)

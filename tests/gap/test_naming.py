@@ -39,21 +39,19 @@ def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives_or_by_its
     assert unshown(judge, model) is (unseen and effect == "voltage_sag"), "a battery that nobody measured takes no more than all torque"
 
 
-@pytest.mark.parametrize(("gain", "over", "left", "cost", "floating", "unsettling", "worth"), [
-    (6.5, 6.5, 0.9, 5.0, False, False, True), (5.5, 6.5, 0.9, 5.0, False, False, False), (20.0, 5.5, 0.9, 6.0, False, False, False),
-    (20.0, 5.5, 0.9, 4.0, False, False, True), (7.5, 5.5, 0.9, 4.0, False, False, False), (20.0, 4.0, 0.9, 4.0, False, False, False),
-    (6.5, 6.5, 0.9, 5.0, True, False, False), (8.5, 8.5, 0.9, 5.0, True, False, True), (6.5, 6.5, 1.2, 5.0, False, False, False),
-    (8.5, 8.5, 1.2, 5.0, False, False, True), (3.5, 3.5, 0.9, 5.0, False, True, True), (2.5, 3.5, 0.9, 5.0, False, True, False),
+@pytest.mark.parametrize(("gain", "over", "left", "floating", "unsettling", "worth"), [
+    (6.5, 6.5, 0.9, False, False, True), (5.5, 6.5, 0.9, False, False, False), (20.0, 5.5, 0.9, False, False, False),
+    (6.5, 6.5, 0.9, True, False, False), (8.5, 8.5, 0.9, True, False, True), (6.5, 6.5, 1.2, False, False, False),
+    (8.5, 8.5, 1.2, False, False, True), (3.5, 3.5, 0.9, False, True, True), (2.5, 3.5, 0.9, False, True, False),
 ])  # fmt: skip
-def test_evidence_counts_over_the_floor_and_a_doubtful_cause_needs_more(gain, over, left, cost, floating, unsettling, worth):
+def test_evidence_counts_over_the_floor_and_a_doubtful_cause_needs_more(gain, over, left, floating, unsettling, worth):
     subject = SimpleNamespace(floating=floating)
     samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=subject))])
     judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds(), holds={})
     judge.gap, judge.excess_rows, judge.over = lambda square, rows: square, lambda model: np.ones(2, bool), lambda model: over
     judge.closed, judge.shown = lambda held, rows, before: 1.0, lambda model, place: np.array([9.0, 0.0])
     causes = (SimpleNamespace(effect="backlash", location="knee", unsettling=unsettling, unseen=False),)
-    judge.nothing, fit = SimpleNamespace(fit=SimpleNamespace(implausible=5.0)), SimpleNamespace(implausible=cost)
-    assert worth_naming(judge, SimpleNamespace(gain=gain, causes=causes, held=SimpleNamespace(bare=2.0, square=left), fit=fit)) is worth
+    assert worth_naming(judge, SimpleNamespace(gain=gain, causes=causes, held=SimpleNamespace(bare=2.0, square=left))) is worth
 
 
 def rows_of(shown, bare, left, nothing, effect="coulomb_friction"):

@@ -41,13 +41,14 @@ def stiffness_of(frequency):
     return (2 * np.pi * frequency) ** 2 / (RATIO**2 / INERTIA + 1 / ROTOR)
 
 
-def equation(stiffness, damping, play, torque, steps, step=STEP):
+def equation(stiffness, damping, play, torque, steps, step=STEP, stiffening=0.0):
     """Joint angle by scipy."""
     from scipy.integrate import solve_ivp
 
     def rate(time, state):
         stretch = state[0] - RATIO * state[2]
-        pull = stiffness * (stretch - np.clip(stretch, -play / 2, play / 2)) + (abs(stretch) > play / 2) * damping * (state[1] - RATIO * state[3])
+        beyond = stretch - np.clip(stretch, -play / 2, play / 2)
+        pull = stiffness * (1 + (stiffening * beyond) ** 2) * beyond + (abs(stretch) > play / 2) * damping * (state[1] - RATIO * state[3])
         return [state[1], (torque(time) - pull) / ROTOR, state[3], RATIO * pull / INERTIA]
 
     found = solve_ivp(rate, (0, steps * step), np.zeros(4), t_eval=np.arange(steps) * step, max_step=2e-4, rtol=1e-8, atol=1e-10)
@@ -66,6 +67,21 @@ def test_the_joint_moves_as_the_differential_equation_says(frequency, play):
     found = run(Belt("m", 1 / stiffness, play, damping), torque, steps, step)
     expected = equation(stiffness, damping, play, torque, steps, step)
     assert np.abs(found[0] - expected[2]).max() < 0.03 * np.ptp(expected[2])
+
+
+def test_a_belt_that_stiffens_moves_the_joint_as_its_equation_says():
+    stiffness, step, bend = stiffness_of(6.0), 0.00125, 60.0
+    damping = 0.02 * np.sqrt(stiffness * ROTOR)
+
+    def torque(time):
+        return 1.0 * np.sin(2 * np.pi * 8.0 * time)
+
+    steps = round(0.5 / step)
+    found = run(Belt("m", 1 / stiffness, damping=damping, stiffening=bend), torque, steps, step)
+    expected = equation(stiffness, damping, 0.0, torque, steps, step, bend)
+    straight = equation(stiffness, damping, 0.0, torque, steps, step)
+    assert np.abs(found[0] - expected[2]).max() < 0.03 * np.ptp(expected[2])
+    assert np.abs(straight[2] - expected[2]).max() > 0.1 * np.ptp(expected[2])
 
 
 def test_a_resonance_keeps_its_frequency_and_its_energy_at_200_hertz():

@@ -1,6 +1,9 @@
-import numpy as np
-from pendulum import ROTOR, Wrong
+import dataclasses
 
+import numpy as np
+from pendulum import ROTOR, Wrong, misfit, run
+
+from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.effects import belt
 
 
@@ -20,6 +23,25 @@ def test_stretch_is_compliance_times_load_and_play_is_bounded(pendulum):
     assert np.abs(slack[0]).max() == 0
     assert np.abs(slack[1]).max() == 0.01
     assert np.mean(np.abs(slack[1]) > 0.0099) > 0.5
+
+
+def test_a_belt_that_stiffens_stretches_by_the_root_of_its_cubic(pendulum):
+    signals = pendulum(Wrong())
+    load, compliance, stiffening = belt.load(signals, 0), np.array([0.05, 0.05]), np.array([0.0, 30.0])
+    straight, found = belt.stretch(signals, load, 0, compliance, np.zeros(2), stiffening)
+    np.testing.assert_allclose(found * (1 + (30.0 * found) ** 2), straight, atol=1e-12)
+    assert np.abs(found).max() < 0.8 * np.abs(straight).max()
+
+
+def test_joints_that_rub_behind_a_belt_turn_round_later_than_their_rotors(pendulum):
+    subject = dataclasses.replace(pendulum(Wrong()).subject, coulomb=np.array([0.8]))
+    signals = condition(run(Wrong(coulomb=0.8, compliance=0.03, motor_side=True)), subject)
+    compliance, ratio = np.full(1, 0.03), np.full(1, 0.05)
+    own, needed = (belt.stretch(signals, through, 0, compliance, ratio) for through in (belt.given(signals, 0), belt.load(signals, 0)))
+    behind = belt.trace(signals, 0, own, np.ones(1), None, np.ones(1))
+    assert misfit(signals, behind) < 0.5 * misfit(signals, belt.trace(signals, 0, needed, np.ones(1)))
+    nothing = belt.trace(signals, 0, 0 * own, np.ones(1), None, np.ones(1))["motion"]
+    assert not nothing.any(), "another law of friction alone is no belt"
 
 
 def test_side_one_is_another_posture(pendulum):

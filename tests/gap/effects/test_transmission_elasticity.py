@@ -62,3 +62,14 @@ def test_rotors_show_it_beside_their_joints(pendulum):
     rotor = pendulum(Wrong(compliance=0.01, motor_side=True), sees=("motor_torque", "motor_velocity"))
     assert np.abs(rotor.residual["transmission"]).max() < 0.02 * np.abs(rotor.velocity).max()
     assert not ELASTICITY.trace(rotor, "swing", np.array([[0.01, 0.05, 1.0, 0.0, 0.0]]))["transmission"].any()
+
+
+def test_a_search_does_not_leave_the_side_where_joints_rub_and_a_belt_before_them_is_straight(pendulum):
+    starts = ELASTICITY.starts(pendulum(Wrong()), "swing")
+    assert {(bool(s[3]), tuple(ELASTICITY.fixed(s).tolist())) for s in starts} == {
+        (False, (False, False, False, True, True)), (True, (False, False, True, True, False)),
+    }  # fmt: skip
+    assert all(s[2] == 1 for s in starts if s[3])
+    subject = pendulum(Wrong()).subject
+    found = ELASTICITY.alteration("swing", np.array([0.01, 0.05, 1.0, 1.0, 20.0]), subject)
+    assert (found.compliance, found.stiffening, found.side) == (0.01, 20.0, 1.0)
