@@ -13,9 +13,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap import rigid
+from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects import EFFECTS, belt
 from hyperleg_design.gap.effects.friction import sliding
-from hyperleg_design.gap.effects.placing import ROBOT, driven_motors, joint_inertia, joint_strength, motor_strength, motor_velocity
+from hyperleg_design.gap.effects.placing import (
+    ROBOT,
+    before_measurement,
+    driven_motors,
+    is_commanded,
+    is_logged,
+    joint_inertia,
+    joint_strength,
+    motor_strength,
+    motor_velocity,
+)  # fmt: skip
 from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.actuation import friction_damping
@@ -83,9 +94,11 @@ FORCES_LATE, TORQUES_LATE = "contact_told_late", "torque_told_late"
 """How late forces and torques are told, or early."""
 STEPPED, OF_STEPPED = "friction_stepped", 0.5
 """Friction as simulators step it, the damping f(v) / v of a tick's speed times the next one's, less friction as it is; a share of it."""
+FILTERED, OF_FILTER = "speed_filtered", 0.0015
+"""How late controllers take speeds for their damping [s]: drives filter them at 50-200 Hz, or difference positions (assumed)."""
 SOLES = 0.004
 """[m] (assumed)."""
-UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, TORQUES_LATE, STEPPED)
+UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, TORQUES_LATE, STEPPED, FILTERED)
 """Usual errors that are no effects of the catalogue, each with one parameter."""
 WAYS = (0.0015, 0.006)
 """On which it turns over, half of each [rad]; assumed, beside that of `effects.friction`."""
@@ -140,7 +153,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
         ]
     late, driven = LATE + LATE_TICKS * step, set(driven_motors(subject))
     found += [Usual(effect, "robot", 0, late) for effect in ("command_delay", TORQUES_LATE, FORCES_LATE)]
-    found.append(Usual(STEPPED, "robot", 0, OF_STEPPED))
+    found += [Usual(STEPPED, "robot", 0, OF_STEPPED), Usual(FILTERED, "robot", 0, OF_FILTER)]
     found += [Usual(effect, foot, 0, SOLES) for foot in subject.feet for effect in (SOLE, SOLE_GIVES)]
     for m, motor in enumerate(subject.motors):
         column = np.abs(subject.joint_from_motor[:, m])
@@ -167,7 +180,14 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, BEARING)]
             found.append(Usual("ground_compliance", foot, 1, BEARING))
     places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
-    places |= {SOLE: set(subject.feet), SOLE_GIVES: set(subject.feet), FORCES_LATE: {ROBOT}, TORQUES_LATE: {ROBOT}, STEPPED: {ROBOT}}
+    places |= {
+        SOLE: set(subject.feet),
+        SOLE_GIVES: set(subject.feet),
+        FORCES_LATE: {ROBOT},
+        TORQUES_LATE: {ROBOT},
+        STEPPED: {ROBOT},
+        FILTERED: {ROBOT},
+    }
     places |= {name: set(subject.joints) for name in (TURNOVER, SWUNG)} | dict.fromkeys(SPEEDS, driven)
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 
@@ -188,7 +208,8 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
             found.append({b: v * one.spread for b, v in trace.items()})
             continue
         if one.effect in UNLISTED:
-            found.append((_speeds if one.effect in SPEEDS else _stepped if one.effect == STEPPED else _told)(signals, one))
+            alone = {STEPPED: _stepped, FILTERED: _filtered}.get(one.effect, _speeds if one.effect in SPEEDS else _told)
+            found.append(alone(signals, one))
             continue
         effect = EFFECTS[one.effect]
         if one.effect == "torque_constant" and one.parameter == READING:
@@ -253,6 +274,21 @@ def _stepped(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
     damping = friction_damping(subject.coulomb, np.zeros_like(subject.coulomb), signals.velocity - half, subject.friction_speed)
     smooth = subject.coulomb * rigid.turned(signals.velocity, subject.friction_speed)
     return {"motion": one.spread * (damping * (signals.velocity + half) - smooth)}
+
+
+def _filtered(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
+    """What speeds that controllers know late make them ask for."""
+    subject = signals.subject
+    damping = np.where(subject.passive | ~np.isfinite(subject.gains).all(1), 0.0, subject.gains[:, 1])
+    asked = applied(subject.motor_from_joint, one.spread * damping * signals.acceleration)
+    control, changes = np.zeros_like(asked), {}
+    for motor in np.flatnonzero([is_commanded(signals, m) for m in range(len(subject.motors))]).tolist():
+        if is_logged(signals, motor):
+            control[:, motor] = asked[:, motor]
+        else:
+            changes[motor] = asked[None, :, motor]
+    found = {balance: rows[0] for balance, rows in before_measurement(signals, changes).items()}
+    return found | ({"control": control} if "control" in signals.residual else {})
 
 
 def _told(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
