@@ -8,7 +8,7 @@ import robots
 from hyperleg_design.gap.diagnose import diagnose
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.filtering import sieve
-from hyperleg_design.gap.nuisance import DAY, DESCRIBED, TURNOVER, UNLISTED, WIDE, columns, for_life, spreads, stop, traces, usual_errors
+from hyperleg_design.gap.nuisance import DAY, DESCRIBED, FILTERED, TURNOVER, UNLISTED, WIDE, columns, for_life, spreads, stop, traces, usual_errors
 
 
 @pytest.fixture(scope="module")
@@ -84,6 +84,30 @@ def test_gains_take_a_share_of_what_motion_needs_where_nobody_measured_torques(g
     found = traces(signals, errors)[place]["motion"][:, 0]
     wanted = -errors[place].spread * (signals.rigid[:, 0] + robots.GAINS[0, 1] * signals.velocity[:, 0])
     np.testing.assert_allclose(np.abs(found), np.abs(wanted), atol=1e-9)
+
+
+def test_speeds_that_controllers_know_late_show_where_their_damping_asks_for_torque(geared):
+    log = targets_alone(1)
+    signals = diagnosed.conditioned(geared, log)[0]
+    subject, (stiffness, damping) = signals.subject, robots.GAINS.T
+    late = 0.005
+
+    def found(signals):
+        errors = usual_errors(signals.subject, signals.step)
+        place = next(i for i, e in enumerate(errors) if e.effect == FILTERED)
+        return {balance: rows * late / errors[place].spread for balance, rows in traces(signals, errors)[place].items()}
+
+    unlogged = found(signals)
+    assert set(unlogged) == {"motion"}
+    np.testing.assert_allclose(unlogged["motion"], -late * damping * signals.acceleration, atol=1e-9)
+    asked = stiffness * (signals.target - signals.position) - damping * (signals.velocity - late * signals.acceleration)
+    commands = asked @ subject.motor_from_joint.T / subject.motor_scale.get("motor_torque_command", 1.0)
+    columns = [np.interp(log.time, signals.time, command) for command in commands.T]
+    named = {f"motor_torque_command/{motor}": column for motor, column in zip(subject.motors, columns, strict=True)}
+    logged = diagnosed.conditioned(geared, log.changed(signals={**log.signals, **named}))[0]
+    told, left = found(logged)["control"], logged.residual["control"]
+    use = slice(100, -100)
+    assert np.nanstd((left - told)[use]) < 0.3 * np.nanstd(left[use])
 
 
 def test_a_load_is_weighed_by_targets_and_gains_alone(geared):
