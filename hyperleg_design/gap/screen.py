@@ -30,8 +30,8 @@ SHOWN = 0.02
 """Root mean square of a trace over the floor, at its usual size in the group where it shows most, below which these logs cannot show it."""
 STEPS = 8
 """Gauss-Newton steps a start in the screen."""
-MOST_DESCENTS, DESCENTS = 16, 2
-"""Effects that are not linear which are fitted exactly, and starts of each."""
+MOST_DESCENTS, DESCENTS, KINDS = 16, 2, 3
+"""Effects that are not linear which are fitted exactly, starts of each, and of one with choices: one of each of the best so many choices."""
 MOST_STARTS = 12
 """Starts of an effect at a place whose traces are tried."""
 PROMISING = 0.1
@@ -224,11 +224,20 @@ def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[
 
 def _best(base: Base, rough: _Rough, nothing: Fit, beside: Sequence[Cause]) -> Candidate | None:
     best: Candidate | None = None
-    for start in rough.starts[:DESCENTS]:
+    for start in _unlike(EFFECTS[rough.effect], rough.starts):
         found = descend(base, EFFECTS[rough.effect], rough.location, start, nothing, STEPS, beside)
         if found is not None and (best is None or found.gain > best.gain):
             best = found
     return best
+
+
+def _unlike(effect: Effect, starts: np.ndarray) -> np.ndarray:
+    """The first starts of several choices, where there are any: a search does not get from one to another. Best first `(s, k)`."""
+    choices = np.array([bool(p.choices) for p in effect.parameters])
+    _, first = np.unique(starts[:, choices], axis=0, return_index=True)
+    ahead = np.sort(first)[:KINDS].tolist() if choices.any() else []
+    order = ahead + [i for i in range(len(starts)) if i not in ahead]
+    return starts[order[: max(DESCENTS, len(ahead))]]
 
 
 def lacking(effect: Effect, location: str, signals: Sequence[Signals]) -> str:
