@@ -57,6 +57,8 @@ class Cause:
     """Whether no log has the signal that drives it, a voltage or a temperature, so that it is modelled."""
     unsettling: bool = False
     """Whether it can make control loops unstable, and a joint that it acts on chatters."""
+    doubtful: bool = False
+    """Whether it needs more evidence, see `Effect.doubtful`."""
     beyond: int = 1
     """Joints in a row that its link carries, see `Mechanism.beyond`."""
 

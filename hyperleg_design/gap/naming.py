@@ -36,7 +36,8 @@ def worth_naming(judge: Judge, model: Model) -> bool:
     rules = judge.thresholds
     rows = judge.excess_rows(model)
     partly = float(judge.gap(model.held.square, rows)) >= rules.least_gap
-    least = (rules.evident_doubtful if partly or _floating(judge) else rules.evident) * (CHATTERING if model.causes[-1].unsettling else 1.0)
+    doubtful = partly or _floating(judge) or model.causes[-1].doubtful
+    least = (rules.evident_doubtful if doubtful else rules.evident) * (CHATTERING if model.causes[-1].unsettling else 1.0)
     if model.gain < least:
         return False
     if at_rest(judge, model):

@@ -123,7 +123,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     shakes = _unsettling(samples, effect, location)
     return Cause(
         effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen, shakes,
-        subject.tree.beyond(location),
+        effect.doubtful(values), subject.tree.beyond(location),
     )  # fmt: skip
 
 

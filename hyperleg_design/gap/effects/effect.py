@@ -126,6 +126,10 @@ class Effect(ABC):
         """Which parameters stay as a search begins with them, as nothing lies between their choices `(k,)` of bool."""
         return np.zeros(len(self.parameters), bool)
 
+    def doubtful(self, values: np.ndarray) -> bool:
+        """Whether at some values `(k,)` it is like what nobody models well of a healthy robot, so that it needs more evidence."""
+        return False
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Values from which a search for the best fit to a log is worth while `(s, parameters)`, inside the bounds."""
         usual = self.usual(location, signals.subject)

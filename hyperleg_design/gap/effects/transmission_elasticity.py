@@ -88,6 +88,10 @@ class TransmissionElasticity(Effect):
         behind = values[3] >= belt.CHOSEN
         return np.array([False, False, behind, True, not behind])
 
+    def doubtful(self, values: np.ndarray) -> bool:
+        """Joints that rub behind a belt: friction that turns over late, as bristles let it, too."""
+        return bool(values[3] >= belt.CHOSEN)
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Several resonances, with encoders on either side, and with joints that rub behind a belt, which may stiffen."""
         stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
