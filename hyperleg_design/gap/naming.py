@@ -42,7 +42,11 @@ def worth_naming(judge: Judge, model: Model) -> bool:
         return False
     if at_rest(judge, model):
         return True
-    if judge.over(model) < least or not _visible(judge, model) or unshown(judge, model):
+    if judge.over(model) < least or unshown(judge, model):
+        return False
+    if shows_in_a_band(judge, model, judge.nothing):
+        return True
+    if not _visible(judge, model):
         return False
     large = float(judge.gap(model.held.bare, rows)) >= rules.least_gap
     if large and judge.closed(model.held, rows, model.held) >= rules.worth:
@@ -73,8 +77,16 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
     calm = judge.shown(model, already)[judge.calm]
     if visible and float(np.sqrt(calm.max())) >= (1.0 if plain else rules.second_visible):
         return True
-    bands = judge.shown_in_bands(model, already)[~judge.base.samples.episodic]
-    return plain and judge.over(model) - judge.over(before) >= rules.second_evident * already and float(np.sqrt(bands.max())) >= 1.0
+    return shows_in_a_band(judge, model, before)
+
+
+def shows_in_a_band(judge: Judge, model: Model, before: Model) -> bool:
+    """Whether the last cause is over the floor in one band at least, with much evidence over the floor: a row's fast noise may hide it."""
+    least = judge.thresholds.second_evident * max(len(before.causes), 1)
+    if model.causes[-1].effect in AT_LIMITS or model.gain - before.gain < PLAIN * least or judge.over(model) - judge.over(before) < least:
+        return False
+    bands = judge.shown_in_bands(model, len(model.causes) - 1)[~judge.base.samples.episodic]
+    return float(np.sqrt(bands.max())) >= 1.0
 
 
 def likelier(judge: Judge, more: Sequence[Model], further: Model) -> Model:
