@@ -6,7 +6,7 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.fit import Design
-from hyperleg_design.gap.screen import Candidate, NotJudged, at_rest, descend, lacking, linearise, places, screen
+from hyperleg_design.gap.screen import Candidate, NotJudged, _unlike, at_rest, descend, lacking, linearise, places, screen
 
 
 @pytest.fixture(scope="module")
@@ -69,3 +69,12 @@ def test_what_a_joint_holds_at_rest_speaks_for_its_breakaway_friction_alone():
     assert at_rest(samples, "stribeck_friction", "knee") > 10
     assert at_rest(samples, "stribeck_friction", "hip") == 0
     assert at_rest(samples, "coulomb_friction", "knee") == 0
+
+
+def test_searches_begin_on_several_sides_where_there_is_a_choice():
+    backlash, plain = EFFECTS["backlash"], EFFECTS["controller_gain"]
+    starts = np.array([[0.01, 0.0, 0.0], [0.04, 0.0, 0.0], [0.02, 1.0, 1.0], [0.05, 1.0, 1.0], [0.01, 0.0, 1.0]])
+    np.testing.assert_array_equal(_unlike(backlash, starts), starts[[0, 2, 4]])
+    np.testing.assert_array_equal(_unlike(backlash, starts[:2]), starts[:2])
+    gains = np.array([[0.8, 0.8], [1.25, 1.25], [0.8, 1.0]])
+    np.testing.assert_array_equal(_unlike(plain, gains), gains[:2])
