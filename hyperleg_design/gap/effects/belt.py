@@ -239,9 +239,25 @@ def _rubbed(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarra
 
 def _dragged(way: np.ndarray) -> np.ndarray:
     """Friction over its size, of bristles that bend along ways `(k, t, j)`: it turns over within `BRISTLES`, and stays at rest (Dahl)."""
-    step = np.diff(way, axis=1)
-    keep, pull = np.exp(-np.abs(step) / BRISTLES), np.sign(step)
     found = np.zeros_like(way)
-    for tick in range(step.shape[1]):
-        found[:, tick + 1] = pull[:, tick] + (found[:, tick] - pull[:, tick]) * keep[:, tick]
+    for row, column in np.ndindex(way.shape[0], way.shape[2]):
+        found[row, 1:, column] = _bent(np.diff(way[row, :, column]))
     return found
+
+
+def _bent(steps: np.ndarray) -> np.ndarray:
+    """Bristles after each step `(t,)`; on the way to one side z' = (side - z) / `BRISTLES`, so that only turns need a loop."""
+    moving = np.flatnonzero(steps)
+    if not moving.size:
+        return np.zeros(len(steps))
+    last = np.maximum.accumulate(np.where(steps != 0, np.arange(len(steps)), moving[0]))
+    sides = np.sign(steps)[last]
+    gone = np.concatenate([[0.0], np.cumsum(np.abs(steps)) / BRISTLES])
+    turns = np.concatenate([[0], np.flatnonzero(np.diff(sides)) + 1])
+    keep = np.exp(-np.diff(np.append(gone[turns], gone[-1]))).tolist()
+    begun, state = [], 0.0
+    for side, kept in zip(sides[turns].tolist(), keep, strict=True):
+        begun.append(state)
+        state = side + (state - side) * kept
+    run = np.repeat(np.arange(len(turns)), np.diff(np.append(turns, len(steps))))
+    return np.asarray(sides + (np.array(begun)[run] - sides) * np.exp(gone[turns][run] - gone[1:]))
