@@ -169,15 +169,16 @@ class Judge:
 
     def shown(self, model: Model, place: int) -> np.ndarray:
         """Mean square of one cause's trace in each row, and in its episodes, over the floor `(2 rows,)`."""
-        cause, samples = model.causes[place], self.base.samples
-        trace = cause.trace((model.values(place) - cause.nulls) / cause.usual)
-        return np.bincount(self.group_row, self._means(trace**2), 2 * len(samples.rows)) / np.maximum(self.row_floor, 1e-300)
+        return np.bincount(self.group_row, self._traced(model, place), 2 * len(self.base.samples.rows)) / np.maximum(self.row_floor, 1e-300)
 
     def shown_in_bands(self, model: Model, place: int) -> np.ndarray:
         """As `shown`, of each band of a row by itself `(G,)`: what is slow may be clear where the row's fast noise is large."""
+        return self._traced(model, place) / np.maximum(self.floor, 1e-300)
+
+    def _traced(self, model: Model, place: int) -> np.ndarray:
+        """Mean square of one cause's trace in each group `(G,)`, in its unit."""
         cause = model.causes[place]
-        trace = cause.trace((model.values(place) - cause.nulls) / cause.usual)
-        return self._means(trace**2) / np.maximum(self.floor, 1e-300)
+        return self._means(cause.trace((model.values(place) - cause.nulls) / cause.usual) ** 2)
 
     @cached_property
     def calm(self) -> np.ndarray:

@@ -26,7 +26,7 @@ from hyperleg_design.gap.effects.placing import (
     joint_strength,
     motor_strength,
     motor_velocity,
-)  # fmt: skip
+)
 from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.actuation import friction_damping
@@ -180,14 +180,8 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, BEARING)]
             found.append(Usual("ground_compliance", foot, 1, BEARING))
     places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
-    places |= {
-        SOLE: set(subject.feet),
-        SOLE_GIVES: set(subject.feet),
-        FORCES_LATE: {ROBOT},
-        TORQUES_LATE: {ROBOT},
-        STEPPED: {ROBOT},
-        FILTERED: {ROBOT},
-    }
+    places |= {name: set(subject.feet) for name in (SOLE, SOLE_GIVES)}
+    places |= {name: {ROBOT} for name in (FORCES_LATE, TORQUES_LATE, STEPPED, FILTERED)}
     places |= {name: set(subject.joints) for name in (TURNOVER, SWUNG)} | dict.fromkeys(SPEEDS, driven)
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 

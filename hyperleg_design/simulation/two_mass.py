@@ -163,5 +163,6 @@ def joined(alterations: Sequence[Alteration]) -> list[Alteration]:
         dampings = [np.asarray(b.damping, float) for b in (one, two) if b.damping is not None]
         damping = None if not dampings else dampings[0] if len(dampings) == 1 else dampings[0] * dampings[1] / (dampings[0] + dampings[1])
         side, stiffening = (np.maximum(getattr(one, name), getattr(two, name)) for name in ("side", "stiffening"))
-        found[twin] = Belt(one.motor, np.asarray(one.compliance) + two.compliance, np.asarray(one.play) + two.play, damping, stiffening, side)
+        compliance, play = (np.asarray(getattr(one, name)) + getattr(two, name) for name in ("compliance", "play"))
+        found[twin] = Belt(one.motor, compliance, play, damping, stiffening=stiffening, side=side)
     return found

@@ -79,8 +79,7 @@ def transmitted(signals: Signals, motor: int) -> np.ndarray:
     kept = _GIVEN.setdefault(signals, {})
     if motor not in kept:
         spin = signals.residual["transmission"][:, motor] + motor_velocity(signals, motor)
-        given = signals.believed[:, motor] - rotor(signals.subject, motor) * first_derivative(spin, signals.step)
-        kept[motor] = band_limited(given, signals.step, BAND / signals.step)
+        kept[motor] = _passed_on(signals, motor, first_derivative(spin, signals.step), BAND / signals.step)
     return kept[motor]
 
 
@@ -89,9 +88,13 @@ def given(signals: Signals, motor: int) -> np.ndarray:
     kept = _OWN.setdefault(signals, {})
     if motor not in kept:
         spun = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
-        own = signals.believed[:, motor] - rotor(signals.subject, motor) * spun
-        kept[motor] = band_limited(own, signals.step, min(BEHIND_BAND, BAND / signals.step))
+        kept[motor] = _passed_on(signals, motor, spun, min(BEHIND_BAND, BAND / signals.step))
     return kept[motor]
+
+
+def _passed_on(signals: Signals, motor: int, spun: np.ndarray, band: float) -> np.ndarray:
+    """A motor's own torque less what its rotor takes, of the rotor's acceleration `(t,)` and within a band [Hz]."""
+    return band_limited(signals.believed[:, motor] - rotor(signals.subject, motor) * spun, signals.step, band)
 
 
 def stretch(

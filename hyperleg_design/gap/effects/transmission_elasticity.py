@@ -22,11 +22,10 @@ RESONANCES = (40.0, 20.0, 10.0, 5.0)
 """That a search starts from [Hz]."""
 SLOWEST = 0.5
 """Lowest frequency of a rotor on its belt that is searched [Hz]."""
-
-
 RUBBING = ("joints rub before the belt", "joints rub behind the belt")
+"""Choices of the parameter `behind`: where the friction of joints acts; behind, positions are those of the rotors."""
 STIFFER = 30.0
-"""Stiffening that a search starts from, too [1/rad]: twice as stiff at 2 degrees."""
+"""Usual stiffening [1/rad], twice as stiff at 2 degrees; that a search starts from, too."""
 
 
 class TransmissionElasticity(Effect):
@@ -43,7 +42,9 @@ class TransmissionElasticity(Effect):
         Parameter("damping_ratio", "", DAMPING_RATIO, 0.0, 1.0, 0.05, "steel-corded belts ring for a few periods (assumed)", shape=True),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
         Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=RUBBING),
-        Parameter("stiffening", "1/rad", 0.0, 0.0, 200.0, 30.0, "gears are two to three times as stiff beyond some mrad (data sheets)", shape=True),
+        Parameter(
+            "stiffening", "1/rad", 0.0, 0.0, 200.0, STIFFER, "gears are two to three times as stiff beyond some mrad (data sheets)", shape=True
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -54,12 +55,12 @@ class TransmissionElasticity(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(np.asarray(values, float)).T
-        needed, given = belt.load(signals, motor), belt.transmitted(signals, motor)
+        needed, told = belt.load(signals, motor), belt.transmitted(signals, motor)
         moved = belt.stretch(signals, needed, motor, compliance, damping_ratio, stiffening)
         if (rubbing := behind >= belt.CHOSEN).any():
             own = belt.given(signals, motor)
             moved[rubbing] = belt.stretch(signals, own, motor, *(v[rubbing] for v in (compliance, damping_ratio, stiffening)))
-        seen = None if given is needed else belt.stretch(signals, given, motor, compliance, damping_ratio, stiffening)
+        seen = None if told is needed else belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
         return belt.trace(signals, motor, moved, side, seen, behind)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
