@@ -271,12 +271,13 @@ def _stepped(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
 
 
 def _filtered(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
-    """What speeds that controllers know late make them ask for."""
+    """What speeds that controllers know late make them ask for; a motor's own back-EMF is never late."""
     subject = signals.subject
     damping = np.where(subject.passive | ~np.isfinite(subject.gains).all(1), 0.0, subject.gains[:, 1])
     asked = applied(subject.motor_from_joint, one.spread * damping * signals.acceleration)
     control, changes = np.zeros_like(asked), {}
-    for motor in np.flatnonzero([is_commanded(signals, m) for m in range(len(subject.motors))]).tolist():
+    controlled = [is_commanded(signals, m) and not np.isfinite(subject.supply[m]) for m in range(len(subject.motors))]
+    for motor in np.flatnonzero(controlled).tolist():
         if is_logged(signals, motor):
             control[:, motor] = asked[:, motor]
         else:

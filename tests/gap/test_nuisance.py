@@ -108,6 +108,8 @@ def test_speeds_that_controllers_know_late_show_where_their_damping_asks_for_tor
     told, left = found(logged)["control"], logged.residual["control"]
     use = slice(100, -100)
     assert np.nanstd((left - told)[use]) < 0.3 * np.nanstd(left[use])
+    supplied = replace(signals, subject=replace(subject, supply=np.full(len(subject.motors), 12.0)))
+    assert not np.any(list(found(supplied).values()))  # without current loops all damping is the motors' own
 
 
 def test_a_load_is_weighed_by_targets_and_gains_alone(geared):
