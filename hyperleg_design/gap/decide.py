@@ -106,7 +106,9 @@ def decide(
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     swung += [screen.NotJudged(*name, "its voltage is that of the reference logs") for name in supplied]
     signals = [sieve.signals for sieve in base.samples.sieves]
-    heard = (loose(signals) or unstable(signals)) if shaken and not lost else None
+    heard = (loose(signals) or unstable(signals)) if shaken else None
+    if heard is not None:  # what swings takes all drives off their commands, and lost commands make nothing swing
+        lost = 0.0
     if heard is None and any(c.effect in UNSETTLING for c in chosen.causes):
         shaken = ()  # joints shake each other
     verdict = _verdict(judge, chosen, rows, shaped)

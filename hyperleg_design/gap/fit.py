@@ -61,6 +61,8 @@ class Cause:
     """Whether it needs more evidence, see `Effect.doubtful`."""
     beyond: int = 1
     """Joints in a row that its link carries, see `Mechanism.beyond`."""
+    odds: float = 0.0
+    """Log odds for it by what logs tell beside their balances, see `telling`."""
 
     @property
     def name(self) -> tuple[str, str]:

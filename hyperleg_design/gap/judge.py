@@ -228,7 +228,7 @@ def plausible(model: Model) -> float:
 
 def _odds(cause: Cause, values: np.ndarray) -> float:
     free = int((~cause.shape).sum() if cause.linear else (cause.high > cause.low).sum())
-    found = -PER_PARAMETER * free + RARE.get(cause.effect, 0.0)
+    found = -PER_PARAMETER * free + RARE.get(cause.effect, 0.0) + cause.odds
     if cause.unsettling:
         found += CHATTERS
     if cause.unseen:

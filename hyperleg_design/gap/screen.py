@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from hyperleg_design.gap import telling
 from hyperleg_design.gap.base import Base
 from hyperleg_design.gap.chatter import UNSETTLING, unsettled
 from hyperleg_design.gap.effects import EFFECTS
@@ -32,7 +33,7 @@ STEPS = 8
 """Gauss-Newton steps a start in the screen."""
 MOST_DESCENTS, DESCENTS, KINDS = 16, 2, 3
 """Effects that are not linear which are fitted exactly, starts of each, and of one with choices: one of each of the best so many choices."""
-MOST_STARTS = 12
+MOST_STARTS = 18
 """Starts of an effect at a place whose traces are tried."""
 PROMISING = 0.1
 """Gain of an effect by its starts' traces, over the best gain of any, from which it is fitted exactly."""
@@ -123,7 +124,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     shakes = _unsettling(samples, effect, location)
     return Cause(
         effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen, shakes,
-        effect.doubtful(values), subject.tree.beyond(location),
+        effect.doubtful(values), subject.tree.beyond(location), telling.odds(effect.identifier, location, [s.signals for s in samples.sieves]),
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.channels import resampled
+from hyperleg_design.gap.waveform import HARMONIC, sharpness
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -22,8 +23,8 @@ SHOWN_PERIODS = 10
 """Of chatter, for the eye."""
 COMMANDED = 0.1
 """Highest frequency of commanded motion, over the log's rate (assumed)."""
-THIRD, HARMONIC = 3, 0.05
-"""The harmonic, and its size over the first, from which play is likelier than a spring."""
+THIRD = 3
+"""The harmonic by which play differs from a spring."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +38,9 @@ class Swing:
     angle: np.ndarray
     """Amplitudes of the joints' angles `(t, n)` [rad], complex."""
     third: np.ndarray
-    """Of three times the frequency `(t, n)` [rad]; 0 where the log's rate shows that as slow as what is commanded."""
+    """Of three times the frequency `(t, n)` [rad]; 0 where the log's rate shows that as slow as what is commanded, or beside the line."""
+    folded: bool
+    """Whether just one of both is shown with its phase turned round."""
 
 
 def swing(signals: Signals) -> Swing | None:
@@ -53,15 +56,18 @@ def swing(signals: Signals) -> Swing | None:
     frequency = seen if speed == 0 else unfolded(seen, 1 / signals.step, speed / size) if size > 0 else None
     if frequency is None:
         return None
-    shown = _folded(THIRD * frequency, 1 / signals.step)
-    third = band(apart, signals.step, shown, HALF_WIDTH / 2) if shown > COMMANDED / signals.step else np.zeros_like(angle)
-    return Swing(frequency, seen, angle, third)
+    rate = 1 / signals.step
+    shown = _folded(THIRD * frequency, rate)
+    apart_enough = shown > COMMANDED * rate and abs(shown - seen) > 2 * HALF_WIDTH * rate
+    third = band(apart, signals.step, shown, HALF_WIDTH / 2) if apart_enough else np.zeros_like(angle)
+    return Swing(frequency, seen, angle, third, _turned(frequency, rate) != _turned(THIRD * frequency, rate))
 
 
 def sharp(found: Swing, subject: Subject, motor: int) -> bool:
-    """Whether a motor with its joints swings with harmonics, as a rotor in its play does; that of a spring is a sine."""
-    first, third = (float(rms(one @ subject.joint_from_motor[:, motor])) for one in (found.angle, found.third))
-    return third > HARMONIC * first
+    """Whether a motor with its joints swings as a rotor in its play does, see `waveform`; that of a spring is a sine."""
+    first, third = (one @ subject.joint_from_motor[:, motor] for one in (found.angle, found.third))
+    z = sharpness(first, np.conj(third) if found.folded else third)
+    return z.real > 0 and abs(z) > HARMONIC
 
 
 def loudest(size: np.ndarray, frequency: float, step: float) -> slice:
@@ -74,6 +80,11 @@ def loudest(size: np.ndarray, frequency: float, step: float) -> slice:
 def _folded(frequency: float, rate: float) -> float:
     """Where a log's rate shows a frequency [Hz]."""
     return min(frequency % rate, -frequency % rate)
+
+
+def _turned(frequency: float, rate: float) -> bool:
+    """Whether a log's rate shows a frequency with its phase turned round."""
+    return frequency % rate > rate / 2
 
 
 def unfolded(seen: float, rate: float, told: float) -> float | None:

@@ -97,7 +97,7 @@ def unstable(signals: Sequence[Signals]) -> Heard | None:
     order = sorted(score, key=lambda name: (-score[name], name))
     best = order[0]
     near = [name for name in order if score[name] > score[best] - APART]
-    if score[best] < GOOD * len(heard) or len(near) > MOST:
+    if score[best] + FREE * (best[0] == SPRING) < GOOD * len(heard) or len(near) > MOST:
         return None
     shares = [found[best].share if best in found else 0.0 for found in matches]
     closed, *each = (float(1 - np.sqrt(1 - share)) for share in (float(np.mean(shares)), *shares))

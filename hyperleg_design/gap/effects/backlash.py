@@ -34,6 +34,7 @@ class Backlash(Effect):
         Parameter("angle", "rad", 0.0, 0.0, 0.1, 0.006, "0.1-1 deg at the joint (engineering estimate)"),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
         Parameter("coasting", "", 1.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=COASTING),
+        Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -43,8 +44,9 @@ class Backlash(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
-        angle, side, coasting = np.atleast_2d(np.asarray(values, float)).T
-        return belt.trace(signals, motor, belt.slack(signals, motor, angle * belt.moved_most(signals.subject, motor), side, coasting), side)
+        angle, side, coasting, behind = np.atleast_2d(np.asarray(values, float)).T
+        moved = belt.slack(signals, motor, angle * belt.moved_most(signals.subject, motor), side, coasting, behind)
+        return belt.trace(signals, motor, moved, side, behind=behind)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`; its ends are as hard as simulations resolve, and damped to bounce as in the trace."""
@@ -54,8 +56,13 @@ class Backlash(Effect):
         values = np.asarray(values, float)
         return Belt(location, play=values[..., 0] * belt.moved_most(subject, motor), damping=float(damping), side=values[..., 1])
 
+    def fixed(self, values: np.ndarray) -> np.ndarray:
+        """Where encoders sit and joints rub; encoders on the rotors, joints always move by themselves."""
+        return np.array([False, True, values[1] >= belt.CHOSEN, True])
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Small and large angles, with encoders on either side, or carried over; where ends are met depends on the angle."""
-        rotors = [[angle, 0.0, 1.0] for angle in (0.003, 0.01, 0.03)]
-        joints = [[angle, 1.0, 1.0] for angle in (0.003, 0.005, 0.008, 0.013, 0.02, 0.032, 0.05)]
-        return np.array([*rotors, *joints, [0.01, 0.0, 0.0], [0.04, 0.0, 0.0]])
+        rotors = [[angle, 0.0, 1.0, 0.0] for angle in (0.003, 0.01, 0.03)]
+        joints = [[angle, 1.0, 1.0, 0.0] for angle in (0.003, 0.006, 0.011, 0.018, 0.026, 0.036, 0.048, 0.062)]
+        rubbing = [[angle, 1.0, 1.0, 1.0] for angle in (0.006, 0.015, 0.03, 0.05)]
+        return np.array([*rotors, *joints, *rubbing, [0.01, 0.0, 0.0, 0.0], [0.04, 0.0, 0.0, 0.0]])

@@ -6,14 +6,16 @@ the joints' (`side` 1), the joints stand s / M behind, and need another torque f
 
 A belt that gives is stretched by what the joints need through it, u = [M^-1 (needed torque less the rotors')]: s = compliance u,
 filtered by the belt's damping; one that stiffens, k (1 + (stiffening s)^2) s = u with `stiffening` at the joint that it moves most.
-Behind a soft belt (`behind` 1) joints that rub stay where they are while the rotor turns round, and turn round themselves later: there
-the belt is stretched by what the motor gives it, and friction follows the joint's own way. In a dead zone of width w nothing is
-transmitted, and s moves by itself,
+Friction of gears acts on the rotor, before the belt; that of joints behind it (`behind` 1). With encoders on the rotors the two differ:
+joints that rub behind a soft belt stay where they are while the rotor turns round, and turn round themselves later, so that the belt is
+stretched by what the motor gives it, and friction follows the joint's own way; friction before it stretches no belt. In a dead
+zone of width w nothing is transmitted, and s moves by itself,
 
     side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque
-    side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need
+    side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need, its own
+                                            friction along where it rubs itself
 
-until it meets +-w/2, where it bounces a little (`RESTITUTION`) and stays while pushed. Both are limited to the band that a log
+until it meets +-w/2, where a rotor bounces a little (`RESTITUTION`), and stays while pushed. Both are limited to the band that a log
 resolves. A rotor that rubs, or whose torque is not known well, does not coast like that: then it lies at the end that the load
 pushes it to, and crosses over as the load turns round, s = w / 2 tanh(u / (c rms u)); `coasting` mixes the two.
 """
@@ -28,7 +30,7 @@ import numpy as np
 
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.channels import applied
-from hyperleg_design.gap.effects.placing import at_motor, joint_inertia, motor_velocity
+from hyperleg_design.gap.effects.placing import at_motor, motor_velocity
 from hyperleg_design.gap.effects.series import band_limited, first_derivative, lagged, second_derivative
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.two_mass import LIGHTEST
@@ -40,7 +42,8 @@ if TYPE_CHECKING:
 BAND = 0.2
 """Of the transmitted torque that stretches a belt, over the log's rate: 40 Hz at 200 Hz."""
 RESTITUTION = 0.3
-"""Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords under load hardly bounce."""
+"""Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords under load hardly bounce. Joints, which
+hit a rotor that is held, do not."""
 CROSSING, CROSSING_BAND = 0.8, 0.15
 """c, the load below which a rotor that does not coast is on its way across; band of its crossing, over the log's rate (assumed)."""
 
@@ -51,9 +54,16 @@ BEHIND_BAND = 15.0
 BRISTLES = 3e-3
 """Way over which a joint behind its belt turns its friction over [rad]; assumed: as well as its place is known."""
 
+RUBBING = ("joints rub before the belt", "joints rub behind the belt")
+"""Choices of the parameter `behind`: where the friction of joints acts; behind, positions are those of the rotors."""
+
+LEAST_SHARE = 1e-3
+"""Of the largest inertia of a joint over a log, at least, where its posture is not known."""
+
 _LOADS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 _GIVEN: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
-_OWN: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
+_INERTIAS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
+_OWN: WeakKeyDictionary[Signals, dict[tuple[int, bool], np.ndarray]] = WeakKeyDictionary()
 
 
 def rotor(subject: Subject, motor: int) -> float:
@@ -72,6 +82,19 @@ def load(signals: Signals, motor: int) -> np.ndarray:
     return kept[motor]
 
 
+def frictionless(signals: Signals, motor: int) -> np.ndarray:
+    """As `load`, without the nominal friction of the joints `(t,)` [Nm]."""
+    return load(signals, motor) - band_limited(_friction(signals, motor), signals.step, BAND / signals.step)
+
+
+def _friction(signals: Signals, motor: int) -> np.ndarray:
+    """Nominal friction of the joints at a motor `(t,)` [Nm]."""
+    subject = signals.subject
+    swing = None if signals.chatter is None else signals.chatter.speed
+    rubs = subject.coulomb * rigid.turned(signals.velocity, subject.friction_speed, swing) + subject.viscous * signals.velocity
+    return applied(subject.motor_from_joint[motor : motor + 1], rubs)[:, 0]
+
+
 def transmitted(signals: Signals, motor: int) -> np.ndarray:
     """Torque that a motor gives its belt, its own torque less what its rotor takes, where its speed is logged; else `load` `(t,)` [Nm]."""
     if "transmission" not in signals.residual or not np.isfinite(signals.residual["transmission"][:, motor]).any():
@@ -83,13 +106,14 @@ def transmitted(signals: Signals, motor: int) -> np.ndarray:
     return kept[motor]
 
 
-def given(signals: Signals, motor: int) -> np.ndarray:
-    """Torque that a motor gives its belt, where positions are those of the rotors `(t,)` [Nm]."""
+def given(signals: Signals, motor: int, *, rubs: bool = True) -> np.ndarray:
+    """Torque that a motor gives its belt, where positions are those of the rotors `(t,)` [Nm]; `rubs`, joints rub behind it, else before."""
     kept = _OWN.setdefault(signals, {})
-    if motor not in kept:
-        spun = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
-        kept[motor] = _passed_on(signals, motor, spun, min(BEHIND_BAND, BAND / signals.step))
-    return kept[motor]
+    if (motor, rubs) not in kept:
+        spun, band = signals.acceleration @ signals.subject.joint_from_motor[:, motor], min(BEHIND_BAND, BAND / signals.step)
+        lost = 0.0 if rubs else band_limited(_friction(signals, motor), signals.step, band)
+        kept[motor, rubs] = _passed_on(signals, motor, spun, band) - lost
+    return kept[motor, rubs]
 
 
 def _passed_on(signals: Signals, motor: int, spun: np.ndarray, band: float) -> np.ndarray:
@@ -130,7 +154,7 @@ def moved_most(subject: Subject, motor: int) -> float:
     return float(np.abs(subject.joint_from_motor[:, motor]).max())
 
 
-def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coasting: np.ndarray) -> np.ndarray:
+def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coasting: np.ndarray, behind: np.ndarray | None = None) -> np.ndarray:
     """Where a rotor is in its dead zone, from -play / 2 to play / 2, on its side of M `(k, t)` [rad].
 
     Args:
@@ -139,6 +163,7 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coas
         play: whole width `(k,)` [rad].
         side: on which the positions were logged `(k,)`.
         coasting: from 0, carried over by the load, to 1, moving by itself `(k,)`; a joint, on side 1, always does.
+        behind: whether joints rub behind the belt, on side 1 `(k,)`; by default not.
     """
     found = np.zeros((len(play), len(signals.time)))
     pushed = cache(lambda: _pushed(signals, motor))
@@ -152,7 +177,11 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coas
             if at_rotor not in kicks:
                 push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
                 kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
-            found[row] = free * np.array(_bounced(kicks[at_rotor], signals.step, float(width) / 2))
+            if at_rotor and behind is not None and behind[row] >= CHOSEN:
+                way = _rubbing(kicks[at_rotor], signals, motor, float(width) / 2)
+            else:
+                way = _bounced(kicks[at_rotor], signals.step, float(width) / 2, 0.0 if at_rotor else RESTITUTION)
+            found[row] = free * np.array(way)
         if free < 1:
             found[row] += (1 - free) * float(width) / 2 * pushed()
     return found
@@ -165,7 +194,7 @@ def _pushed(signals: Signals, motor: int) -> np.ndarray:
     return band_limited(np.tanh(through / max(CROSSING * usual, 1e-12)), signals.step, CROSSING_BAND / signals.step)
 
 
-def _bounced(kicks: list[float], step: float, half: float) -> list[float]:
+def _bounced(kicks: list[float], step: float, half: float, restitution: float) -> list[float]:
     """Places of a body between two walls, from its changes of speed; plain numbers, as arrays of a few are slower."""
     place, speed = half if kicks[0] > 0 else -half, 0.0
     found = []
@@ -175,13 +204,43 @@ def _bounced(kicks: list[float], step: float, half: float) -> list[float]:
         if place > half:
             place = half
             if speed > 0:
-                speed *= -RESTITUTION
+                speed *= -restitution
         elif place < -half:
             place = -half
             if speed < 0:
-                speed *= -RESTITUTION
+                speed *= -restitution
         found.append(place)
     return found
+
+
+def _rubbing(kicks: list[float], signals: Signals, motor: int, half: float) -> list[float]:
+    """As `_bounced`, of a rotor beside joints that rub: friction slows them, and at most stops them."""
+    subject, step = signals.subject, signals.step
+    share = np.abs(subject.motor_from_joint[motor])
+    slowed = step / _inertia(signals, motor)
+    drops, keeps = (float(share @ subject.coulomb) * slowed).tolist(), np.exp(-float(share**2 @ subject.viscous) * slowed).tolist()
+    turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor]).tolist()
+    place, speed = half if kicks[0] > 0 else -half, 0.0
+    found = []
+    for change, turned_by, drop, keep in zip(kicks, turning, drops, keeps, strict=True):
+        own = (turned_by - speed - change) * keep
+        own = max(own - drop, 0.0) if own > 0 else min(own + drop, 0.0)
+        speed = turned_by - own
+        place += step * speed
+        if place > half or place < -half:
+            place, speed = (half, min(speed, 0.0)) if place > half else (-half, max(speed, 0.0))
+        found.append(place)
+    return found
+
+
+def _inertia(signals: Signals, motor: int) -> np.ndarray:
+    """Inertia of the joints that a motor moves, at the motor, all others held `(t,)` [kg m^2]."""
+    kept = _INERTIAS.setdefault(signals, {})
+    if motor not in kept:
+        share = signals.subject.motor_from_joint[motor]
+        (needed,) = rigid.accelerating(signals.subject, signals.position, [share], rotors=False)
+        kept[motor] = np.asarray(np.nan_to_num(needed) @ share)
+    return np.maximum(kept[motor], LEAST_SHARE * kept[motor].max())
 
 
 def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:
@@ -193,8 +252,7 @@ def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:
 
 def _joint_alone(signals: Signals, motor: int) -> np.ndarray:
     """Acceleration of a rotor against its free joints `(t,)` [rad/s^2]."""
-    share = signals.subject.motor_from_joint[motor]
-    return load(signals, motor) / float(share**2 @ joint_inertia(signals.subject))
+    return frictionless(signals, motor) / _inertia(signals, motor)
 
 
 def trace(

@@ -22,8 +22,6 @@ RESONANCES = (40.0, 20.0, 10.0, 5.0)
 """That a search starts from [Hz]."""
 SLOWEST = 0.5
 """Lowest frequency of a rotor on its belt that is searched [Hz]."""
-RUBBING = ("joints rub before the belt", "joints rub behind the belt")
-"""Choices of the parameter `behind`: where the friction of joints acts; behind, positions are those of the rotors."""
 STIFFER = 30.0
 """Usual stiffening [1/rad], twice as stiff at 2 degrees; that a search starts from, too."""
 
@@ -41,7 +39,7 @@ class TransmissionElasticity(Effect):
         Parameter("compliance", "rad/Nm", 0.0, 0.0, 1e4, 0.01, "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor"),
         Parameter("damping_ratio", "", DAMPING_RATIO, 0.0, 1.0, 0.05, "steel-corded belts ring for a few periods (assumed)", shape=True),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
-        Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=RUBBING),
+        Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
         Parameter(
             "stiffening", "1/rad", 0.0, 0.0, 200.0, STIFFER, "gears are two to three times as stiff beyond some mrad (data sheets)", shape=True
         ),
@@ -57,9 +55,11 @@ class TransmissionElasticity(Effect):
         compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(np.asarray(values, float)).T
         needed, told = belt.load(signals, motor), belt.transmitted(signals, motor)
         moved = belt.stretch(signals, needed, motor, compliance, damping_ratio, stiffening)
-        if (rubbing := behind >= belt.CHOSEN).any():
-            own = belt.given(signals, motor)
-            moved[rubbing] = belt.stretch(signals, own, motor, *(v[rubbing] for v in (compliance, damping_ratio, stiffening)))
+        bent = (stiffening > 0) | (behind >= belt.CHOSEN)
+        for rubs in (True, False):
+            if (mine := bent & (side >= belt.CHOSEN) & ((behind >= belt.CHOSEN) == rubs)).any():
+                own = belt.given(signals, motor, rubs=rubs)
+                moved[mine] = belt.stretch(signals, own, motor, *(v[mine] for v in (compliance, damping_ratio, stiffening)))
         seen = None if told is needed else belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
         return belt.trace(signals, motor, moved, side, seen, behind)
 
@@ -85,9 +85,9 @@ class TransmissionElasticity(Effect):
         return found
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Where joints rub; if behind the belt, encoders sit on the rotors, else it is straight."""
-        behind = values[3] >= belt.CHOSEN
-        return np.array([False, False, behind, True, not behind])
+        """Where joints rub; of a belt that stiffens, or with joints that rub behind it, where encoders sit; else it is straight."""
+        behind, stiffens = values[3] >= belt.CHOSEN, values[4] > 0
+        return np.array([False, False, behind or stiffens, True, not (behind or stiffens)])
 
     def doubtful(self, values: np.ndarray) -> bool:
         """Joints that rub behind a belt: friction that turns over late, as bristles let it, too."""
@@ -97,7 +97,8 @@ class TransmissionElasticity(Effect):
         """Several resonances, with encoders on either side, and with joints that rub behind a belt, which may stiffen."""
         stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
         plain = [[c, DAMPING_RATIO, side, 0.0, 0.0] for side in (0.0, 1.0) for c in stiff]
-        return np.array(plain + [[c, DAMPING_RATIO, 1.0, 1.0, bend] for bend in (0.0, STIFFER) for c in stiff[1:3]])
+        bent = [[c, DAMPING_RATIO, 1.0, behind, bend] for behind, bend in ((0.0, STIFFER), (1.0, 0.0), (1.0, STIFFER)) for c in stiff[1:3]]
+        return np.array(plain + bent)
 
     def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
         """Stiffness on the motor's side, and the frequency of the rotor on its belt."""
