@@ -43,6 +43,8 @@ SAGGED = 0.03
 """Share of the voltage that must be missing for a weak battery where reference logs tell what it is when all is well."""
 BELTS = (PLAY, SPRING)
 """Effects of belts that give."""
+DECISIVE = 30.0
+"""Log-likelihood by which balances must tell a soft belt from play to be believed more than what is heard: they hardly see its harmonics."""
 SEVERAL = 2
 """Joints that must be off at times for it to be a gap where nobody measured drives: one alone may have its own friction."""
 LIMITS_AT_ONCE = 2
@@ -112,6 +114,8 @@ def decide(
     if heard is None and any(c.effect in UNSETTLING for c in chosen.causes):
         shaken = ()  # joints shake each other
     verdict = _verdict(judge, chosen, rows, shaped)
+    if heard is not None and verdict == "explained" and _told_apart(chosen, singles, heard):
+        heard, shaken = None, ()
     if heard is not None and verdict == "explained" and (others := _elsewhere(chosen, heard, signals[0].subject)):
         if len(others) < len(chosen.causes):  # what it leaves at its own motor and joints looks like limits and constants
             chosen = judge.model(others)
@@ -124,7 +128,7 @@ def decide(
         verdict = "unknown"
     if verdict == "none" and shaping.tells(thresholds, chosen, pushes := shaping.of_base(judge)):
         verdict, shaped = "unknown", pushes
-    if heard is None and not lost:
+    if heard is None and not lost and not any(c.effect in BELTS for c in chosen.causes):  # a belt shakes other joints, too
         heard = knocking(signals, references, [_motion(chosen, one) for one in signals] if verdict == "explained" else ())
         if heard is not None and verdict == "explained" and len(_elsewhere(chosen, heard, signals[0].subject)) < len(chosen.causes):
             heard = None
@@ -142,6 +146,15 @@ def _elsewhere(chosen: Model, heard: Heard, subject: Subject) -> tuple[Cause, ..
     own = {heard.location, *(moved_joints(subject, subject.motors.index(heard.location)) if heard.location in subject.motors else ())}
     belts = BELTS if heard.shape != KNOCKING and heard.causes[0].effect in BELTS else ()
     return tuple(c for c in chosen.causes if c.location not in own and c.effect not in belts)
+
+
+def _told_apart(chosen: Model, singles: Sequence[Model], heard: Heard) -> bool:
+    """Whether balances alone tell that it is the belt that is heard, and by far whether it is soft or has play."""
+    belt = chosen.causes[0]
+    if len(chosen.causes) > 1 or belt.effect not in BELTS or belt.location != heard.location:
+        return False
+    others = [rank(m) for m in singles if m.causes[0].effect in BELTS and m.causes[0].location == belt.location and m.names != chosen.names]
+    return rank(chosen) > max(others, default=0.0) + DECISIVE
 
 
 def _motion(model: Model, signals: Signals) -> np.ndarray:
@@ -184,7 +197,7 @@ def _from(models: Sequence[Model], named: Model) -> tuple[Model, ...]:
 
 def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence[Cause]) -> tuple[list[Model], list[screen.NotJudged]]:
     """Best candidates beside given causes, as models on held-out blocks, best first."""
-    taken = {c.name for c in beside}
+    taken = {c.name for c in beside} | {(other, c.location) for c in beside if c.effect in BELTS for other in BELTS}  # one belt gives in one way
     base = judge.base
     start = judge.nothing.fit if not beside else Design(base, beside).fit(scale=judge.nothing.fit.scale, rounds=ROUNDS)
     found = screen.screen(base, start, [w for w in wanted if w not in taken], judge.threads, beside)
@@ -261,6 +274,8 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[sha
         return "unknown" if excess > rules.largest_excess or beyond else "none"
     left = float(judge.gap(chosen.held.square, rows))
     far = rules.far_required ** (1 / len(chosen.causes))  # several causes that still leave much are the less likely
+    if all(c.effect in BELTS for c in chosen.causes):  # what rotors do on belts that give much is known to first order alone
+        far = rules.required
     needed = far if left > rules.far else rules.required if left > rules.largest_excess else -np.inf
     short = judge.closed(chosen.held, rows, chosen.held) < needed and not sticks_alone(judge, chosen, rows)
     limited = sum(c.effect == "torque_saturation" for c in chosen.causes)
