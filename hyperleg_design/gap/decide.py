@@ -274,7 +274,7 @@ def _verdict(judge: Judge, chosen: Model, rows: np.ndarray, shaped: Sequence[sha
         return "unknown" if excess > rules.largest_excess or beyond else "none"
     left = float(judge.gap(chosen.held.square, rows))
     far = rules.far_required ** (1 / len(chosen.causes))  # several causes that still leave much are the less likely
-    if all(c.effect in BELTS for c in chosen.causes):  # what rotors do on belts that give much is known to first order alone
+    if chosen.causes[0].effect in BELTS:  # what rotors do on belts that give much is known to first order alone
         far = rules.required
     needed = far if left > rules.far else rules.required if left > rules.largest_excess else -np.inf
     short = judge.closed(chosen.held, rows, chosen.held) < needed and not sticks_alone(judge, chosen, rows)

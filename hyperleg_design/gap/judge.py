@@ -23,9 +23,9 @@ EXCESSIVE = 0.25
 """A row counts for the gap from this share of the largest excess of any row."""
 PER_PARAMETER = 0.5
 """Log prior odds against each parameter, beside what held-out data say."""
-RARE = {"transmission_ratio": -0.5, "voltage_sag": -1.0, "thermal_derating": -0.5, "controller_gain": -1.5}
+RARE = {"transmission_ratio": -0.5, "voltage_sag": -1.0, "thermal_derating": -0.5, "controller_gain": -1.5, "link_com": -1.0}
 """Log prior odds of effects that look like another and are rarer (assumed: belts have the ratio of their teeth, controllers the gains
-that they were told)."""
+that they were told, links the centre of mass of their drawing, while zeros of encoders slip)."""
 LARGEST_ERROR, HEAVIER, OWN_MASS = 0.8, 5.0, 0.1
 """Error over a link's own mass from which it is rather something that hangs there; log odds for as much again; the usual error."""
 UNSEEN = {"voltage_sag": 6.0, "thermal_derating": 1.0}
@@ -34,6 +34,9 @@ NEGATIVE = 8.0
 """Log prior odds against a load that weighs less than nothing, beyond what is declared."""
 INWARD, OUTERMOST = 3.0, 2.0
 """Log prior odds against a load far from the ends of a robot, and for one on a link that carries none (assumed: loads hang on hands)."""
+GONE, FRICTIONLESS, HALF = ("coulomb_friction", "viscous_friction"), 4.0, 0.5
+"""Effects of which a model may have too much, and log odds against more than this share of the model's being missing (assumed: friction
+that nobody described is usual, and joints run in, but none runs freely)."""
 CHATTERS = 12.0
 """Log odds for what can make control loops unstable, where one chatters that was damped (assumed: healthy loops are)."""
 PRESENT = 0.05
@@ -233,6 +236,8 @@ def _odds(cause: Cause, values: np.ndarray) -> float:
         found += CHATTERS
     if cause.unseen:
         found -= UNSEEN[cause.effect]
+    if cause.effect in GONE and values[0] < HALF * cause.low[0] < 0:
+        found -= FRICTIONLESS
     if cause.effect == "link_mass":
         found -= HEAVIER * max(abs(float(values[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0)
     if cause.effect == "payload":

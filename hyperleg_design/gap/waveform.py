@@ -27,7 +27,7 @@ LOWEST, HIGHEST = 6.0, 0.15
 NEAR, ALOOF = 1.5, 4.0
 """How far from a line noise begins, and how far it is looked at, in 1 / `WINDOW`."""
 LINE = 0.4
-"""Share of the squares of accelerations above half of `LOWEST` which a line has."""
+"""Share of the squares of speeds above `LOWEST` which a line has."""
 COMMANDED = 0.3
 """Amplitude of the targets over that of the joints, from which a line is commanded."""
 HARMONIC, CLEAR, WINDOWS = 0.02, 1.8, 5
@@ -75,10 +75,10 @@ def _looked(signals: Signals, motor: int) -> np.ndarray:
     found = []
     for start in range(0, len(way) - size + 1, size // 2):
         moved, asked = (_spectrum(values[start : start + size]) for values in (way, wanted))
-        power = np.abs(moved) ** 2 * frequency**4
+        power = np.abs(moved * frequency) ** 2
         place = int(np.argmax(np.where(able, power, 0.0)))
         line = frequency[place]
-        share = power[np.abs(frequency - line) <= NEAR / WINDOW].sum() / max(float(power[frequency > LOWEST / 2].sum()), 1e-300)
+        share = power[np.abs(frequency - line) <= NEAR / WINDOW].sum() / max(float(power[frequency > LOWEST - 1 / WINDOW].sum()), 1e-300)
         if share < LINE or abs(asked[place]) > COMMANDED * abs(moved[place]):
             continue
         apart = np.abs(frequency - 3 * line)

@@ -35,7 +35,11 @@ def test_play_is_told_from_a_spring_by_the_third_harmonic_of_the_motor(robot_fil
     subject = load_subject(robot_files["coupled"])
     count = len(subject.joints)
     angle = np.exp(2j * np.pi * 20 * TIME)[:, None] * np.ones(count)
-    sine = Swing(20.0, 20.0, angle, 0.01 * angle)
-    assert not any(sharp(sine, subject, m) for m in range(len(subject.motors)))
-    square = replace(sine, third=angle / 9)  # of a triangle
-    assert all(sharp(square, subject, m) for m in range(len(subject.motors)))
+    motors = range(len(subject.motors))
+    sine = Swing(20.0, 20.0, angle, 0.01 * angle**3, False)
+    assert not any(sharp(sine, subject, m) for m in motors)
+    triangle = replace(sine, third=angle**3 / 9)
+    assert all(sharp(triangle, subject, m) for m in motors)
+    assert not any(sharp(replace(sine, third=-(angle**3) / 9), subject, m) for m in motors), "rounded off at its turns, not knocked"
+    assert not any(sharp(replace(sine, third=angle / 9), subject, m) for m in motors), "a line of its own"
+    assert all(sharp(replace(sine, third=np.conj(angle**3) / 9, folded=True), subject, m) for m in motors)
