@@ -73,7 +73,7 @@ def test_what_a_joint_holds_at_rest_speaks_for_its_breakaway_friction_alone():
 
 def test_searches_begin_on_several_sides_where_there_is_a_choice():
     backlash, plain = EFFECTS["backlash"], EFFECTS["controller_gain"]
-    starts = np.array([[0.01, 0.0, 0.0], [0.04, 0.0, 0.0], [0.02, 1.0, 1.0], [0.05, 1.0, 1.0], [0.01, 0.0, 1.0]])
+    starts = np.array([[0.01, 0.0, 0.0, 0.0], [0.04, 0.0, 0.0, 0.0], [0.02, 1.0, 1.0, 0.0], [0.05, 1.0, 1.0, 0.0], [0.01, 1.0, 1.0, 1.0]])
     np.testing.assert_array_equal(_unlike(backlash, starts), starts[[0, 2, 4]])
     np.testing.assert_array_equal(_unlike(backlash, starts[:2]), starts[:2])
     gains = np.array([[0.8, 0.8], [1.25, 1.25], [0.8, 1.0]])

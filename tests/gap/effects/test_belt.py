@@ -44,6 +44,33 @@ def test_joints_that_rub_behind_a_belt_turn_round_later_than_their_rotors(pendul
     assert not nothing.any(), "another law of friction alone is no belt"
 
 
+def test_friction_before_a_belt_is_in_neither_its_load_nor_what_stretches_it(pendulum):
+    subject = dataclasses.replace(pendulum(Wrong()).subject, coulomb=np.array([0.8]), viscous=np.array([0.1]))
+    signals = condition(run(Wrong()), subject)
+    rubs = 0.8 * np.tanh(signals.velocity[:, 0] / subject.friction_speed[0]) + 0.1 * signals.velocity[:, 0]
+    away = slice(100, -100)
+    for with_it, without in (
+        (belt.load(signals, 0), belt.frictionless(signals, 0)),
+        (belt.given(signals, 0), belt.given(signals, 0, rubs=False)),
+    ):
+        assert np.std((with_it - without - rubs)[away]) < 0.15 * np.std(rubs[away])  # all but what is too fast for belts
+
+
+def test_a_joint_left_behind_in_its_play_is_slowed_by_its_own_friction(pendulum):
+    slow = (15.0, 0.5)
+    subject = dataclasses.replace(pendulum(Wrong(), gains=slow).subject, coulomb=np.array([0.5]))
+    rubbing = condition(run(Wrong(coulomb=0.5, play=0.04, motor_side=True), gains=slow), subject)
+    gliding = pendulum(Wrong(play=0.04, motor_side=True), gains=slow)
+    width, on, off = np.full(1, 0.04), np.ones(1), np.zeros(1)
+
+    def left(signals, behind):
+        return misfit(signals, belt.trace(signals, 0, belt.slack(signals, 0, width, on, on, behind), on, behind=behind))
+
+    assert left(rubbing, on) < 0.8 * left(rubbing, off)
+    assert left(gliding, off) < 0.5
+    np.testing.assert_allclose(belt.slack(gliding, 0, width, on, on, on), belt.slack(gliding, 0, width, on, on, off), atol=1e-12)  # it has none
+
+
 def test_side_one_is_another_posture(pendulum):
     signals = pendulum(Wrong())
     moved = np.full((1, len(signals.time)), 0.02)
