@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 from diagnosed import in_episodes
 
-from hyperleg_design.gap.decide import _as_healthy, _fails, _verdict
+from hyperleg_design.gap.decide import BELTS, DECISIVE, _as_healthy, _fails, _finalists, _told_apart, _verdict
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.judge import Judge, rank
 from hyperleg_design.gap.thresholds import load_thresholds
@@ -49,6 +49,40 @@ def test_several_drives_at_limits_that_nobody_declared_have_something_else_in_co
     limit = replace(found.model.causes[0], effect="torque_saturation")
     for causes, verdict in (((limit,), "explained"), ((limit, replace(limit, location="hip")), "unknown")):
         assert _verdict(judge, replace(found.model, causes=causes), found.rows, ()) == verdict
+
+
+def test_a_belt_may_leave_more_of_a_large_gap_than_other_causes(judged):
+    judge, found = judged
+    closed = judge.closed(found.model.held, found.rows, found.model.held)
+    strict = replace(judge.thresholds, far=0.0, far_required=1.01 * closed, required=0.9 * closed)
+    belt = replace(found.model.causes[0], effect=BELTS[1])
+    for causes, verdict in ((found.model.causes, "unknown"), ((belt,), "explained")):
+        assert _verdict(replace(judge, thresholds=strict), replace(found.model, causes=causes), found.rows, ()) == verdict
+
+
+def test_balances_that_tell_play_from_a_spring_by_far_are_believed(judged):
+    model = judged[1].model
+    play, spring, elsewhere = (
+        replace(model, causes=(replace(model.causes[0], effect=effect, location=place),))
+        for effect, place in ((BELTS[0], "knee"), (BELTS[1], "knee"), (BELTS[1], "hip"))
+    )
+    heard = SimpleNamespace(location="knee")
+    assert _told_apart(spring, [spring, elsewhere], heard)
+    assert not _told_apart(spring, [spring, replace(play, gain=play.gain - DECISIVE / 2)], heard)
+    assert _told_apart(spring, [spring, replace(play, gain=play.gain - 2 * DECISIVE)], heard)
+    assert not _told_apart(elsewhere, [elsewhere, spring], heard)
+    assert not _told_apart(model, [model], heard)
+
+
+def test_a_belt_gives_in_one_way(judged):
+    judge, found = judged
+    first, second = judge.base.samples.sieves[0].signals.subject.motors[:2]
+    beside = (replace(found.model.causes[0], effect=BELTS[0], location=first),)
+    wanted = [(effect, place) for effect in BELTS for place in (first, second)]
+    models, not_judged = _finalists(judge, wanted, beside)
+    tried = {m.causes[-1].name for m in models} | {(n.effect, n.location) for n in not_judged}
+    assert tried
+    assert {place for _, place in tried} == {second}
 
 
 def supplied(voltage, nominal):
