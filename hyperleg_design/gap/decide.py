@@ -197,8 +197,7 @@ def _from(models: Sequence[Model], named: Model) -> tuple[Model, ...]:
 
 def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence[Cause]) -> tuple[list[Model], list[screen.NotJudged]]:
     """Best candidates beside given causes, as models on held-out blocks, best first."""
-    taken = {c.name for c in beside} | {(other, c.location) for c in beside if c.effect in BELTS for other in BELTS}  # one belt gives in one way
-    base = judge.base
+    taken, base = _taken(beside), judge.base
     start = judge.nothing.fit if not beside else Design(base, beside).fit(scale=judge.nothing.fit.scale, rounds=ROUNDS)
     found = screen.screen(base, start, [w for w in wanted if w not in taken], judge.threads, beside)
     candidates = [c for c in found if isinstance(c, screen.Candidate)]
@@ -208,6 +207,11 @@ def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence
     models = screen.spread(lambda pair: judge.model([*beside, pair[1].cause]), refined[:FINALISTS], judge.threads)
     models.sort(key=lambda m: (-rank(m), m.names))
     return models, [c for c in found if isinstance(c, screen.NotJudged)]
+
+
+def _taken(beside: Sequence[Cause]) -> set[tuple[str, str]]:
+    """What no further cause can be: those that are known, and another way in which the belt of one of them gives."""
+    return {(effect, c.location) for c in beside for effect in (BELTS if c.effect in BELTS else (c.effect,))}
 
 
 def _refined(base: Base, candidate: screen.Candidate, start: Fit, beside: Sequence[Cause]) -> float:
