@@ -56,6 +56,8 @@ class Model:
     held: Held
     gain: float
     """Log-likelihood of held-out blocks over that of no cause, and how much more plausible the calibration errors are."""
+    below: float = 0.0
+    """Part of `gain` that is noise less than its floor."""
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
@@ -156,7 +158,9 @@ class Judge:
         fit = design.fit(scale=self.nothing.fit.scale, rounds=ROUNDS)
         held = predict(design, fit=fit)
         model = Model(tuple(causes), fit, held, self.gain(fit, held))
-        return replace(model, gain=model.gain + sum(SURE * self.held(model, joint) ** 2 for joint in self.holds)) if self.holds else model
+        if self.holds:
+            model = replace(model, gain=model.gain + sum(SURE * self.held(model, joint) ** 2 for joint in self.holds))
+        return replace(model, below=model.gain - self.over(model))
 
     def held(self, model: Model, joint: str) -> float:
         """Share of what a joint holds that a model explains."""
@@ -220,8 +224,8 @@ class Judge:
 
 
 def rank(model: Model) -> float:
-    """Held-out likelihood and what is plausible before any log."""
-    return model.gain + plausible(model)
+    """Held-out likelihood over the floor, as less noise than that tells causes apart no better, and what is plausible before any log."""
+    return model.gain - model.below + plausible(model)
 
 
 def plausible(model: Model) -> float:
