@@ -281,7 +281,7 @@ class _Report:
         tables = []
         for place, slot in enumerate(slots):
             models = list({m.names: m for m in [*slot, *([found.model] if found.slots else [])]}.values())
-            other = found.model.gain if place == len(slots) - 1 and found.slots else max((m.gain for m in models), default=0.0)
+            other = found.model.over if place == len(slots) - 1 and found.slots else max((m.over for m in models), default=0.0)
             none = 0.0 if place == 0 else _without(found, place)
             unlisted = other + (CHATTERS if found.chatter else shaped - rules.unlisted)
             scores = np.array([*(rank(m) for m in models), none, unlisted])
@@ -385,4 +385,4 @@ class _Report:
 
 def _without(found: Decision, place: int) -> float:
     """Gain of the model before a cause was added, for slots after the first."""
-    return max((m.gain for m in found.slots[place - 1] if len(m.causes) == place), default=0.0)
+    return max((m.over for m in found.slots[place - 1] if len(m.causes) == place), default=0.0)

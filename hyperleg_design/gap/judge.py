@@ -64,6 +64,11 @@ class Model:
         """Effects and locations."""
         return tuple(c.name for c in self.causes)
 
+    @property
+    def over(self) -> float:
+        """`gain`, were no noise less than its floor."""
+        return self.gain - self.below
+
     def values(self, place: int) -> np.ndarray:
         """Fitted parameters of one cause."""
         cause = self.causes[place]
@@ -225,7 +230,7 @@ class Judge:
 
 def rank(model: Model) -> float:
     """Held-out likelihood over the floor, as less noise than that tells causes apart no better, and what is plausible before any log."""
-    return model.gain - model.below + plausible(model)
+    return model.over + plausible(model)
 
 
 def plausible(model: Model) -> float:
