@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TYPE_CHECKING, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -42,6 +43,8 @@ BREAKAWAY = "stribeck_friction"
 """Effect of joints that stick."""
 DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
 """Signals of `Signals` that drive an effect."""
+
+_TRACED: WeakKeyDictionary[Samples, dict[tuple[str, str], NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]]] = WeakKeyDictionary()
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -199,21 +202,35 @@ class _Rough:
     gain: float
 
 
-def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[Cause]) -> Candidate | NotJudged | _Rough:
-    effect = EFFECTS[name]
+def _traced(base: Base, effect: Effect, location: str) -> NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]:
+    """What an effect at a place leaves, whatever is beside it: linearised, or starts `(s, k)` and their traces `(s, S)`. Kept."""
+    kept = _TRACED.setdefault(base.samples, {})
+    name = effect.identifier, location
+    if name not in kept:
+        kept[name] = _trace(base, effect, location)
+    return kept[name]
+
+
+def _trace(base: Base, effect: Effect, location: str) -> NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]:
     missing = lacking(effect, location, [s.signals for s in base.samples.sieves])
     if missing:
-        return NotJudged(name, location, missing)
+        return NotJudged(effect.identifier, location, missing)
+    unexcited = NotJudged(effect.identifier, location, "these logs do not excite it")
     if effect.linear:
         causes = [linearise(base.samples, effect, location, values) for values in _variants(base, effect, location)]
-        shown = [c for c in causes if c is not None and reach(base.samples, c.columns) >= SHOWN]
-        if not shown:
-            return NotJudged(name, location, "these logs do not excite it")
-        return max((_candidate(base, c, nothing, beside) for c in shown), key=lambda c: c.gain)
+        return [c for c in causes if c is not None and reach(base.samples, c.columns) >= SHOWN] or unexcited
     starts = _starts(base, effect, location)
     columns = base.samples.columns(lambda s: effect.trace(s, location, starts), len(starts))
-    if columns is None or reach(base.samples, columns) < SHOWN:
-        return NotJudged(name, location, "these logs do not excite it")
+    return unexcited if columns is None or reach(base.samples, columns) < SHOWN else (starts, columns)
+
+
+def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[Cause]) -> Candidate | NotJudged | _Rough:
+    traced = _traced(base, EFFECTS[name], location)
+    if isinstance(traced, NotJudged):
+        return traced
+    if isinstance(traced, list):
+        return max((_candidate(base, c, nothing, beside) for c in traced), key=lambda c: c.gain)
+    starts, columns = traced
     gains = []
     none, one = np.zeros(0), np.zeros(1)
     for column in columns:
