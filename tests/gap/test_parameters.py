@@ -50,3 +50,10 @@ def test_intervals_end_at_bounds_and_scale_with_the_rule():
     wide = parameters(judge(2.0), model_of("coulomb_friction", [0.3], [0.1]), 0)["torque"]
     assert wide.high - wide.value == pytest.approx(2 * (narrow.high - narrow.value))
     assert narrow.low >= EFFECTS["coulomb_friction"].parameters[0].low
+
+
+def test_sizes_of_belts_are_no_better_known_than_their_traces():
+    sure = parameters(judge(), model_of("backlash", [0.02, 1.0, 1.0, 0.0], [1e-5, 0, 0, 0]), 0)["angle"]
+    assert (sure.low, sure.high) == pytest.approx((0.02 * (1 - 1.96 * 0.15), 0.02 * (1 + 1.96 * 0.15)), rel=1e-3)
+    doubtful = parameters(judge(), model_of("backlash", [0.02, 1.0, 1.0, 0.0], [0.004, 0, 0, 0]), 0)["angle"]
+    assert doubtful.high - 0.02 == pytest.approx(1.96 * np.hypot(0.004, 0.003), rel=1e-6)
