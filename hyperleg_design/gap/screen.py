@@ -41,6 +41,8 @@ PROMISING = 0.1
 
 BREAKAWAY = "stribeck_friction"
 """Effect of joints that stick."""
+KEPT = 2**29
+"""Memory for traces that further causes are tried with, too [byte]; what is more is traced anew."""
 DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
 """Signals of `Signals` that drive an effect."""
 
@@ -203,12 +205,22 @@ class _Rough:
 
 
 def _traced(base: Base, effect: Effect, location: str) -> NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]:
-    """What an effect at a place leaves, whatever is beside it: linearised, or starts `(s, k)` and their traces `(s, S)`. Kept."""
+    """What an effect at a place leaves, whatever is beside it: linearised, or starts `(s, k)` and their traces `(s, S)`. Kept, up to `KEPT`."""
     kept = _TRACED.setdefault(base.samples, {})
     name = effect.identifier, location
-    if name not in kept:
-        kept[name] = _trace(base, effect, location)
-    return kept[name]
+    if name in kept:
+        return kept[name]
+    found = _trace(base, effect, location)
+    if sum(map(_size, kept.copy().values())) + _size(found) <= KEPT:
+        kept[name] = found
+    return found
+
+
+def _size(traced: NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]) -> int:
+    """Memory that traces take [byte]."""
+    if isinstance(traced, NotJudged):
+        return 0
+    return sum(c.columns.nbytes + c.constant.nbytes for c in traced) if isinstance(traced, list) else sum(a.nbytes for a in traced)
 
 
 def _trace(base: Base, effect: Effect, location: str) -> NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]:

@@ -4,6 +4,7 @@ import diagnosed
 import numpy as np
 import pytest
 
+from hyperleg_design.gap import screen as module
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.fit import Design
 from hyperleg_design.gap.screen import Candidate, NotJudged, _unlike, at_rest, descend, lacking, linearise, places, screen
@@ -78,3 +79,19 @@ def test_searches_begin_on_several_sides_where_there_is_a_choice():
     np.testing.assert_array_equal(_unlike(backlash, starts[:2]), starts[:2])
     gains = np.array([[0.8, 0.8], [1.25, 1.25], [0.8, 1.0]])
     np.testing.assert_array_equal(_unlike(plain, gains), gains[:2])
+
+
+def test_traces_are_kept_while_they_are_few_and_change_no_answer(judged, monkeypatch):
+    judge, wanted = judged[0], [("viscous_friction", "knee"), ("coulomb_friction", "hip"), ("controller_gain", "knee")]
+
+    def gains():
+        return [one.gain for one in screen(judge.base, judge.nothing.fit, wanted) if isinstance(one, Candidate)]
+
+    module._TRACED.clear()
+    first = gains()
+    assert module._TRACED[judge.base.samples].keys() == set(wanted)
+    assert gains() == first
+    monkeypatch.setattr(module, "KEPT", 0)
+    module._TRACED.clear()
+    assert gains() == first
+    assert all(isinstance(one, NotJudged) for one in module._TRACED[judge.base.samples].values())
