@@ -384,5 +384,5 @@ class _Report:
 
 
 def _without(found: Decision, place: int) -> float:
-    """Gain of the model before a cause was added, for slots after the first."""
+    """Evidence over the floor of the model before a cause was added, for slots after the first."""
     return max((m.over for m in found.slots[place - 1] if len(m.causes) == place), default=0.0)

@@ -66,7 +66,7 @@ class Model:
 
     @property
     def over(self) -> float:
-        """`gain`, were no noise less than its floor."""
+        """As `gain`, were no noise less than its floor: what a model makes better of less than that is no evidence of a gap."""
         return self.gain - self.below
 
     def values(self, place: int) -> np.ndarray:
@@ -165,7 +165,7 @@ class Judge:
         model = Model(tuple(causes), fit, held, self.gain(fit, held))
         if self.holds:
             model = replace(model, gain=model.gain + sum(SURE * self.held(model, joint) ** 2 for joint in self.holds))
-        return replace(model, below=model.gain - self.over(model))
+        return replace(model, below=held.total - held.over - (self.nothing.held.total - self.nothing.held.over))
 
     def held(self, model: Model, joint: str) -> float:
         """Share of what a joint holds that a model explains."""
@@ -174,10 +174,6 @@ class Judge:
     def gain(self, fit: Fit, held: Held) -> float:
         """Log-likelihood of held-out blocks over that of no cause, the cost of the calibration errors taken into account."""
         return held.total - self.nothing.held.total + self.nothing.fit.implausible - fit.implausible
-
-    def over(self, model: Model) -> float:
-        """As `gain`, were no noise less than its floor: what a model makes better of less than that is no evidence of a gap."""
-        return model.gain - (model.held.total - model.held.over) + (self.nothing.held.total - self.nothing.held.over)
 
     def shown(self, model: Model, place: int) -> np.ndarray:
         """Mean square of one cause's trace in each row, and in its episodes, over the floor `(2 rows,)`."""

@@ -22,7 +22,7 @@ from hyperleg_design.gap.diagnosis import Named, Value
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.belt import rotor
 from hyperleg_design.gap.heard import RINGING, Heard
-from hyperleg_design.gap.smoothing import bridged
+from hyperleg_design.gap.smoothing import filled
 from hyperleg_design.gap.swing import Swing, band, loudest, rms, sharp, swing
 
 if TYPE_CHECKING:
@@ -124,14 +124,9 @@ def _line(signals: Signals) -> _Line | None:
     need = applied(subject.motor_from_joint, parts[0]) + 1j * applied(subject.motor_from_joint, parts[1])
     inertias = np.array([rotor(subject, m) for m in range(len(subject.motors))])
     return _Line(
-        found.frequency, need, need - inertias * (acceleration @ subject.joint_from_motor), band(_filled(signals.believed), step, found.seen),
+        found.frequency, need, need - inertias * (acceleration @ subject.joint_from_motor), band(filled(signals.believed), step, found.seen),
         found,
     )  # fmt: skip
-
-
-def _filled(values: np.ndarray) -> np.ndarray:
-    """Torques without gaps; 0 where nothing is known."""
-    return np.stack([bridged(column) if np.isfinite(column).any() else np.zeros(len(column)) for column in values.T], -1)
 
 
 def _limit(subject: Subject, torque: np.ndarray) -> np.ndarray:

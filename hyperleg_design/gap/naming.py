@@ -42,7 +42,7 @@ def worth_naming(judge: Judge, model: Model) -> bool:
         return False
     if at_rest(judge, model):
         return True
-    if judge.over(model) < least or unshown(judge, model):
+    if model.over < least or unshown(judge, model):
         return False
     if shows_in_a_band(judge, model, judge.nothing):
         return True
@@ -83,7 +83,7 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
 def shows_in_a_band(judge: Judge, model: Model, before: Model) -> bool:
     """Whether the last cause is over the floor in one band at least, with much evidence over the floor: a row's fast noise may hide it."""
     least = judge.thresholds.second_evident * max(len(before.causes), 1)
-    if model.causes[-1].effect in AT_LIMITS or model.gain - before.gain < PLAIN * least or judge.over(model) - judge.over(before) < least:
+    if model.causes[-1].effect in AT_LIMITS or model.gain - before.gain < PLAIN * least or model.over - before.over < least:
         return False
     bands = judge.shown_in_bands(model, len(model.causes) - 1)[~judge.base.samples.episodic]
     return float(np.sqrt(bands.max())) >= 1.0

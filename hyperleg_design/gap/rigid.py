@@ -386,8 +386,12 @@ def pad_rolling(subject: Subject, position: np.ndarray, rotation: np.ndarray, st
 
 def friction_torque(subject: Subject, position: np.ndarray, velocity: np.ndarray, swing: np.ndarray | None = None) -> np.ndarray:
     """Nominal friction and springs that a drive has to overcome `(..., n)` [Nm]; `swing` of `chatter.Chatter.speed`."""
-    dry = subject.coulomb * turned(velocity, subject.friction_speed, swing)
-    return np.asarray(dry + subject.viscous * velocity + subject.spring * (position - subject.spring_rest))
+    return np.asarray(rubbing_torque(subject, velocity, swing) + subject.spring * (position - subject.spring_rest))
+
+
+def rubbing_torque(subject: Subject, velocity: np.ndarray, swing: np.ndarray | None = None) -> np.ndarray:
+    """Nominal friction alone `(..., n)` [Nm]; arguments as of `friction_torque`."""
+    return np.asarray(subject.coulomb * turned(velocity, subject.friction_speed, swing) + subject.viscous * velocity)
 
 
 def turned(velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray | None = None) -> np.ndarray:

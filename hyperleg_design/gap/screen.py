@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import zip_longest
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -46,7 +46,7 @@ KEPT = 2**29
 DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
 """Signals of `Signals` that drive an effect."""
 
-_TRACED: WeakKeyDictionary[Samples, dict[tuple[str, str], NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]]] = WeakKeyDictionary()
+_TRACED: WeakKeyDictionary[Samples, dict[tuple[str, str], _Traces]] = WeakKeyDictionary()
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -74,6 +74,10 @@ class NotJudged:
     effect: str
     location: str
     reason: str
+
+
+_Traces: TypeAlias = NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]
+"""Why an effect at a place is not judged; it linearised, in each variant; or starts `(s, k)` and their traces `(s, S)`."""
 
 
 def spread(job: Callable[[T], R], items: Sequence[T], threads: int) -> list[R]:
@@ -204,8 +208,8 @@ class _Rough:
     gain: float
 
 
-def _traced(base: Base, effect: Effect, location: str) -> NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]:
-    """What an effect at a place leaves, whatever is beside it: linearised, or starts `(s, k)` and their traces `(s, S)`. Kept, up to `KEPT`."""
+def _traced(base: Base, effect: Effect, location: str) -> _Traces:
+    """What an effect at a place leaves, whatever is beside it; kept, up to `KEPT`."""
     kept = _TRACED.setdefault(base.samples, {})
     name = effect.identifier, location
     if name in kept:
@@ -216,14 +220,14 @@ def _traced(base: Base, effect: Effect, location: str) -> NotJudged | list[Cause
     return found
 
 
-def _size(traced: NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]) -> int:
+def _size(traced: _Traces) -> int:
     """Memory that traces take [byte]."""
     if isinstance(traced, NotJudged):
         return 0
     return sum(c.columns.nbytes + c.constant.nbytes for c in traced) if isinstance(traced, list) else sum(a.nbytes for a in traced)
 
 
-def _trace(base: Base, effect: Effect, location: str) -> NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]:
+def _trace(base: Base, effect: Effect, location: str) -> _Traces:
     missing = lacking(effect, location, [s.signals for s in base.samples.sieves])
     if missing:
         return NotJudged(effect.identifier, location, missing)

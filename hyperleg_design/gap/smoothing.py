@@ -145,6 +145,11 @@ def bridged(values: np.ndarray) -> np.ndarray:
     return values if known.all() else np.interp(ticks, ticks[known], values[known])
 
 
+def filled(values: np.ndarray) -> np.ndarray:
+    """Signals `(t, k)`, each `bridged`; 0 where nothing is known of one."""
+    return np.stack([bridged(column) if np.isfinite(column).any() else np.zeros(len(column)) for column in values.T], -1)
+
+
 def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: int) -> Noise:
     """Noise and crossover of largest Whittle likelihood.
 

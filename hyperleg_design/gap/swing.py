@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.channels import resampled
-from hyperleg_design.gap.waveform import HARMONIC, sharpness
+from hyperleg_design.gap.waveform import HARMONIC, THIRD, sharpness
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -23,8 +23,6 @@ SHOWN_PERIODS = 10
 """Of chatter, for the eye."""
 COMMANDED = 0.1
 """Highest frequency of commanded motion, over the log's rate (assumed)."""
-THIRD = 3
-"""The harmonic by which play differs from a spring."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -93,11 +93,12 @@ def unstable(signals: Sequence[Signals]) -> Heard | None:
     names = {name for found in matches for name in found}
     if not names:
         return None
-    score = {name: sum(found[name].score if name in found else MISSING for found in matches) - FREE * (name[0] == SPRING) for name in names}
+    goes = {name: sum(found[name].score if name in found else MISSING for found in matches) for name in names}
+    score = {name: goes[name] - FREE * (name[0] == SPRING) for name in names}
     order = sorted(score, key=lambda name: (-score[name], name))
     best = order[0]
     near = [name for name in order if score[name] > score[best] - APART]
-    if score[best] + FREE * (best[0] == SPRING) < GOOD * len(heard) or len(near) > MOST:
+    if goes[best] < GOOD * len(heard) or len(near) > MOST:
         return None
     shares = [found[best].share if best in found else 0.0 for found in matches]
     closed, *each = (float(1 - np.sqrt(1 - share)) for share in (float(np.mean(shares)), *shares))

@@ -15,11 +15,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from hyperleg_design.gap.channels import resampled
-from hyperleg_design.gap.smoothing import bridged
+from hyperleg_design.gap.smoothing import filled
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
 
+THIRD = 3
+"""The harmonic by which play differs from a spring."""
 WINDOW, PADDED = 1.0, 8
 """In which a swing is looked at [s], and zeros after it, in windows: lines between the frequencies of a window are seen."""
 LOWEST, HIGHEST = 6.0, 0.15
@@ -39,7 +41,7 @@ _SWINGS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 def sharpness(first: np.ndarray, third: np.ndarray) -> complex:
     """The z of amplitudes `(t,)`, complex; 0 of none."""
     size = float(np.sum(np.abs(first) ** 4))
-    return complex(np.sum(third * np.conj(first) ** 3) / size) if size > 0 else 0j
+    return complex(np.sum(third * np.conj(first) ** THIRD) / size) if size > 0 else 0j
 
 
 def knocks(signals: Sequence[Signals], motor: int) -> bool:
@@ -69,7 +71,7 @@ def _looked(signals: Signals, motor: int) -> np.ndarray:
     if signals.target is None or not able.any() or len(signals.time) < size:
         return np.zeros((3, 0), complex)
     weights = subject.joint_from_motor[:, motor]
-    way = np.nan_to_num(_filled(resampled(signals.log.time, signals.log.stack("position", subject.joints), signals.time)) @ weights)
+    way = filled(resampled(signals.log.time, signals.log.stack("position", subject.joints), signals.time)) @ weights
     wanted = np.nan_to_num(signals.target) @ weights
     turn = np.exp(2j * np.pi * frequency * (size - 1) / 2 * step)  # amplitudes in the middle of the window
     found = []
@@ -81,7 +83,7 @@ def _looked(signals: Signals, motor: int) -> np.ndarray:
         share = power[np.abs(frequency - line) <= NEAR / WINDOW].sum() / max(float(power[frequency > LOWEST - 1 / WINDOW].sum()), 1e-300)
         if share < LINE or abs(asked[place]) > COMMANDED * abs(moved[place]):
             continue
-        apart = np.abs(frequency - 3 * line)
+        apart = np.abs(frequency - THIRD * line)
         harmonic = int(np.argmin(apart))
         noise = np.median(np.abs(moved[(apart > NEAR / WINDOW) & (apart <= ALOOF / WINDOW)]))
         found.append((moved[place] * turn[place], moved[harmonic] * turn[harmonic], noise))
@@ -93,7 +95,3 @@ def _spectrum(values: np.ndarray) -> np.ndarray:
     time = np.linspace(-1.0, 1.0, len(values))
     rest = values - np.polyval(np.polyfit(time, values, 2), time)
     return np.asarray(np.fft.rfft(rest * np.hanning(len(values)), PADDED * len(values)))
-
-
-def _filled(values: np.ndarray) -> np.ndarray:
-    return np.stack([bridged(column) if np.isfinite(column).any() else np.zeros(len(column)) for column in values.T], -1)

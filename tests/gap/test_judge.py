@@ -46,9 +46,9 @@ def test_what_is_under_the_floor_is_no_evidence(judge, right, knee_friction):
     samples = replace(base.samples, floor=high * base.samples.floor)
     noisy = Judge(replace(base, samples=samples, errors=base.errors / high, value=base.value / high), judge.thresholds, 1)
     faint = noisy.model([knee_friction])
-    assert judge.over(right) > 0.6 * right.gain
+    assert right.over > 0.6 * right.gain
     errors = noisy.nothing.fit.implausible - faint.fit.implausible  # which explain it otherwise, and are unlikely over any floor
-    assert noisy.over(faint) - errors < judge.thresholds.evident < faint.gain - errors
+    assert faint.over - errors < judge.thresholds.evident < faint.gain - errors
 
 
 def test_every_block_once_is_all_blocks(judge, right):

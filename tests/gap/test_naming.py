@@ -49,11 +49,11 @@ def test_evidence_counts_over_the_floor_and_a_doubtful_cause_needs_more(gain, ov
     subject = SimpleNamespace(floating=floating)
     samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=subject))])
     judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds(), holds={})
-    judge.gap, judge.excess_rows, judge.over = lambda square, rows: square, lambda model: np.ones(2, bool), lambda model: over
+    judge.gap, judge.excess_rows = lambda square, rows: square, lambda model: np.ones(2, bool)
     judge.closed, judge.shown = lambda held, rows, before: 1.0, lambda model, place: np.array([9.0, 0.0])
-    judge.nothing = SimpleNamespace(gain=0.0, causes=())
+    judge.nothing = SimpleNamespace(gain=0.0, over=0.0, causes=())
     causes = (SimpleNamespace(effect="backlash", location="knee", unsettling=unsettling, unseen=False, doubtful=doubtful),)
-    assert worth_naming(judge, SimpleNamespace(gain=gain, causes=causes, held=SimpleNamespace(bare=2.0, square=left))) is worth
+    assert worth_naming(judge, SimpleNamespace(gain=gain, over=over, causes=causes, held=SimpleNamespace(bare=2.0, square=left))) is worth
 
 
 @pytest.mark.parametrize(("effect", "gain", "over", "band", "already", "shows"), [
@@ -62,10 +62,10 @@ def test_evidence_counts_over_the_floor_and_a_doubtful_cause_needs_more(gain, ov
     ("joint_spring", 61.0, 31.0, 1.1, 2, True), ("torque_saturation", 31.0, 16.0, 1.1, 0, False),
 ])  # fmt: skip
 def test_what_is_slow_shows_in_its_band_where_a_row_is_noisy(effect, gain, over, band, already, shows):
-    before = SimpleNamespace(gain=5.0, causes=(None,) * already)
-    model = SimpleNamespace(gain=5.0 + gain, causes=(*before.causes, SimpleNamespace(effect=effect)))
+    before = SimpleNamespace(gain=5.0, over=3.0, causes=(None,) * already)
+    model = SimpleNamespace(gain=5.0 + gain, over=3.0 + over, causes=(*before.causes, SimpleNamespace(effect=effect)))
     samples = SimpleNamespace(episodic=np.array([False, False, True]))
-    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds(), over=lambda m: 3.0 + (over if m is model else 0.0))
+    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds())
     judge.shown_in_bands = lambda m, place: np.array([0.1, band**2, 9.0])
     assert shows_in_a_band(judge, model, before) is shows
 

@@ -91,8 +91,7 @@ def _friction(signals: Signals, motor: int) -> np.ndarray:
     """Nominal friction of the joints at a motor `(t,)` [Nm]."""
     subject = signals.subject
     swing = None if signals.chatter is None else signals.chatter.speed
-    rubs = subject.coulomb * rigid.turned(signals.velocity, subject.friction_speed, swing) + subject.viscous * signals.velocity
-    return applied(subject.motor_from_joint[motor : motor + 1], rubs)[:, 0]
+    return applied(subject.motor_from_joint[motor : motor + 1], rigid.rubbing_torque(subject, signals.velocity, swing))[:, 0]
 
 
 def transmitted(signals: Signals, motor: int) -> np.ndarray:
