@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -39,6 +40,8 @@ FINALISTS = 10
 REFINED = 24
 """Candidates that are fitted to the end before that."""
 MOST_CAUSES = 3
+PAIRED, PAIRS = 6, 2
+"""Of the finalists, how many are tried two by two, and pairs of these that are judged on held-out data."""
 SAGGED = 0.03
 """Share of the voltage that must be missing for a weak battery where reference logs tell what it is when all is well."""
 BELTS = (PLAY, SPRING)
@@ -187,6 +190,7 @@ def _chosen(judge: Judge, wanted: Sequence[tuple[str, str]], singles: list[Model
         chosen, slots = further, [*slots, _from(more, further)]
         if len(chosen.causes) == 2:
             chosen, slots = _swapped(judge, wanted, chosen, slots)
+            chosen, slots = _paired(judge, wanted, singles, chosen, slots)
     return chosen, slots
 
 
@@ -244,6 +248,27 @@ def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots
     if turned and rank(turned[0]) > rank(pair) + 1e-6 and turned[0].names != pair.names:
         return turned[0], [tuple(turned), slots[1]]
     return pair, [tuple(turned) if any(t.names == pair.names for t in turned) else slots[0], slots[1]]
+
+
+def _paired(
+    judge: Judge, wanted: Sequence[tuple[str, str]], singles: Sequence[Model], pair: Model, slots: list[tuple[Model, ...]]
+) -> tuple[Model, list[tuple[Model, ...]]]:
+    """Look for likelier pairs among the finalists: what imitates two causes together need be neither of them, nor lead to one."""
+    scale = judge.nothing.fit.scale
+    tried = [
+        [one.causes[0], other.causes[0]] for one, other in combinations(singles[:PAIRED], 2) if other.names[0] not in _taken(one.causes)
+    ]  # fmt: skip
+    order = screen.spread(lambda causes: Design(judge.base, causes).fit(scale=scale, rounds=ROUNDS).evidence, tried, judge.threads)
+    best = sorted(range(len(tried)), key=lambda i: (-order[i], i))[:PAIRS]
+    for found in sorted((judge.model(tried[i]) for i in best), key=lambda m: (-rank(m), m.names)):
+        if rank(found) <= rank(pair) + 1e-6 or set(found.names) == set(pair.names):
+            continue
+        alone = {one.names: one for one in singles}
+        if worth_adding(judge, found, alone[found.names[:1]]) and worth_adding(judge, _turned(found), alone[found.names[1:]]):
+            more, _ = _finalists(judge, wanted, found.causes[:1])
+            again = next((m for m in more if worth_adding(judge, m, alone[found.names[:1]])), found)
+            return _swapped(judge, wanted, again, [(again,), _from(more, again) if again in more else (again,)])
+    return pair, slots
 
 
 def _turned(model: Model) -> Model:

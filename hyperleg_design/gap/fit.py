@@ -62,7 +62,7 @@ class Cause:
     beyond: int = 1
     """Joints in a row that its link carries, see `Mechanism.beyond`."""
     odds: float = 0.0
-    """Log odds for it by what logs tell beside their balances, see `telling`."""
+    """Log odds for it by what logs tell beside their balances, see `telling`, and by its values, see `Effect.odds`."""
 
     @property
     def name(self) -> tuple[str, str]:

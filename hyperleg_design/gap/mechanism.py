@@ -76,6 +76,11 @@ class Mechanism:
         chains = [self.chain(j) for j in range(self.count)]
         return max(len(chain) - 1 - chain.index(joint) for chain in chains if joint in chain)
 
+    @property
+    def length(self) -> float:
+        """Of the longest chain, from its first joint to its last [m]."""
+        return max((float(np.linalg.norm(self.offset[self.chain(j)[1:]], axis=1).sum()) for j in range(self.count)), default=0.0)
+
     def link(self, name: str) -> int:
         """Place of a link, given by its own name or by that of the joint that carries it (its outermost link).
 

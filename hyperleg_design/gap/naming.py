@@ -27,6 +27,8 @@ CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
 PLAIN = 2.0
 """Times the evidence that a further cause needs from which it need only be as large as the floor to stand for large calibration errors."""
+APART = 0.2
+"""Share by which a further cause's evidence alone and beside the others may differ, where it has its own."""
 HELD = 0.5
 """Share of what a joint holds that friction must explain."""
 
@@ -67,17 +69,30 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
         return True
     if unshown(judge, model):
         return False
-    visible = _visible(judge, model)
-    if visible and gain >= rules.second_evident * already and _closes_own(judge, model, before, rules.second_worth, 1.0):
+    visible, own = _visible(judge, model), apart(judge, model, before)
+    if visible and (own or gain >= rules.second_evident * already) and _closes_own(judge, model, before, rules.second_worth, 1.0):
         return True
     # Large calibration errors may hide what it leaves; then it must show clearly, away from episodes, and be likelier than they are.
-    if gain < rules.second_instead * already or model.causes[-1].effect in AT_LIMITS or not _kept(model, before):
+    likely = own or gain >= rules.second_instead * already
+    if not likely or model.causes[-1].effect in AT_LIMITS or not _kept(model, before):
         return False
-    plain = gain >= PLAIN * rules.second_evident * already
+    plain = gain >= (1.0 if own else PLAIN) * rules.second_evident * already
     calm = judge.shown(model, already)[judge.calm]
     if visible and float(np.sqrt(calm.max())) >= (1.0 if plain else rules.second_visible):
         return True
     return shows_in_a_band(judge, model, before)
+
+
+def apart(judge: Judge, model: Model, before: Model) -> bool:
+    """Whether the last cause has evidence of its own: it needs as much as a first one, and has as much beside the others as alone.
+
+    What imitates a part of another cause, or mends what its model gets wrong, has not.
+    """
+    gain, over, least = model.gain - before.gain, model.over - before.over, judge.thresholds.evident_doubtful
+    if min(gain, over) < least:
+        return False
+    alone = judge.model(model.causes[-1:])
+    return min(alone.gain, alone.over) >= least and abs(gain - alone.gain) <= APART * gain
 
 
 def shows_in_a_band(judge: Judge, model: Model, before: Model) -> bool:

@@ -133,7 +133,8 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     shakes = _unsettling(samples, effect, location)
     return Cause(
         effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen, shakes,
-        effect.doubtful(values), subject.tree.beyond(location), telling.odds(effect.identifier, location, [s.signals for s in samples.sieves]),
+        effect.doubtful(values), subject.tree.beyond(location),
+        effect.odds(location, subject, values) + telling.odds(effect.identifier, location, [s.signals for s in samples.sieves]),
     )  # fmt: skip
 
 

@@ -78,3 +78,15 @@ def judged(robot_files):
     subject = ready.base.samples.sieves[0].signals.subject
     friction = ("viscous_friction", "coulomb_friction", "stribeck_friction", "torque_constant")
     return decide(ready.base, load_thresholds(), places(subject, friction))
+
+
+@pytest.fixture(scope="session")
+def two_wrong(robot_files):
+    """Judge of a coupled rig whose knee has viscous friction and whose hip rubs."""
+    import diagnosed
+
+    from hyperleg_design.gap.judge import Judge
+    from hyperleg_design.gap.thresholds import load_thresholds
+
+    ready = diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("both", s, session="a") for s in (0, 1)))
+    return Judge(ready.base, load_thresholds(), 1)

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 from diagnosed import in_episodes
 
-from hyperleg_design.gap.decide import BELTS, DECISIVE, _as_healthy, _fails, _taken, _told_apart, _verdict
+from hyperleg_design.gap.decide import BELTS, DECISIVE, _as_healthy, _fails, _finalists, _from, _paired, _taken, _told_apart, _verdict
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.judge import Judge, rank
 from hyperleg_design.gap.thresholds import load_thresholds
@@ -78,6 +78,20 @@ def test_a_belt_gives_in_one_way(judged):
     one = judged[1].model.causes[0]
     assert _taken([one]) == {one.name}
     assert _taken([one, replace(one, effect=BELTS[0], location="hip")]) == {one.name, (BELTS[0], "hip"), (BELTS[1], "hip")}
+
+
+def test_a_pair_that_none_of_its_rivals_leads_to_is_found_among_the_finalists(two_wrong):
+    true = {("viscous_friction", "knee"), ("coulomb_friction", "hip")}
+    wanted = [*true, ("coulomb_friction", "knee"), ("stribeck_friction", "hip"), ("viscous_friction", "hip")]
+    singles, _ = _finalists(two_wrong, wanted, ())
+    alone = {m.names[0]: m for m in singles}
+    wrong = two_wrong.model([alone["coulomb_friction", "knee"].causes[0], alone["viscous_friction", "hip"].causes[0]])
+    found, slots = _paired(two_wrong, wanted, singles, wrong, [(wrong,), (wrong,)])
+    assert set(found.names) == true
+    assert rank(found) > rank(wrong)
+    assert all(found.names in [m.names for m in slot] for slot in slots)
+    assert _paired(two_wrong, wanted, singles, found, slots) == (found, slots), "what is best stays"
+    assert _from([wrong, found], found) == (found,)
 
 
 def supplied(voltage, nominal):

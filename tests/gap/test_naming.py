@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from diagnosed import in_episodes
 
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.judge import rank
-from hyperleg_design.gap.naming import _visible, likelier, shows_in_a_band, stands_out, sticks_alone, unshown, worth_naming
+from hyperleg_design.gap.naming import _visible, apart, likelier, shows_in_a_band, stands_out, sticks_alone, unshown, worth_naming
+from hyperleg_design.gap.screen import linearise
 from hyperleg_design.gap.thresholds import load_thresholds
 
 
@@ -120,3 +122,18 @@ def test_a_cause_on_a_walk_must_be_nearly_as_large_as_the_floor():
         for size in (0.9 * least, 1.1 * least):
             judge.shown = lambda model, place, size=size: np.array([0.1, size]) ** 2
             assert _visible(judge, SimpleNamespace(causes=(None,))) is (size > least)
+
+
+def test_what_two_causes_tell_adds_up_and_what_an_imitation_tells_does_not(two_wrong):
+    samples, null = two_wrong.base.samples, np.zeros(1)
+    knee, hip, like_hip = (
+        linearise(samples, EFFECTS[effect], place, null)
+        for effect, place in (("viscous_friction", "knee"), ("coulomb_friction", "hip"), ("load_dependent_friction", "hip"))
+    )
+    least = two_wrong.thresholds.evident_doubtful
+    alone, both = two_wrong.model([knee]), two_wrong.model([knee, hip])
+    assert min(alone.gain, two_wrong.model([hip]).gain, two_wrong.model([like_hip]).gain) > least
+    assert apart(two_wrong, both, alone)
+    assert not apart(two_wrong, two_wrong.model([hip, like_hip]), two_wrong.model([hip]))
+    weak = replace(both, gain=alone.gain + 0.9 * least)
+    assert not apart(two_wrong, weak, alone), "as much as a first cause needs"

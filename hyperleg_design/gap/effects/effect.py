@@ -130,6 +130,10 @@ class Effect(ABC):
         """Whether at some values `(k,)` it is like what nobody models well of a healthy robot, so that it needs more evidence."""
         return False
 
+    def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
+        """Log prior odds for it at some values `(k,)`, over those at usual ones."""
+        return 0.0
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Values from which a search for the best fit to a log is worth while `(s, parameters)`, inside the bounds."""
         usual = self.usual(location, signals.subject)

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 
 SHARE = 0.2
 """Usual payload over the mass that moves with the link (assumed: tools and batteries; a UR10e carries 2.8 kg on 33 kg of arm)."""
+FAR, OUT_OF_REACH = 4.0, 3.0
+"""Log odds against a load that is farther from its link's origin than so many times the link's own centre of mass (assumed)."""
+NEAR = 0.4
+"""Share of the robot's length up to which none is far (assumed: batteries and tools are)."""
 
 
 class Payload(InertialEffect):
@@ -60,6 +64,15 @@ class Payload(InertialEffect):
         found = super().bounds(location, subject)
         found[0, 0] = max(found[0, 0], least_mass(subject, location))
         return found
+
+    def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
+        """Against a load out of the link's reach: what bends a motion like a pole with a weight is rather no load."""
+        own = subject.tree.link_inertial[subject.tree.link(location)]
+        near = NEAR * subject.tree.length
+        if own[0] > 0:
+            near = max(near, OUT_OF_REACH * float(np.linalg.norm(own[1:4])) / float(own[0]))
+        away = float(np.sqrt(values[1:4] @ values[1:4] + values[4]))
+        return -FAR if near > 0 and away > near else 0.0
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The mass and first moment that a linear fit to the log finds, and the usual mass where `example` has it."""

@@ -13,6 +13,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.inertial import AddedInertia, carried_mass
+from hyperleg_design.gap.effects.payload import FAR, NEAR
 from hyperleg_design.gap.mechanism import mechanism_of, pinocchio_model
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.simulation.alteration import edited
@@ -134,6 +135,14 @@ def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):
     start = one.starts(loaded, "wrist_1_link")[0]
     assert start[0] == pytest.approx(2.0, rel=0.15)
     np.testing.assert_allclose(start[1:], values[1:], atol=0.05)
+
+
+def test_a_load_out_of_its_links_reach_is_rather_none(arm):
+    one, reach = effect("payload"), NEAR * arm.subject.tree.length
+    assert reach == pytest.approx(NEAR * sum(np.linalg.norm(arm.subject.tree.offset[1:], axis=1)))
+    for away, own, likely in ((0.9 * reach, 0.0, True), (1.1 * reach, 0.0, False), (0.9 * reach, reach, False)):
+        values = np.array([0.5, 0.0, 0.0, away, own**2])
+        assert one.odds("wrist_3_link", arm.subject, values) == (0.0 if likely else -FAR)
 
 
 def test_bounds_leave_something_of_a_link(arm):
