@@ -230,15 +230,14 @@ def rank(model: Model) -> float:
 
 
 def plausible(model: Model) -> float:
-    """Log prior of a model's causes, each over that of any other in its place."""
-    return sum(_odds(cause, model.values(place)) for place, cause in enumerate(model.causes))
+    """Log prior of a model's causes, each over that of any other in its place; that loops chatter is explained once."""
+    odds = sum(_odds(cause, model.values(place)) for place, cause in enumerate(model.causes))
+    return odds + CHATTERS * any(cause.unsettling for cause in model.causes)
 
 
 def _odds(cause: Cause, values: np.ndarray) -> float:
     free = int((~cause.shape).sum() if cause.linear else (cause.high > cause.low).sum())
     found = -PER_PARAMETER * free + RARE.get(cause.effect, 0.0) + cause.odds
-    if cause.unsettling:
-        found += CHATTERS
     if cause.unseen:
         found -= UNSEEN[cause.effect]
     if cause.effect in GONE and values[0] < HALF * cause.low[0] < 0:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.judge import INWARD, OUTERMOST, PER_PARAMETER, RARE, Judge, plausible, rank
+from hyperleg_design.gap.judge import CHATTERS, INWARD, OUTERMOST, PER_PARAMETER, RARE, Judge, plausible, rank
 from hyperleg_design.gap.screen import linearise
 from hyperleg_design.gap.thresholds import load_thresholds
 
@@ -97,6 +97,13 @@ def test_loads_hang_at_the_ends_and_odds_are_of_all_causes(judge, right):
     assert plausible(replace(right, causes=(hung,))) - plausible(inward) == pytest.approx(INWARD)
     both = judge.model([right.causes[0], replace(right.causes[0], location="hip")])
     assert plausible(both) == pytest.approx(2 * plausible(right))
+
+
+def test_loops_that_chatter_are_explained_once(judge, right):
+    late = replace(right.causes[0], unsettling=True)
+    one, both = (judge.model([late, *more]) for more in ((), (replace(late, location="hip"),)))
+    assert plausible(one) == pytest.approx(plausible(right) + CHATTERS)
+    assert plausible(both) == pytest.approx(2 * plausible(right) + CHATTERS)
 
 
 def test_rows_are_a_causes_own_where_it_shows_and_no_episodes_are(judge, right):
