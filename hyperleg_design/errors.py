@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import reprlib
+import textwrap
 from typing import Any
 
 _SHORT = reprlib.Repr()
@@ -44,6 +45,13 @@ def shown(value: object) -> str:
     except ValueError:  # Python refuses to write integers of thousands of digits
         return f"{type(value).__name__} too long to show"
     return text if len(text) <= 120 else text[:117] + "..."
+
+
+def in_short(error: Exception, width: int = 100) -> str:
+    """What a library says of an error: one line, cut where it is longer than `width` characters, between words unless one is very long."""
+    text = " ".join(str(error).split())
+    cut = textwrap.shorten(text, width, placeholder=" ...")
+    return cut if 2 * len(cut) > width or len(text) <= width else text[: width - 4] + " ..."
 
 
 class OutputError(HyperlegError):

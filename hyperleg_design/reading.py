@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 
 MAX_DEPTH = 50
 """Levels of nesting that a file may have."""
@@ -52,7 +52,7 @@ def read_json(path: Path, where: str = "") -> Any:
     except OSError as error:
         raise InputError(where or short_name(path), "", None, f"cannot be read ({error.strerror})") from None
     except (ValueError, RecursionError) as error:
-        raise InputError(where or short_name(path), "", None, f"is not JSON ({' '.join(str(error).split())[:80]})") from None
+        raise InputError(where or short_name(path), "", None, f"is not JSON ({in_short(error, 80)})") from None
 
 
 def parse_yaml(text: str) -> Any:

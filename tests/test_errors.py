@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hyperleg_design.errors import HyperlegError, InfeasibleError, InputError, OutputError, shown
+from hyperleg_design.errors import HyperlegError, InfeasibleError, InputError, OutputError, in_short, shown
 
 
 def test_text_names_where_field_value_and_remedy():
@@ -53,3 +53,10 @@ def test_a_field_with_odd_characters_stays_in_one_line():
     text = str(InputError("a.yaml", "x\ny" + "z" * 500, 1, "no such field"))
     assert "\n" not in text
     assert len(text) < 200
+
+
+@pytest.mark.parametrize(("said", "short"), [
+    ("no such\n  file", "no such file"), ("this is not a parquet file", "this is not a ..."), ("x" * 30, "x" * 16 + " ..."),
+])  # fmt: skip
+def test_what_libraries_say_is_cut_between_words(said, short):
+    assert in_short(ValueError(said), 20) == short

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.reading import short_name
 from hyperleg_design.robot.design import design_from_mapping
@@ -193,7 +193,7 @@ def _session(content: bytes, where: str) -> Any:
     try:
         return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
     except Exception as error:  # ONNX Runtime's errors share no base of their own
-        reason = " ".join(str(error).split())[:120]
+        reason = in_short(error, 120)
         raise InputError(where, "", None, f"is no whole ONNX file ({reason}); export it again") from None
 
 

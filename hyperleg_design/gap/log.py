@@ -33,7 +33,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.metadata import Metadata, metadata_from_mapping, read_metadata_mapping
 
 if TYPE_CHECKING:
@@ -209,7 +209,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     except FileNotFoundError:
         raise InputError(str(path), "", None, "does not exist") from None
     except (pyarrow.ArrowException, OSError, ValueError) as error:
-        raise InputError(path.name, "", None, f"is no whole Parquet file ({' '.join(str(error).split())[:90]}): record or copy it again") from None
+        raise InputError(path.name, "", None, f"is no whole Parquet file ({in_short(error, 90)}): record or copy it again") from None
     return finished_log(path, time, signals, metadata_beside(path, _inside(inside, path)), remarks)
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 
 ANGLE_TRANSMISSIONS = ("mjTRN_JOINT", "mjTRN_JOINTINPARENT", "mjTRN_TENDON")
 """Kinds of transmission whose torque per unit of force does not change with posture, as long as the tendon is fixed."""
@@ -286,7 +286,7 @@ def _name(model: Any, joint: int) -> str:
 
 
 def _line(error: Exception) -> str:
-    return " ".join(str(error).split())[:300]
+    return in_short(error, 300)
 
 
 def imu_site(spec: Any) -> str:

@@ -29,7 +29,7 @@ import numpy as np
 import torch
 
 from hyperleg_design import provenance
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.algorithm import IterationPPO, as_tensors, make_algorithm
 from hyperleg_design.learning.checkpoint import load_checkpoint, save_checkpoint
 from hyperleg_design.learning.export import export_policy
@@ -318,7 +318,7 @@ class Training:
         try:
             self.algorithm.load(content["networks"], None, True)
         except (RuntimeError, KeyError, ValueError) as error:
-            reason = " ".join(str(error).split())[:100]
+            reason = in_short(error, 100)
             raise InputError(f"{self.folder.name}/{CHECKPOINT}", "networks", None, f"do not fit this task, design and preset ({reason})") from None
         self.schedule.put(content["schedule"])
         self.schedule.apply(self.environment)

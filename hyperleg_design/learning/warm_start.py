@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import torch
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.export import FORMAT
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def read_start(path: str | Path) -> StartPolicy:
     except OSError as error:
         raise InputError(where, "", None, f"cannot be read ({error.strerror}); train it first, or name another policy") from None
     except Exception as error:  # protobuf's own kinds
-        raise InputError(where, "", None, f"is no ONNX file, or is truncated ({' '.join(str(error).split())[:80]})") from None
+        raise InputError(where, "", None, f"is no ONNX file, or is truncated ({in_short(error, 80)})") from None
     told = {entry.key: entry.value for entry in model.metadata_props}
     if told.get("format") != FORMAT:
         raise InputError(where, "format", told.get("format"), f"expects a policy made by `hyperleg train` ({FORMAT})")

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.errors import in_short
 from hyperleg_design.robot.check_urdf import parse_xml
 from hyperleg_design.robot.finding import Finding
 
@@ -40,7 +41,7 @@ def check_mjcf(source: str | Path) -> list[Finding]:
         spec = mujoco.MjSpec.from_string(source) if is_text else mujoco.MjSpec.from_file(str(source))
         model = spec.compile()
     except (ValueError, RuntimeError, mujoco.FatalError) as error:
-        return [Finding("error", "<mujoco>", f"MuJoCo does not compile it: {' '.join(str(error).split())[:300]}", "correct what it names")]
+        return [Finding("error", "<mujoco>", f"MuJoCo does not compile it: {in_short(error, 300)}", "correct what it names")]
     found = _model(model) + _starts(model)
     return sorted(found, key=lambda f: f.severity != "error")
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.robot.finding import Finding
 
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
@@ -344,5 +344,5 @@ def _loads(root: Any) -> list[Finding]:
     try:
         pinocchio.buildModelFromXML(etree.tostring(root, encoding="unicode"))
     except (ValueError, RuntimeError) as error:
-        return [Finding("error", "<robot>", f"Pinocchio does not load it: {' '.join(str(error).split())[:200]}", "correct that element")]
+        return [Finding("error", "<robot>", f"Pinocchio does not load it: {in_short(error, 200)}", "correct that element")]
     return []

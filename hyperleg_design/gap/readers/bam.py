@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.readers.source import beside, joint_names, made_log
 
@@ -65,7 +65,7 @@ def read_bam(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:
-        raise InputError(path.name, "", None, f"is no whole JSON file ({' '.join(str(error).split())[:80]})") from None
+        raise InputError(path.name, "", None, f"is no whole JSON file ({in_short(error, 80)})") from None
     if not is_bam(content):
         raise InputError(path.name, "entries", None, "is missing: expects BAM's mass, length, kp, entries")
     entries = content["entries"]

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap import log as logs
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.readers.source import FOLDER_FILE, beside, joint_names, made_log
@@ -117,7 +117,7 @@ def _table(path: Path, features: list[str]) -> tuple[dict[str, np.ndarray], int,
                         held += parts[column][-1].size
                     read += batch.num_rows
         except (pyarrow.ArrowException, OSError, KeyError) as error:
-            raise InputError(f"{path.name}/{file.name}", "", None, f"is no whole table ({' '.join(str(error).split())[:80]})") from None
+            raise InputError(f"{path.name}/{file.name}", "", None, f"is no whole table ({in_short(error, 80)})") from None
     try:
         return {c: np.concatenate(p) for c, p in parts.items()}, read, rows
     except ValueError:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 
 MAGIC = b"\x89MCAP0\r\n"
 SCHEMA, CHANNEL, MESSAGE, CHUNK, DATA_END = 3, 4, 5, 6, 15
@@ -103,7 +103,7 @@ def _unpacked(body: bytes, where: str) -> bytes:
     try:
         return pyarrow.decompress(packed, decompressed_size=size, codec=compression, asbytes=True)
     except (pyarrow.ArrowException, OSError, ValueError) as error:
-        raise InputError(where, "chunk", None, f"is damaged ({' '.join(str(error).split())[:60]})") from None
+        raise InputError(where, "chunk", None, f"is damaged ({in_short(error, 60)})") from None
 
 
 def _text(data: bytes, place: int) -> tuple[str, int]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 
 STORAGES = {
     "DoubleStorage": "f8", "FloatStorage": "f4", "HalfStorage": "f2", "LongStorage": "i8", "IntStorage": "i4", "ShortStorage": "i2",
@@ -85,7 +85,7 @@ def read_tensors(path: Path) -> dict[str, Any]:
     except InputError:
         raise
     except Exception as error:  # a damaged pickle may fail in any way
-        raise InputError(path.name, "", None, f"is damaged ({' '.join(str(error).split())[:80]}): save it again") from None
+        raise InputError(path.name, "", None, f"is damaged ({in_short(error, 80)}): save it again") from None
     if not isinstance(content, dict):
         raise InputError(path.name, "", type(content).__name__, "expects a dictionary of tensors")
     return content

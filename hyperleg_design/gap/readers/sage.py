@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.readers.source import beside, joint_names, made_log
 from hyperleg_design.gap.readers.timebase import onto, sorted_stream
@@ -109,7 +109,7 @@ def _table(path: Path, lists: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np
     try:
         table = pd.read_csv(path)
     except (ValueError, pd.errors.ParserError, OSError) as error:
-        raise InputError(where, "", None, f"is no table ({' '.join(str(error).split())[:80]})") from None
+        raise InputError(where, "", None, f"is no table ({in_short(error, 80)})") from None
     for column in ("timestamp", "positions"):
         if column not in table:
             raise InputError(where, column, list(table.columns)[:6], "is missing")

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap import log as logs
 from hyperleg_design.gap.log import Log, known_column
 from hyperleg_design.gap.readers.source import beside, made_log
@@ -114,7 +114,7 @@ def _read(path: Path, separator: str, chosen: dict[str, tuple[int, float]], bloc
                 for column, (place, scale) in chosen.items():
                     parts[column].append(_numbers(chunk[place], column, path.name, number * logs.BLOCK_ROWS) * scale)
     except (ValueError, pd.errors.ParserError, OSError) as error:
-        raise InputError(path.name, "", None, f"is no table ({' '.join(str(error).split())[:90]})") from None
+        raise InputError(path.name, "", None, f"is no table ({in_short(error, 90)})") from None
     return {column: np.concatenate(found) if found else np.empty(0) for column, found in parts.items()}
 
 
