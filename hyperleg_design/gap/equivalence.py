@@ -34,4 +34,4 @@ def alike(judge: Judge, slot: Sequence[Model], chosen: Model, rows: np.ndarray) 
         doubtful = behind < 1.5 * float(np.sqrt(len(difference)) * difference.std())
         if (behind < rules.alike or (doubtful and behind < 3 * rules.alike)) and short < rules.alike_closed:
             found.append(model)
-    return sorted(found, key=lambda m: (-m.gain, m.names))
+    return sorted(found, key=lambda m: (-rank(m), m.names))
