@@ -34,9 +34,9 @@ NEGATIVE = 8.0
 """Log prior odds against a load that weighs less than nothing, beyond what is declared."""
 INWARD, OUTERMOST = 3.0, 2.0
 """Log prior odds against a load far from the ends of a robot, and for one on a link that carries none (assumed: loads hang on hands)."""
-GONE, FRICTIONLESS, HALF = ("coulomb_friction", "viscous_friction"), 4.0, 0.5
+GONE, MISSING, HALF = ("coulomb_friction", "viscous_friction", "rotor_inertia"), 4.0, 0.5
 """Effects of which a model may have too much, and log odds against more than this share of the model's being missing (assumed: friction
-that nobody described is usual, and joints run in, but none runs freely)."""
+that nobody described is usual, and joints run in, but none runs freely, nor is a rotor without inertia)."""
 CHATTERS = 12.0
 """Log odds for what can make control loops unstable, where one chatters that was damped (assumed: healthy loops are)."""
 PRESENT = 0.05
@@ -241,7 +241,7 @@ def _odds(cause: Cause, values: np.ndarray) -> float:
     if cause.unseen:
         found -= UNSEEN[cause.effect]
     if cause.effect in GONE and values[0] < HALF * cause.low[0] < 0:
-        found -= FRICTIONLESS
+        found -= MISSING
     if cause.effect == "link_mass":
         found -= HEAVIER * max(abs(float(values[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0)
     if cause.effect == "payload":

@@ -84,11 +84,11 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
 
 
 def apart(judge: Judge, model: Model, before: Model) -> bool:
-    """Whether the last cause has evidence of its own: it needs as much as a first one, and has as much beside the others as alone.
+    """Whether the last cause has evidence of its own: it needs as much as a first one for each before it, and has as much beside them as alone.
 
     What imitates a part of another cause, or mends what its model gets wrong, has not.
     """
-    gain, over, least = model.gain - before.gain, model.over - before.over, judge.thresholds.evident_doubtful
+    gain, over, least = model.gain - before.gain, model.over - before.over, judge.thresholds.evident_doubtful * len(before.causes)
     if min(gain, over) < least:
         return False
     alone = judge.model(model.causes[-1:])

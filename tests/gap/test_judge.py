@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.judge import CHATTERS, INWARD, OUTERMOST, PER_PARAMETER, RARE, Judge, plausible, rank
+from hyperleg_design.gap.judge import CHATTERS, INWARD, MISSING, NEGATIVE, OUTERMOST, PER_PARAMETER, RARE, Judge, plausible, rank
 from hyperleg_design.gap.screen import linearise
 from hyperleg_design.gap.thresholds import load_thresholds
 
@@ -97,6 +97,20 @@ def test_loads_hang_at_the_ends_and_odds_are_of_all_causes(judge, right):
     assert plausible(replace(right, causes=(hung,))) - plausible(inward) == pytest.approx(INWARD)
     both = judge.model([right.causes[0], replace(right.causes[0], location="hip")])
     assert plausible(both) == pytest.approx(2 * plausible(right))
+
+
+@pytest.mark.parametrize(("effect", "gone", "against"), [
+    ("viscous_friction", 0.8, True), ("viscous_friction", 0.3, False), ("rotor_inertia", 0.8, True), ("payload", 0.8, False),
+])  # fmt: skip
+def test_hardly_any_friction_or_rotor_inertia_of_the_model_is_gone(right, effect, gone, against):
+    own = replace(right.causes[0], effect=effect, low=np.array([-0.5]), beyond=1)
+
+    def of(value):
+        return replace(right, causes=(own,), fit=replace(right.fit, phi=(np.array([value]) - own.nulls) / own.usual))
+
+    assert of(-0.5 * gone).values(0) == pytest.approx(-0.5 * gone)
+    negative = NEGATIVE if effect == "payload" else 0.0
+    assert plausible(of(0.4)) - plausible(of(-0.5 * gone)) - negative == pytest.approx(MISSING if against else 0.0)
 
 
 def test_loops_that_chatter_are_explained_once(judge, right):
