@@ -119,7 +119,8 @@ def decide(
     verdict = _verdict(judge, chosen, rows, shaped)
     if heard is not None and verdict == "explained" and _told_apart(chosen, singles, heard):
         heard, shaken = None, ()
-    if heard is not None and verdict == "explained" and (others := _elsewhere(chosen, heard, signals[0].subject)):
+    beside = chosen.gain >= thresholds.second_evident  # what is heard comes first, and shakes other joints, too
+    if heard is not None and verdict == "explained" and beside and (others := _elsewhere(chosen, heard, signals[0].subject)):
         if len(others) < len(chosen.causes):  # what it leaves at its own motor and joints looks like limits and constants
             chosen = judge.model(others)
             rows, slots = judge.excess_rows(chosen), [(chosen,) for _ in others]

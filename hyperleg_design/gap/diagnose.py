@@ -337,7 +337,7 @@ class _Report:
             gives = "its drive does not give what it was told" if samples.rows[row].balance == "drive" else "it does not move as its torque says"
             says = f"for {100 * share:.1f} % of the time {gives}, and no listed effect says why"
             found.append({"shape": "episodes", "location": samples.rows[row].name, "says": says, "closed_beyond": 0.0, "gain": 0.0})
-        for one, gain, closed in self.found.shaped[:MOST_SHAPES]:
+        for one, gain, closed, _ in self.found.shaped[:MOST_SHAPES]:
             if gain > 0 and closed > 0:
                 place = "robot" if one.row < 0 else samples.rows[one.row].name
                 found.append({"shape": one.name, "location": place, "says": one.says, "closed_beyond": closed, "gain": gain})

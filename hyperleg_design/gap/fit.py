@@ -320,17 +320,25 @@ class Design:
 def _bounded(
     matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray, held: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Least squares within bounds: what would leave them is set to them, the rest fitted again."""
-    k = len(right)
-    fixed = np.full(k, np.nan) if held is None else held.copy()
-    phi = np.zeros(k)
-    for _ in range(k + 1):
-        free = np.isnan(fixed)
-        phi = np.where(free, 0.0, fixed)
-        if free.any():
-            phi[free] = np.linalg.solve(matrix[np.ix_(free, free)], right[free] - matrix[np.ix_(free, ~free)] @ phi[~free])
-        outside = free & ((phi < low) | (phi > high))
-        if not outside.any():
-            break
-        fixed[outside] = np.clip(phi[outside], low[outside], high[outside])
-    return phi, np.linalg.inv(matrix) if k else np.zeros((0, 0))
+    """Least squares within bounds, with what is held (else NaN) held, and the covariance without bounds."""
+    phi = np.full(len(right), np.nan) if held is None else held.copy()
+    phi = np.where(np.isnan(phi) & (low >= high), low, phi)
+    free = np.isnan(phi)
+    if free.any():
+        inner, rest = matrix[np.ix_(free, free)], right[free] - matrix[np.ix_(free, ~free)] @ phi[~free]
+        found = np.linalg.solve(inner, rest)
+        if (found < low[free]).any() or (found > high[free]).any():
+            found = _within(inner, rest, low[free], high[free])
+        phi[free] = found
+    return phi, np.linalg.inv(matrix) if len(right) else np.zeros((0, 0))
+
+
+def _within(matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Where x matrix x / 2 - right x is least with low < x < high, all `(k,)`."""
+    from scipy.linalg import solve_triangular
+    from scipy.optimize import lsq_linear
+
+    size = np.sqrt(np.diag(matrix))
+    root = np.linalg.cholesky(matrix / np.outer(size, size))
+    found = lsq_linear(root.T, solve_triangular(root, right / size, lower=True), (low * size, high * size), method="bvls")
+    return np.where(found.active_mask < 0, low, np.where(found.active_mask > 0, high, np.clip(found.x / size, low, high)))

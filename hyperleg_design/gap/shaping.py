@@ -26,6 +26,8 @@ GENTLE = 0.05
 """Least speed over which it may do so [rad/s]."""
 PASSES = 2.0
 """Gain that is stated, over the least that tells, of a shape that does for several causes."""
+PRECISE = 0.03
+"""What models of effects get wrong of their traces, root mean square over the trace's (assumed)."""
 SHAPED_ROWS = 4
 """Rows with the largest excess whose shape is looked at."""
 
@@ -38,6 +40,8 @@ class Told(NamedTuple):
     """Held-out log-likelihood over what it is compared with."""
     closed: float
     """Share of the squares left over that it closes."""
+    faint: bool = False
+    """Whether it is less beside the causes than what a model of them gets wrong."""
 
 
 def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
@@ -52,6 +56,8 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
     companions = _companions(judge, chosen)
     plain = Design(base, chosen.causes, ridge=companions) if companions is not None else None
     start, known = chosen.gain, chosen.held
+    left = float(judge.gap(known.square, rows)) ** 2
+    explained = float(judge.gap(known.bare, rows)) ** 2 - left if chosen.causes else -np.inf
     if plain is not None:
         fit = plain.fit(scale=chosen.fit.scale, rounds=ROUNDS)
         known = predict(plain, fit=fit)
@@ -68,12 +74,13 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
         one, design, _ = found
         fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
         held = predict(design, fit=fit)
-        return Told(one, judge.gain(fit, held) - start, _beyond(judge, known, held, rows))
+        closed = _beyond(judge, known, held, rows)
+        return Told(one, judge.gain(fit, held) - start, closed, closed * left <= PRECISE**2 * explained)
 
     first = [t for t in screen.spread(rough, shape.shapes(base.samples, looked), judge.threads) if t is not None]
     first.sort(key=lambda t: (-t[2], t[0].name, t[0].row))
     found = screen.spread(judged, first[:JUDGED_SHAPES], judge.threads)
-    return tuple(sorted(found, key=lambda t: (-t.gain, t.shape.name, t.shape.row)))
+    return tuple(sorted(found, key=lambda t: (t.faint, -t.gain, t.shape.name, t.shape.row)))
 
 
 def of_base(judge: Judge) -> tuple[Told, ...]:
@@ -160,4 +167,6 @@ def instead(judge: Judge, chosen: Model, rows: np.ndarray, single: float) -> tup
 
 def tells(rules: Thresholds, chosen: Model, shaped: Sequence[Told]) -> bool:
     """Whether the best shape speaks against causes, or against none."""
-    return bool(shaped) and shaped[0].gain > rules.beyond_evident and shaped[0].closed > rules.beyond * max(len(chosen.causes), 1)
+    if not shaped or shaped[0].faint:
+        return False
+    return shaped[0].gain > rules.beyond_evident and shaped[0].closed > rules.beyond * max(len(chosen.causes), 1)

@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hyperleg_design.gap.base import LIMIT
-from hyperleg_design.gap.fit import Design, parts
+from hyperleg_design.gap.fit import Design, _bounded, parts
 
 
 def test_products_give_the_same_as_samples(viscous_ready, knee_friction):
@@ -70,3 +72,26 @@ def test_bounds_are_kept(viscous_ready, knee_friction):
     tight = replace(knee_friction, high=np.array([0.1]))
     fit = Design(viscous_ready.base, [tight]).fit()
     assert fit.phi[0] * knee_friction.usual[0] == pytest.approx(0.1)
+
+
+@given(st.integers(1, 8), st.integers(0, 10**6))
+def test_least_squares_within_bounds_are_the_least(count, seed):
+    rng = np.random.default_rng(seed)
+    root = rng.standard_normal((count, count)) * 10 ** rng.uniform(-2, 2, count)
+    matrix, right = root.T @ root + 1e-2 * np.eye(count), 10 * rng.standard_normal(count) * np.linalg.norm(root, axis=0)
+    low = np.where(rng.random(count) < 0.2, -np.inf, -rng.random(count))
+    high = np.where(rng.random(count) < 0.2, low, rng.random(count))
+    high = np.where(np.isfinite(high), high, 0.0)
+    phi, _ = _bounded(matrix, right, low, high)
+    assert ((phi >= low) & (phi <= high)).all()
+    slope, small = matrix @ phi - right, 1e-6 * (np.abs(matrix) @ np.abs(phi) + np.abs(right))
+    assert (slope[phi > low] <= small[phi > low]).all(), "what could be less would make it better"
+    assert (slope[phi < high] >= -small[phi < high]).all(), "what could be more would make it better"
+
+
+def test_what_is_held_stays_and_the_rest_is_fitted_around_it():
+    matrix, right = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([1.0, 0.0])
+    free, held = _bounded(matrix, right, np.full(2, -9.0), np.full(2, 9.0))[0], np.array([3.0, np.nan])
+    assert np.allclose(matrix @ free, right)
+    assert np.allclose(_bounded(matrix, right, np.full(2, -9.0), np.full(2, 9.0), held)[0], [3.0, -1.5])
+    assert np.allclose(_bounded(matrix, right, np.full(2, -9.0), np.array([9.0, -2.0]), held)[0], [3.0, -2.0])

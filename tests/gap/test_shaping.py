@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import diagnosed
 import numpy as np
 import pytest
@@ -37,7 +39,7 @@ def test_a_shape_that_predicts_more_replaces_a_cause_that_stood_for_it(cubic):
     assert model.gain > 0
     found = shaping.instead(cubic, model, everywhere(cubic), model.gain)
     assert found
-    assert all(gain >= shaping.PASSES * cubic.thresholds.beyond_evident for _, gain, _ in found)
+    assert all(gain >= shaping.PASSES * cubic.thresholds.beyond_evident for _, gain, _, _ in found)
 
 
 def test_no_shape_replaces_the_true_cause(robot_files, rules):
@@ -47,3 +49,14 @@ def test_no_shape_replaces_the_true_cause(robot_files, rules):
     assert found.model.names == (("viscous_friction", "knee"),)
     assert shaping.instead(judge, found.model, found.rows, found.model.gain) == ()
     assert not shaping.tells(rules, found.model, shaping.beside(judge, found.model, found.rows))
+
+
+def test_a_shape_that_is_less_than_models_of_a_cause_get_wrong_tells_nothing(cubic, rules):
+    found = shaping.beside(cubic, cubic.nothing, everywhere(cubic))
+    assert not found[0].faint
+    assert not shaping.tells(rules, cubic.nothing, [found[0]._replace(faint=True), *found[1:]])
+    large = linearise(cubic.base.samples, EFFECTS["joint_spring"], "hip", np.zeros(2))
+    model = cubic.model([large])
+    huge = replace(model, held=replace(model.held, bare=1e6 * model.held.bare))
+    assert any(not t.faint for t in shaping.beside(cubic, model, everywhere(cubic)))
+    assert all(t.faint for t in shaping.beside(cubic, huge, everywhere(cubic)))
