@@ -80,7 +80,7 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
     calm = judge.shown(model, already)[judge.calm]
     if visible and float(np.sqrt(calm.max())) >= (1.0 if plain else rules.second_visible):
         return True
-    return shows_in_a_band(judge, model, before)
+    return (own and plain and _in_a_band(judge, model)) or shows_in_a_band(judge, model, before)
 
 
 def apart(judge: Judge, model: Model, before: Model) -> bool:
@@ -100,6 +100,10 @@ def shows_in_a_band(judge: Judge, model: Model, before: Model) -> bool:
     least = judge.thresholds.second_evident * max(len(before.causes), 1)
     if model.causes[-1].effect in AT_LIMITS or model.gain - before.gain < PLAIN * least or model.over - before.over < least:
         return False
+    return _in_a_band(judge, model)
+
+
+def _in_a_band(judge: Judge, model: Model) -> bool:
     bands = judge.shown_in_bands(model, len(model.causes) - 1)[~judge.base.samples.episodic]
     return float(np.sqrt(bands.max())) >= 1.0
 

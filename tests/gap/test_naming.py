@@ -8,8 +8,8 @@ import pytest
 from diagnosed import in_episodes
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.judge import rank
-from hyperleg_design.gap.naming import _visible, apart, likelier, shows_in_a_band, stands_out, sticks_alone, unshown, worth_naming
+from hyperleg_design.gap.judge import Judge, rank
+from hyperleg_design.gap.naming import _visible, apart, likelier, shows_in_a_band, stands_out, sticks_alone, unshown, worth_adding, worth_naming
 from hyperleg_design.gap.screen import linearise
 from hyperleg_design.gap.thresholds import load_thresholds
 
@@ -137,3 +137,37 @@ def test_what_two_causes_tell_adds_up_and_what_an_imitation_tells_does_not(two_w
     assert not apart(two_wrong, two_wrong.model([hip, like_hip]), two_wrong.model([hip]))
     weak = replace(both, gain=alone.gain + 0.9 * least)
     assert not apart(two_wrong, weak, alone), "as much as a first cause needs"
+
+
+class Faint(Judge):
+    """Sees last causes at a size over the floor in all rows and at another in one band, as much alone as beside others, and nothing left."""
+
+    def sees(self, size, band, alone):
+        self.__dict__.update(size=size, band=band, alone=alone, holds={})
+        return self
+
+    def shown(self, model, place):
+        found = super().shown(model, place)
+        return found / found.max() * self.size**2
+
+    def shown_in_bands(self, model, place):
+        found = super().shown_in_bands(model, place)
+        return found / found.max() * self.band**2
+
+    def rows(self, square, blocks=None):
+        return np.full_like(super().rows(square, blocks), 0.5)
+
+    def model(self, causes):
+        return replace(super().model(causes), gain=self.alone, below=0.0)
+
+
+@pytest.mark.parametrize(("size", "band", "gain", "alone", "worth"), [
+    (0.8, 1.1, 20.0, 19.0, True), (0.8, 0.9, 20.0, 19.0, False), (0.8, 1.1, 14.0, 14.0, False), (0.8, 1.1, 20.0, 12.0, False),
+    (1.1, 0.9, 16.0, 16.0, True), (1.5, 0.9, 9.0, 9.0, True), (1.5, 0.9, 7.5, 7.5, False), (1.5, 0.9, 8.5, 2.0, False),
+])  # fmt: skip
+def test_a_further_cause_with_evidence_of_its_own_needs_less(two_wrong, size, band, gain, alone, worth):
+    samples = two_wrong.base.samples
+    knee, hip = (linearise(samples, EFFECTS[e], at, np.zeros(1)) for e, at in (("viscous_friction", "knee"), ("coulomb_friction", "hip")))
+    before = two_wrong.model([knee])
+    both = replace(two_wrong.model([knee, hip]), gain=before.gain + gain, below=before.below)
+    assert worth_adding(Faint(two_wrong.base, two_wrong.thresholds, 1).sees(size, band, alone), both, before) is worth
