@@ -25,6 +25,8 @@ ROUNDS = 3
 """Fits between which the noise's scales are set anew."""
 CLAMPS = 4
 """Fits in which calibration errors that would leave their limits are set to them."""
+SINGULAR = 1e-13
+"""Least eigenvalue, over the diagonal, of normal equations that are solved within bounds: less is rounding."""
 TRUST = 3.0
 """Standard deviations from the fit to all data within which causes that are not linear are taken as linear on parts of them."""
 
@@ -335,10 +337,10 @@ def _bounded(
 
 def _within(matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Where x matrix x / 2 - right x is least with low < x < high, all `(k,)`."""
-    from scipy.linalg import solve_triangular
     from scipy.optimize import lsq_linear
 
     size = np.sqrt(np.diag(matrix))
-    root = np.linalg.cholesky(matrix / np.outer(size, size))
-    found = lsq_linear(root.T, solve_triangular(root, right / size, lower=True), (low * size, high * size), method="bvls")
+    square, axes = np.linalg.eigh(matrix / np.outer(size, size))
+    root = np.sqrt(np.maximum(square, SINGULAR))
+    found = lsq_linear(root[:, None] * axes.T, axes.T @ (right / size) / root, (low * size, high * size), method="bvls")
     return np.where(found.active_mask < 0, low, np.where(found.active_mask > 0, high, np.clip(found.x / size, low, high)))
