@@ -32,6 +32,8 @@ SHORTEST = 0.1
 """Rests that count [s]."""
 BAND = 10.0
 """Of the torque on a joint at rest [Hz]; below a third of the log's rate."""
+EDGE = 0.01
+"""Of a rest, in which the joint may be moving already [s]; two ticks at least."""
 ENDS = (3.0, 97.0)
 """Percentiles between which a torque ranges."""
 WITHIN = 1.88
@@ -54,11 +56,15 @@ def held(signals: Signals) -> np.ndarray:
     found = np.zeros(len(subject.joints))
     band = min(BAND, 0.3 / signals.step)
     for joint in range(len(found)):
-        torque = band_limited(motion[:, joint], signals.step, band)
         level = noise(motion[rest[:, joint], joint]) * np.sqrt(2 * band * signals.step)
-        for part in stretches(rest[:, joint], SHORTEST / signals.step):
+        around = round(1 / (band * signals.step))
+        edge = max(2, round(EDGE / signals.step))
+        for whole in stretches(rest[:, joint], SHORTEST / signals.step + 2 * edge):
+            # the rest alone: what the motion before and after it needs must not leak into it
+            part = slice(whole.start + edge, whole.stop - edge)
+            torque = band_limited(np.pad(motion[part, joint], around, mode="edge"), signals.step, band)[around:-around]
             range_of_load = OF_LOAD * _half(signals.rigid[part, joint])
-            found[joint] = max(found[joint], _half(torque[part]) - range_of_load - WITHIN * level)
+            found[joint] = max(found[joint], _half(torque) - range_of_load - WITHIN * level)
     return found
 
 

@@ -24,10 +24,11 @@ def ramps(time):
     return np.array([np.interp(time, np.arange(len(corners)) * 1.2, corners)])
 
 
-def log(friction=0.0, mass=0.5, **metadata):
-    """A servo that ramps, with dry friction [Nm] at its joint and a mass at its end [kg]."""
+def log(friction=0.0, mass=0.5, rotor=0.0, target=ramps, **metadata):
+    """A servo that ramps, with dry friction [Nm] and a further rotor [kg m^2] at its joint and a mass at its end [kg]."""
     text = SERVO.replace('damping="0.02"', f'damping="0.02" frictionloss="{friction}"').replace('mass="0.5"', f'mass="{mass}"')
-    found = robots.servo_run(text, ramps, 10.0, **metadata)
+    text = text.replace('armature="0.003"', f'armature="{0.003 + rotor}"')
+    found = robots.servo_run(text, target, 10.0, **metadata)
     rng = np.random.default_rng(3)
     noise = {"position": 2e-5, "velocity": 2e-3, "motor_torque": 5e-3}
     return found.changed(signals={c: v + rng.normal(0, noise.get(c.partition("/")[0], 0.0), len(v)) for c, v in found.signals.items()})
@@ -37,6 +38,12 @@ def test_a_joint_that_sticks_shows_its_friction_and_never_more(servo):
     for friction in (0.3, 0.6):
         shown = float(held(conditioned(servo, log(friction))[0])[0])
         assert 0.6 * friction < shown < 1.1 * friction
+
+
+@pytest.mark.parametrize(("rotor", "friction", "pace"), [(0.05, 0.2, 2.0), (0.15, 0.2, 1.3), (0.15, 0.4, 2.0), (0.15, 0.4, 1.3)])
+def test_what_a_heavy_rotor_needs_to_set_off_is_not_held(servo, rotor, friction, pace):
+    swung = log(friction, rotor=rotor, target=lambda t: (0.8 if pace < 2 else 0.6) * np.sign(np.sin(pace * t))[None])
+    assert float(held(conditioned(servo, swung)[0])[0]) < 1.1 * friction
 
 
 def test_neither_a_load_nor_a_free_joint_is_taken_for_friction(servo):
