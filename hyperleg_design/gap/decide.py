@@ -246,7 +246,7 @@ def _swapped(judge: Judge, wanted: Sequence[tuple[str, str]], pair: Model, slots
     """Look for the first cause again beside the second: forward selection may have begun with what looked like both."""
     models, _ = _finalists(judge, wanted, pair.causes[1:])
     turned = [_turned(m) for m in models]
-    if turned and rank(turned[0]) > rank(pair) + 1e-6 and turned[0].names != pair.names:
+    if turned and _betters(turned[0], pair):
         return turned[0], [tuple(turned), slots[1]]
     return pair, [tuple(turned) if any(t.names == pair.names for t in turned) else slots[0], slots[1]]
 
@@ -255,21 +255,25 @@ def _paired(
     judge: Judge, wanted: Sequence[tuple[str, str]], singles: Sequence[Model], pair: Model, slots: list[tuple[Model, ...]]
 ) -> tuple[Model, list[tuple[Model, ...]]]:
     """Look for likelier pairs among the finalists: what imitates two causes together need be neither of them, nor lead to one."""
-    scale = judge.nothing.fit.scale
+    scale, alone = judge.nothing.fit.scale, {one.names: one for one in singles}
     tried = [
         [one.causes[0], other.causes[0]] for one, other in combinations(singles[:PAIRED], 2) if other.names[0] not in _taken(one.causes)
     ]  # fmt: skip
     order = screen.spread(lambda causes: Design(judge.base, causes).fit(scale=scale, rounds=ROUNDS).evidence, tried, judge.threads)
     best = sorted(range(len(tried)), key=lambda i: (-order[i], i))[:PAIRS]
     for found in sorted((judge.model(tried[i]) for i in best), key=lambda m: (-rank(m), m.names)):
-        if rank(found) <= rank(pair) + 1e-6 or set(found.names) == set(pair.names):
+        if not _betters(found, pair):
             continue
-        alone = {one.names: one for one in singles}
         if worth_adding(judge, found, alone[found.names[:1]]) and worth_adding(judge, _turned(found), alone[found.names[1:]]):
             more, _ = _finalists(judge, wanted, found.causes[:1])
             again = next((m for m in more if worth_adding(judge, m, alone[found.names[:1]])), found)
             return _swapped(judge, wanted, again, [(again,), _from(more, again) if again in more else (again,)])
     return pair, slots
+
+
+def _betters(found: Model, pair: Model) -> bool:
+    """Whether other causes are likelier than a pair."""
+    return rank(found) > rank(pair) + 1e-6 and set(found.names) != set(pair.names)
 
 
 def _turned(model: Model) -> Model:

@@ -39,7 +39,7 @@ def load_checkpoint(path: Path) -> dict[str, Any]:
     except FileNotFoundError:
         raise InputError(where, "", None, "no such checkpoint") from None
     except Exception as error:  # torch raises whatever its readers meet
-        reason = in_short(error, 100)
+        reason = in_short(error)
         raise InputError(where, "", None, f"is no checkpoint, or is truncated ({reason}); delete it to start anew, or copy it back") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise InputError(where, "format", content.get("format") if isinstance(content, dict) else None, f"expects {FORMAT}")

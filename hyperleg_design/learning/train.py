@@ -318,7 +318,7 @@ class Training:
         try:
             self.algorithm.load(content["networks"], None, True)
         except (RuntimeError, KeyError, ValueError) as error:
-            reason = in_short(error, 100)
+            reason = in_short(error)
             raise InputError(f"{self.folder.name}/{CHECKPOINT}", "networks", None, f"do not fit this task, design and preset ({reason})") from None
         self.schedule.put(content["schedule"])
         self.schedule.apply(self.environment)
