@@ -31,6 +31,8 @@ CERTAIN = 5.0
 PIECE = 1.0
 """Of the means whose scatter gives the standard error [s]."""
 LEAST_PIECES = 4
+SURE = 0.01
+"""Least standard deviation of an accelerometer's error along the vertical [m/s^2]: scales and gravity itself differ by as much (assumed)."""
 UPRIGHT = 0.15
 """Vertical part of an accelerometer's error over its horizontal one, below which it may be a vertical that leans."""
 LEANING = 0.01
@@ -105,6 +107,27 @@ def imu_offset(signals: Sequence[Signals], references: Sequence[Signals] = ()) -
         for p, m, e in zip(ImuBias.parameters, mean, error, strict=True)
     }
     return Offset(values, "gyro" if part.start == 0 else "accelerometer", size, min(left, size), leans)
+
+
+def felt_upright(signals: Sequence[Signals]) -> tuple[np.ndarray, float, float] | None:
+    """What accelerometers feel too much along the vertical, which no orientation that is a little off can feign.
+
+    Returns:
+        The vertical in the sensor's axes `(3,)`, the error along it and its standard deviation [m/s^2]; None where it is not known.
+    """
+    based = [one for one in signals if one.base is not None]
+    if len(based) < len(signals):
+        return None
+    means, errors, _ = (np.array(part) for part in zip(*map(_means, based), strict=True))
+    mean, error = (values[3:] for values in _together(means, errors))
+    gravity = based[0].subject.gravity
+    rotation = np.mean([np.nanmean(one.base.rotation, 0) for one in based if one.base is not None], 0)
+    up = -(rotation @ based[0].subject.imu_rotation).T @ gravity
+    length = float(np.linalg.norm(up))
+    if not np.isfinite([*mean, *error, length]).all() or length < UPRIGHT * float(np.linalg.norm(gravity)) or length == 0:
+        return None
+    up = up / length
+    return up, float(up @ mean), float(np.hypot(np.linalg.norm(up * error), SURE))
 
 
 def _means(signals: Signals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -33,7 +33,8 @@ UNSEEN = {"voltage_sag": 6.0, "thermal_derating": 1.0}
 NEGATIVE = 8.0
 """Log prior odds against a load that weighs less than nothing, beyond what is declared."""
 INWARD, OUTERMOST = 3.0, 2.0
-"""Log prior odds against a load far from the ends of a robot, and for one on a link that carries none (assumed: loads hang on hands)."""
+"""Log prior odds against a load far from the ends of a robot, and for one on a link that carries none, or on a base (assumed: loads
+hang on hands and lie on backs)."""
 GONE, MISSING, HALF = ("coulomb_friction", "viscous_friction", "rotor_inertia"), 4.0, 0.5
 """Effects of which a model may have too much, and log odds against more than this share of the model's being missing (assumed: friction
 that nobody described is usual, and joints run in, but none runs freely, nor is a rotor without inertia)."""

@@ -69,10 +69,13 @@ class Mechanism:
     def beyond(self, name: str) -> int:
         """Most joints in a row that a link carries: 0 at the ends of a robot, 1 of feet with toes and hands with fingers.
 
-        1 of a floating base, and of what is no link.
+        0 of a base, on whose back or in whose trunk loads are as well; 1 of what is no link.
         """
-        if name not in (*self.links, *self.joints) or (joint := int(self.link_joint[self.link(name)])) == BASE:
+        if name not in (*self.links, *self.joints):
             return 1
+        joint = int(self.link_joint[self.link(name)])
+        if joint == BASE:
+            return 0
         chains = [self.chain(j) for j in range(self.count)]
         return max(len(chain) - 1 - chain.index(joint) for chain in chains if joint in chain)
 

@@ -64,10 +64,13 @@ GYRO, ACCELEROMETER = 0.003, 0.05
 """[rad/s], [m/s^2]"""
 GROUND, BEARING = 0.1, 0.5
 """Of the ground's friction; of how it gives and damps, which no simulator has from a measurement."""
+FORCES_SCALED, OF_FORCES = "contact_scale", 0.01
+"""Share by which the forces under a foot are told too large or too small (assumed: load cells in feet)."""
 WIDE = {
     "coulomb_friction": 15.0, "viscous_friction": 15.0, "stribeck_friction": 15.0, "load_dependent_friction": 10.0, "torque_constant": 4.0,
     "encoder_offset": 4.0, "link_mass": 4.0, "link_com": 4.0, "rotor_inertia": 5.0, "joint_spring": 6.0, "command_delay": 6.0,
     "actuator_bandwidth": 6.0, "controller_gain": 3.0, "imu_bias": 4.0, "ground_friction": 3.0, "ground_compliance": 2.0,
+    FORCES_SCALED: 2.0,
 }  # fmt: skip
 DESCRIBED = {"load_dependent_friction": 3.0}
 """Instead of `WIDE` at joints of whose friction the model tells: reference logs hardly tell friction under load from friction."""
@@ -75,6 +78,7 @@ DAY = {
     "coulomb_friction": 0.3, "viscous_friction": 0.4, "stribeck_friction": 0.3, "load_dependent_friction": 0.5, "torque_constant": 0.4,
     "encoder_offset": 0.35, "link_mass": 0.1, "link_com": 0.1, "rotor_inertia": 0.1, "joint_spring": 0.6, "command_delay": 0.3,
     "actuator_bandwidth": 0.3, "controller_gain": 0.3, "imu_bias": 1.0, "ground_friction": 0.7, "ground_compliance": 0.3,
+    FORCES_SCALED: 0.2,
 }  # fmt: skip
 TURNOVER, SWUNG = "friction_turnover", "friction_in_chatter"
 """Friction of models turns over with speed, as tanh(v / v_s); that of robots at once, or over a way on which bristles bend. By how
@@ -98,7 +102,7 @@ FILTERED, OF_FILTER = "speed_filtered", 0.0015
 """How late controllers take speeds for their damping [s]: drives filter them at 50-200 Hz, or difference positions (assumed)."""
 SOLES = 0.004
 """[m] (assumed)."""
-UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, TORQUES_LATE, STEPPED, FILTERED)
+UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, FORCES_SCALED, TORQUES_LATE, STEPPED, FILTERED)
 """Usual errors that are no effects of the catalogue, each with one parameter."""
 WAYS = (0.0015, 0.006)
 """On which it turns over, half of each [rad]; assumed, beside that of `effects.friction`."""
@@ -155,6 +159,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
     found += [Usual(effect, "robot", 0, late) for effect in ("command_delay", TORQUES_LATE, FORCES_LATE)]
     found += [Usual(STEPPED, "robot", 0, OF_STEPPED), Usual(FILTERED, "robot", 0, OF_FILTER)]
     found += [Usual(effect, foot, 0, SOLES) for foot in subject.feet for effect in (SOLE, SOLE_GIVES)]
+    found += [Usual(FORCES_SCALED, foot, 0, OF_FORCES) for foot in subject.feet]
     for m, motor in enumerate(subject.motors):
         column = np.abs(subject.joint_from_motor[:, m])
         main = int(np.argmax(column))
@@ -180,7 +185,7 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
             found += [Usual("ground_friction", foot, 0, GROUND), Usual("ground_compliance", foot, 0, BEARING)]
             found.append(Usual("ground_compliance", foot, 1, BEARING))
     places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
-    places |= {name: set(subject.feet) for name in (SOLE, SOLE_GIVES)}
+    places |= {name: set(subject.feet) for name in (SOLE, SOLE_GIVES, FORCES_SCALED)}
     places |= {name: {ROBOT} for name in (FORCES_LATE, TORQUES_LATE, STEPPED, FILTERED)}
     places |= {name: set(subject.joints) for name in (TURNOVER, SWUNG)} | dict.fromkeys(SPEEDS, driven)
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
@@ -295,12 +300,15 @@ def _told(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
     if signals.pad_force is None:
         return {}
     force, rotation = np.nan_to_num(signals.pad_force), None if signals.base is None else signals.base.rotation
+    own = np.array([subject.feet[p.foot] == one.location for p in subject.pads])
     if one.effect == FORCES_LATE:
         torque, wrench = (
             -one.spread * first_derivative(values.T, signals.step).T for values in rigid.contact_torque(subject, signals.position, rotation, force)
         )
+    elif one.effect == FORCES_SCALED:
+        scaled = one.spread * np.where(own[:, None], force, 0.0)
+        torque, wrench = rigid.contact_torque(subject, signals.position, rotation, scaled)
     else:
-        own = np.array([subject.feet[p.foot] == one.location for p in subject.pads])
         force = np.where(own[:, None], force, 0.0)
         load = np.maximum(force[..., 2], 0.0)
         share = load / max(float(load[load > 0].mean()), 1e-9) if one.effect == SOLE_GIVES and load.any() else 1.0

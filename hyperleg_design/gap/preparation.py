@@ -17,11 +17,13 @@ from hyperleg_design.gap import filtering, floor, nuisance, screen
 from hyperleg_design.gap.base import Base, Prior
 from hyperleg_design.gap.chatter import newly
 from hyperleg_design.gap.decide import shown_already
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.episodes import episodes
 from hyperleg_design.gap.fit import Design, Fit
 from hyperleg_design.gap.held_out import predict
 from hyperleg_design.gap.holding import noticed
+from hyperleg_design.gap.imu_offset import PLACE, felt_upright
 from hyperleg_design.gap.learned import Learned, learned, unsaid
 from hyperleg_design.gap.naming import AT_LIMITS
 from hyperleg_design.gap.samples import LOGS, Samples, gather
@@ -78,16 +80,16 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
         healthy = _columns(references, usual, thresholds, np.zeros(len(references), int))
         kept |= _showing(healthy)
         errors = [one for one, k in zip(usual, kept, strict=True) if k]
-        base = healthy.base(kept, _wide(errors, subject), thresholds)
+        base = healthy.base(kept, _felt(_wide(errors, subject), errors, references), thresholds)
         limits = [name for name in AT_LIMITS if name != "voltage_sag" or any(s.voltage is not None for s in references)]
         before = shown_already(base, thresholds, [*screen.places(subject, limits), *unsaid(subject)], threads)
-        prior = _after(base, before.fit, errors)
+        prior = _felt(_after(base, before.fit, errors), errors, signals)
         own, known = own.scaled(_scales(base, before)), learned(before)
         own = replace(own, holds=noticed(signals, references, known))
         return _with_learned(own, kept, prior, errors, known, thresholds)
     own = replace(own, holds=noticed(signals, ()))
     errors = [one for one, k in zip(usual, kept, strict=True) if k]
-    prior = Prior(np.zeros(len(errors)), np.eye(len(errors)))
+    prior = _felt(Prior(np.zeros(len(errors)), np.eye(len(errors))), errors, signals)
     return Prepared(own.base(kept, prior, thresholds), tuple(errors), False)
 
 
@@ -118,6 +120,24 @@ def _showing(columns: _Columns) -> np.ndarray:
 def _wide(errors: Sequence[nuisance.Usual], subject: Subject) -> Prior:
     """Of errors for life."""
     return Prior(np.zeros(len(errors)), np.diag(nuisance.for_life(errors, subject) ** 2))
+
+
+def _felt(prior: Prior, errors: Sequence[nuisance.Usual], signals: Sequence[Signals]) -> Prior:
+    """With what the base's motion tells of its accelerometer along the vertical: else its error hides loads."""
+    told = felt_upright(signals)
+    if told is None:
+        return prior
+    up, error, deviation = told
+    names = [p.name for p in EFFECTS[PLACE[0]].parameters]
+    axis = {names.index(f"accelerometer_{a}"): u for a, u in zip("xyz", up.tolist(), strict=True)}
+    row = np.array([axis.get(one.parameter, 0.0) * one.spread if one.effect == PLACE[0] else 0.0 for one in errors])
+    across = prior.covariance @ row
+    spread = float(row @ across)
+    if spread == 0:
+        return prior
+    share = across / (spread + deviation**2)
+    mean = prior.mean + share * (error - float(row @ prior.mean))
+    return Prior(mean, prior.covariance - np.outer(share, across))
 
 
 def sessions_of(signals: Sequence[Signals]) -> np.ndarray:

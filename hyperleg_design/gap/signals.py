@@ -71,6 +71,9 @@ class Signals:
     base: BaseMotion | None
     target: np.ndarray | None
     """Position target `(t, n)` [rad]."""
+    asked: np.ndarray | None
+    """Torque that a joint's controller asks for its stiffness, and for its damping, by what it sees: position and velocity as they are logged,
+    not smoothed; before a supply scales the first `(2, t, n)` [Nm]."""
     command: np.ndarray | None
     """Motor torque that the controller asks for `(t, m)` [Nm]: logged, or from targets and gains; before any limit."""
     measured: np.ndarray | None

@@ -5,10 +5,26 @@ import numpy as np
 import pytest
 import robots
 
+from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.diagnose import diagnose
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.filtering import sieve
-from hyperleg_design.gap.nuisance import DAY, DESCRIBED, FILTERED, TURNOVER, UNLISTED, WIDE, columns, for_life, spreads, stop, traces, usual_errors
+from hyperleg_design.gap.nuisance import (
+    DAY,
+    DESCRIBED,
+    FILTERED,
+    FORCES_SCALED,
+    TURNOVER,
+    UNLISTED,
+    WIDE,
+    columns,
+    for_life,
+    spreads,
+    stop,
+    traces,
+    usual_errors,
+)  # fmt: skip
+from hyperleg_design.gap.subject import load_subject
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +41,7 @@ def test_every_error_belongs_to_the_catalogue_and_to_a_place_of_the_robot(signal
     for one in errors:
         assert one.spread > 0
         assert one.effect in (TURNOVER, *UNLISTED) or one.location in EFFECTS[one.effect].locations(signals.subject)
-    assert set(WIDE) == set(DAY) <= set(EFFECTS)
+    assert set(WIDE) == set(DAY) <= {*EFFECTS, *UNLISTED}
     assert np.all(spreads(errors, DAY) <= 1)
     assert np.all(spreads(errors, WIDE) >= 1)
 
@@ -130,3 +146,19 @@ def test_a_joint_without_a_drive_has_no_belt(tmp_path):
     assert signals.subject.passive.tolist() == [False, True]
     belts = [one.location for one in usual_errors(signals.subject, signals.step) if one.effect == "stiff_belt"]
     assert belts == ["hip"]
+
+
+def test_forces_that_are_told_too_large_show_as_said(biped_runs):
+    log, share = biped_runs["standing"], 0.02
+    larger = {c: v * (1 + share) for c, v in log.signals.items() if c.startswith("contact_force/left")}
+    assert larger
+    subject = load_subject(None, [log])
+    right, wrong = (condition(one, subject) for one in (log, log.changed(signals={**log.signals, **larger})))
+    place = next(e for e in usual_errors(subject, right.step) if (e.effect, e.location) == (FORCES_SCALED, "left_foot"))
+    (found,) = traces(right, [place])
+    for balance, trace in found.items():
+        moved = (wrong.residual[balance] - right.residual[balance])[right.valid]
+        expected = trace[right.valid] * share / place.spread
+        np.testing.assert_allclose(np.abs(moved), np.abs(expected), atol=0.02 * np.abs(expected).max())
+        assert np.abs(expected).max() > 0.01
+    assert set(found) == {"motion", "base"}

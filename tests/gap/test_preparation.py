@@ -1,7 +1,11 @@
 import diagnosed
 import numpy as np
+import pytest
 
+from hyperleg_design.gap import preparation
+from hyperleg_design.gap.base import Prior
 from hyperleg_design.gap.fit import Design
+from hyperleg_design.gap.nuisance import Usual
 from hyperleg_design.gap.preparation import MOST_SESSIONS, sessions_of
 
 
@@ -24,3 +28,22 @@ def test_what_reference_logs_know_is_not_found_again(robot_files):
     alone = diagnosed.prepared(robot_files["coupled"], test)
     assert not alone.calibrated
     assert np.sum(Design(alone.base).fit().rss) > 10 * np.sum(fit.rss)
+
+
+def test_what_the_accelerometer_feels_too_much_is_known_along_the_vertical_alone(monkeypatch):
+    spread = 0.05
+    errors = [Usual("link_mass", "pelvis", 0, 0.4), *(Usual("imu_bias", "imu", i, spread) for i in (3, 4, 5))]
+    rng = np.random.default_rng(3)
+    root = rng.normal(size=(4, 6))
+    prior = Prior(rng.normal(size=4), root @ root.T)
+    up, error, deviation = np.array([0.1, -0.2, np.sqrt(0.95)]), 0.08, 0.012
+    monkeypatch.setattr(preparation, "felt_upright", lambda signals: (up, error, deviation))
+    known = preparation._felt(prior, errors, [])
+    row = np.r_[0, spread * up]
+    precision = prior.precision + np.outer(row, row) / deviation**2  # Bayes' rule, by information
+    np.testing.assert_allclose(known.precision, precision, rtol=1e-6)
+    np.testing.assert_allclose(precision @ known.mean, prior.precision @ prior.mean + row * error / deviation**2, rtol=1e-6)
+    assert row @ known.mean == pytest.approx(error, abs=3 * deviation)
+    assert preparation._felt(prior, errors[:1] * 4, []) is prior
+    monkeypatch.setattr(preparation, "felt_upright", lambda signals: None)
+    assert preparation._felt(prior, errors, []) is prior

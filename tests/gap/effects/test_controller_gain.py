@@ -1,4 +1,6 @@
+import diagnosed
 import numpy as np
+import robots
 from pendulum import Wrong, misfit
 
 from hyperleg_design.gap.effects import effect
@@ -17,6 +19,19 @@ def test_trace_is_what_other_gains_leave(pendulum):
 def test_simulation_with_it_leaves_its_trace(simulated):
     signals = simulated("controller_gain", [0.8, 1.2])
     assert misfit(signals, GAIN.trace(signals, "swing", np.array([[0.8, 1.2]])), "drive") < 0.03
+
+
+def test_measured_torques_show_it_whatever_the_controllers_sensors_saw(robot_files):
+    """A velocity that no position follows, as of a shaking joint that is sampled too slowly, damps all the same."""
+    log = robots.without(robots.geared_run("joint", ("hip", "knee")), "motor_velocity")
+    log = robots.without(log, "motor_torque_command")
+    false = log.column("velocity/hip") + 2.0 * (np.abs(log.time - 4.0) < 0.2)
+    (stiffness, damping), (soft, dull) = robots.GAINS[0], (0.8, 1.3)
+    asked = soft * stiffness * (log.column("position_target/hip") - log.column("position/hip")) - dull * damping * false
+    told = {"velocity/hip": false, "motor_torque/hip": asked}
+    signals = diagnosed.conditioned(robot_files["geared"], log.changed(signals={**log.signals, **told}))[0]
+    trace = GAIN.trace(signals, "hip", np.array([[soft, dull]]))["drive"][0, :, 0]
+    np.testing.assert_allclose(trace[signals.valid], signals.residual["drive"][signals.valid, 0], atol=1e-9)
 
 
 def test_of_logged_commands_it_shows_in_the_control(pendulum):
