@@ -95,6 +95,11 @@ def test_bad_input_is_one_clear_line_and_exit_code_two(capsys, arguments, words)
         assert word in err + out
 
 
+def test_an_unknown_option_is_named_once(capsys):
+    _, _, err = run(capsys, "list", "--foo")
+    assert err.startswith("hyperleg: arguments: Unrecognized options: --foo")
+
+
 def test_every_verb_has_help(capsys):
     for verb, command in cli.VERBS.items():
         code, out, _ = run(capsys, verb, "--help")

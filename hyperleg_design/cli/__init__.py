@@ -57,8 +57,9 @@ def _parse(arguments: list[str]) -> Any:
     except SystemExit as stop:
         if not stop.code:
             raise
-        text = re.sub(r"[╭╮╰╯│─]+", " ", errors.getvalue())
+        text = re.sub(r"[╭╮╰╯│─]+|-{3,}", " ", errors.getvalue())
         text = re.sub(r"\s+", " ", text).strip()
+        text = re.sub(r"^(.+?) \1", r"\1", text)  # a box whose title is the first words of what is in it
         raise InputError("arguments", "", None, text or "see hyperleg --help") from None
     if (seed := getattr(command, "seed", None)) is not None and seed < 0:
         raise InputError("arguments", "seed", seed, "expects a whole number from 0 on")
