@@ -23,6 +23,8 @@ class Prior:
     """`(p,)`"""
     covariance: np.ndarray
     """`(p, p)`"""
+    told: bool = False
+    """Whether reference logs told it."""
 
     @cached_property
     def most(self) -> np.ndarray:

@@ -24,7 +24,7 @@ from hyperleg_design.gap.fit import Cause, Design, Fit
 from hyperleg_design.gap.heard import KNOCKING, Heard
 from hyperleg_design.gap.judge import ROUNDS, Judge, Model, rank
 from hyperleg_design.gap.knocking import knocking
-from hyperleg_design.gap.loose import PLAY, SPRING, loose
+from hyperleg_design.gap.loose import BELTS, loose
 from hyperleg_design.gap.naming import HELD, SAG, likelier, sticks_alone, worth_adding, worth_naming
 from hyperleg_design.gap.subject import FULL
 from hyperleg_design.gap.unstable import unstable
@@ -39,13 +39,13 @@ FINALISTS = 10
 """Candidates that are judged on held-out data."""
 REFINED = 24
 """Candidates that are fitted to the end before that."""
+TWINNED = 3
+"""Of these, how many whose twins are judged, too, however little a first look at them promises."""
 MOST_CAUSES = 3
 PAIRED, PAIRS = 6, 2
 """Of the finalists, how many are tried two by two, and pairs of these that are judged on held-out data."""
 SAGGED = 0.03
 """Share of the voltage that must be missing for a weak battery where reference logs tell what it is when all is well."""
-BELTS = (PLAY, SPRING)
-"""Effects of belts that give."""
 DECISIVE = 30.0
 """Log-likelihood by which balances must tell a soft belt from play to be believed more than what is heard: they hardly see its harmonics."""
 SEVERAL = 2
@@ -211,7 +211,16 @@ def _finalists(judge: Judge, wanted: Sequence[tuple[str, str]], beside: Sequence
     refined.sort(key=lambda pair: (-pair[0], pair[1].name))
     models = screen.spread(lambda pair: judge.model([*beside, pair[1].cause]), refined[:FINALISTS], judge.threads)
     models.sort(key=lambda m: (-rank(m), m.names))
+    lacking = {_twin(m.names[-1]) for m in models[:TWINNED]} & {*wanted} - {*taken, *(m.names[-1] for m in models)}
+    twins = [c for c in screen.screen(base, start, sorted(lacking), judge.threads, beside) if isinstance(c, screen.Candidate)]
+    models += screen.spread(lambda one: judge.model([*beside, one.cause]), twins, judge.threads)
+    models.sort(key=lambda m: (-rank(m), m.names))
     return models, [c for c in found if isinstance(c, screen.NotJudged)]
+
+
+def _twin(name: tuple[str, str]) -> tuple[str, str]:
+    """What a load on a link, or an error of the link's own mass, is hard to tell from: the other of both."""
+    return {"payload": "link_mass", "link_mass": "payload"}.get(name[0], ""), name[1]
 
 
 def _taken(beside: Sequence[Cause]) -> set[tuple[str, str]]:

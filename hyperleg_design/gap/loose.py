@@ -45,7 +45,8 @@ WIDTH = 1.5
 """Play over how far the rotor swings to one side: to and fro, it passes both its ends by a third (measured on simulated belts)."""
 BLOCK = 100
 """Ticks that are held out together where there is one log."""
-PLAY, SPRING = "backlash", "transmission_elasticity"
+PLAY, SPRING = BELTS = "backlash", "transmission_elasticity"
+"""Effects of belts that give."""
 
 
 @dataclass(frozen=True, eq=False)

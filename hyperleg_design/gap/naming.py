@@ -12,6 +12,7 @@ import numpy as np
 from hyperleg_design.gap.episodes import of_time
 from hyperleg_design.gap.fit import parts
 from hyperleg_design.gap.judge import OWN_ROWS, Judge, Model, rank
+from hyperleg_design.gap.loose import BELTS
 
 SAG = "voltage_sag"
 """Effect of a weak battery."""
@@ -38,7 +39,7 @@ def worth_naming(judge: Judge, model: Model) -> bool:
     rules = judge.thresholds
     rows = judge.excess_rows(model)
     partly = float(judge.gap(model.held.square, rows)) >= rules.least_gap
-    doubtful = partly or _floating(judge) or model.causes[-1].doubtful
+    doubtful = partly or _unsure_afoot(judge, model) or model.causes[-1].doubtful
     least = (rules.evident_doubtful if doubtful else rules.evident) * (CHATTERING if model.causes[-1].unsettling else 1.0)
     if model.gain < least:
         return False
@@ -154,6 +155,12 @@ def stands_out(judge: Judge, model: Model) -> bool:
     own = np.flatnonzero(judge.own(model, 0) & (judge.shown(model, 0) >= judge.thresholds.visible**2))
     bare, left, nothing = (float(judge.rows(v)[own].sum()) for v in (model.held.bare, model.held.square, judge.nothing.held.square))
     return bool(own.size) and left <= (1 - OWN_WORTH) * bare and left <= CLEARER * nothing
+
+
+def _unsure_afoot(judge: Judge, model: Model) -> bool:
+    """Whether a robot stands on its feet and no reference logs tell its errors; what its belts do there they do not tell either."""
+    told = judge.base.prior.told and not any(c.effect in BELTS for c in model.causes)
+    return _floating(judge) and not told
 
 
 def _floating(judge: Judge) -> bool:

@@ -106,7 +106,7 @@ def _with_learned(
     size, added = len(errors), len(open_errors)
     covariance = np.eye(size + added)
     covariance[:size, :size] = prior.covariance
-    wider = Prior(np.concatenate([prior.mean, np.zeros(added)]), covariance)
+    wider = Prior(np.concatenate([prior.mean, np.zeros(added)]), covariance, told=True)
     whole = replace(own, errors=np.concatenate([own.errors, more]), known=trace)
     base = whole.base(np.concatenate([kept, np.ones(added, bool)]), wider, thresholds)
     return Prepared(base, (*errors, *open_errors), True, tuple(one.says for one, _ in shown))
@@ -137,7 +137,7 @@ def _felt(prior: Prior, errors: Sequence[nuisance.Usual], signals: Sequence[Sign
         return prior
     share = across / (spread + deviation**2)
     mean = prior.mean + share * (error - float(row @ prior.mean))
-    return Prior(mean, prior.covariance - np.outer(share, across))
+    return Prior(mean, prior.covariance - np.outer(share, across), prior.told)
 
 
 def sessions_of(signals: Sequence[Signals]) -> np.ndarray:
@@ -219,7 +219,7 @@ def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual]) -> Prior:
     day = nuisance.spreads(errors, nuisance.DAY)
     friction = np.array([one.effect in FRICTION for one in errors])
     day = np.hypot(day, np.where(friction, nuisance.ABOVE_CALIBRATED * np.abs(mean), 0.0))
-    return Prior(mean, known + np.diag(day**2))
+    return Prior(mean, known + np.diag(day**2), told=True)
 
 
 def _scales(base: Base, model: Model) -> dict[tuple[str, int, int], float]:

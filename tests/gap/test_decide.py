@@ -1,9 +1,12 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import diagnosed
 import numpy as np
+import robots
 from diagnosed import in_episodes
 
+from hyperleg_design.gap import decide
 from hyperleg_design.gap.decide import BELTS, DECISIVE, _as_healthy, _fails, _finalists, _from, _paired, _taken, _told_apart, _verdict
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.judge import Judge, rank
@@ -92,6 +95,17 @@ def test_a_pair_that_none_of_its_rivals_leads_to_is_found_among_the_finalists(tw
     assert all(found.names in [m.names for m in slot] for slot in slots)
     assert _paired(two_wrong, wanted, singles, found, slots) == (found, slots), "what is best stays"
     assert _from([wrong, found], found) == (found,)
+
+
+def test_an_error_of_a_links_mass_is_judged_beside_a_load_on_it_however_few_are(robot_files, monkeypatch):
+    log = robots.geared_run("joint", ("hip", "knee"), load=0.5)
+    judge = Judge(diagnosed.prepared(robot_files["geared"], log).base, load_thresholds(), 1)
+    wanted = [("link_mass", "shank"), ("payload", "shank"), ("link_mass", "thigh"), ("viscous_friction", "knee")]
+    monkeypatch.setattr(decide, "FINALISTS", 1)
+    models, _ = _finalists(judge, wanted, ())
+    assert {m.names[0] for m in models} == {("link_mass", "shank"), ("payload", "shank")}
+    assert [rank(m) for m in models] == sorted((rank(m) for m in models), reverse=True)
+    assert len(_finalists(judge, wanted[:1], ())[0]) == 1, "what nobody asked for is not tried"
 
 
 def supplied(voltage, nominal):

@@ -41,20 +41,23 @@ def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives_or_by_its
     assert unshown(judge, model) is (unseen and effect == "voltage_sag"), "a battery that nobody measured takes no more than all torque"
 
 
-@pytest.mark.parametrize(("gain", "over", "left", "floating", "doubtful", "unsettling", "worth"), [
-    (6.5, 6.5, 0.9, False, False, False, True), (5.5, 6.5, 0.9, False, False, False, False), (20.0, 5.5, 0.9, False, False, False, False),
-    (6.5, 6.5, 0.9, True, False, False, False), (8.5, 8.5, 0.9, True, False, False, True), (6.5, 6.5, 1.2, False, False, False, False),
-    (6.5, 6.5, 0.9, False, True, False, False), (8.5, 8.5, 0.9, False, True, False, True), (8.5, 8.5, 1.2, False, False, False, True),
-    (3.5, 3.5, 0.9, False, False, True, True), (2.5, 3.5, 0.9, False, False, True, False),
+@pytest.mark.parametrize(("gain", "over", "left", "floating", "doubtful", "unsettling", "told", "effect", "worth"), [
+    (6.5, 6.5, 0.9, False, False, False, False, "backlash", True), (5.5, 6.5, 0.9, False, False, False, False, "backlash", False),
+    (20.0, 5.5, 0.9, False, False, False, False, "backlash", False), (6.5, 6.5, 0.9, True, False, False, False, "payload", False),
+    (8.5, 8.5, 0.9, True, False, False, False, "backlash", True), (6.5, 6.5, 1.2, False, False, False, False, "backlash", False),
+    (6.5, 6.5, 0.9, False, True, False, False, "backlash", False), (8.5, 8.5, 0.9, False, True, False, False, "backlash", True),
+    (8.5, 8.5, 1.2, False, False, False, False, "backlash", True), (3.5, 3.5, 0.9, False, False, True, False, "backlash", True),
+    (2.5, 3.5, 0.9, False, False, True, False, "backlash", False), (6.5, 6.5, 0.9, True, False, False, True, "payload", True),
+    (6.5, 6.5, 0.9, True, False, False, True, "backlash", False), (6.5, 6.5, 1.2, True, False, False, True, "payload", False),
 ])  # fmt: skip
-def test_evidence_counts_over_the_floor_and_a_doubtful_cause_needs_more(gain, over, left, floating, doubtful, unsettling, worth):
+def test_evidence_counts_over_the_floor_and_a_doubtful_cause_needs_more(gain, over, left, floating, doubtful, unsettling, told, effect, worth):
     subject = SimpleNamespace(floating=floating)
     samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=subject))])
-    judge = SimpleNamespace(base=SimpleNamespace(samples=samples), thresholds=load_thresholds(), holds={})
+    judge = SimpleNamespace(base=SimpleNamespace(samples=samples, prior=SimpleNamespace(told=told)), thresholds=load_thresholds(), holds={})
     judge.gap, judge.excess_rows = lambda square, rows: square, lambda model: np.ones(2, bool)
     judge.closed, judge.shown = lambda held, rows, before: 1.0, lambda model, place: np.array([9.0, 0.0])
     judge.nothing = SimpleNamespace(gain=0.0, over=0.0, causes=())
-    causes = (SimpleNamespace(effect="backlash", location="knee", unsettling=unsettling, unseen=False, doubtful=doubtful),)
+    causes = (SimpleNamespace(effect=effect, location="knee", unsettling=unsettling, unseen=False, doubtful=doubtful),)
     assert worth_naming(judge, SimpleNamespace(gain=gain, over=over, causes=causes, held=SimpleNamespace(bare=2.0, square=left))) is worth
 
 
