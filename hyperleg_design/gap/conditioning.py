@@ -19,6 +19,7 @@ from hyperleg_design.gap.chatter import chatter
 from hyperleg_design.gap.control import control_residual
 from hyperleg_design.gap.ground import balance as ground_balance
 from hyperleg_design.gap.plausibility import frozen
+from hyperleg_design.gap.sensed import sensed_velocity
 from hyperleg_design.gap.signals import Signals
 from hyperleg_design.gap.smoothing import smooth
 from hyperleg_design.gap.supply import over_nominal
@@ -73,7 +74,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         base, derived = base_motion(log, subject, ticks)
         notes += derived
     voltage = _voltage(log, ticks)
-    command, target, asked, control, others = _command(log, subject, ticks, motion)
+    command, target, control, others = _command(log, subject, ticks, motion)
     measured = _measured(log, subject, ticks)
     limited = None if command is None else limited_torque(subject, command, motion.first, voltage)
     believed, more = _believed(log, subject, measured, limited)
@@ -106,7 +107,8 @@ def condition(log: Log, subject: Subject) -> Signals:
     valid = _valid(log, ticks, position[:, ~lacking], _edge(motion, lacking))
     signals = Signals(
         log=log, subject=subject, step=step, time=ticks, position=motion.value, velocity=motion.first, acceleration=motion.second, base=base,
-        target=target, asked=asked, command=command, measured=measured, believed=believed, rigid=needed,
+        sensed=sensed_velocity(resampled(log.time, velocity, ticks), motion, step), target=target, command=command, measured=measured,
+        believed=believed, rigid=needed,
         temperature=resampled_or_none(log.time, of_motors(log, "motor_temperature", subject), ticks),
         voltage=voltage, contact=ground.foot_force, valid=valid, residual=residual, pad_force=ground.pad_force,
         touching=ground.touching, bandwidth=motion.crossover / (2 * np.pi), noise=motion.level, chatter=shaken, notes=tuple(notes),
@@ -151,13 +153,12 @@ def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray, v
 
 def _command(
     log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth
-) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
-    """Motor torque that the controller asks for, position targets, what it is made of, the balance of the control, and motors it leaves out."""
+) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
+    """Motor torque that the controller asks for, position targets, the balance of the control, and motors that it cannot speak of."""
     raw_target = log.stack("position_target", subject.joints)
     logged = of_motors(log, "motor_torque_command", subject)
     command = resampled(log.time, logged, ticks)
     target = resampled_or_none(log.time, raw_target, ticks)
-    parts: np.ndarray | None = None
     control: np.ndarray | None = None
     others: tuple[str, ...] = ()
     if target is not None:
@@ -173,11 +174,10 @@ def _command(
         supplied = over_nominal(subject, log.column("battery_voltage"))
         asked = supplied * applied(subject.motor_from_joint, spring) + applied(subject.motor_from_joint, damper)
         torque = resampled(log.time, asked, ticks)
-        parts = np.stack([resampled(log.time, one, ticks) for one in (spring, damper)])
         command = np.where(np.isfinite(command), command, torque)
     if subject.one_to_one and subject.passive.any():
         command[:, subject.passive] = 0.0
-    return (command if np.isfinite(command[:, _driven(subject)]).any() else None), target, parts, control, others
+    return (command if np.isfinite(command[:, _driven(subject)]).any() else None), target, control, others
 
 
 def _driven(subject: Subject) -> np.ndarray:

@@ -69,11 +69,10 @@ class Signals:
     acceleration: np.ndarray
     """Of the joints `(t, n)` [rad, rad/s, rad/s^2]."""
     base: BaseMotion | None
+    sensed: np.ndarray
+    """Velocity that controllers see, see `sensed` `(t, n)` [rad/s]."""
     target: np.ndarray | None
     """Position target `(t, n)` [rad]."""
-    asked: np.ndarray | None
-    """Torque that a joint's controller asks for its stiffness, and for its damping, by what it sees: position and velocity as they are logged,
-    not smoothed; before a supply scales the first `(2, t, n)` [Nm]."""
     command: np.ndarray | None
     """Motor torque that the controller asks for `(t, m)` [Nm]: logged, or from targets and gains; before any limit."""
     measured: np.ndarray | None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, is_logged, is_measured, limited
+from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, is_logged, limited
 from hyperleg_design.simulation.alteration import Alteration, Machine
 
 if TYPE_CHECKING:
@@ -45,16 +45,13 @@ class ControllerGain(Effect):
             return {}
         scale = np.atleast_2d(np.asarray(values, float))[..., None] - 1.0
         stiffness, damping = subject.gains[joint]
-        smooth = np.stack([stiffness * (signals.target - signals.position)[:, joint], -damping * signals.velocity[:, joint]])
+        error = signals.target[:, joint] - signals.position[:, joint]
+        spring, damper = scale[:, 0] * (stiffness * error), scale[:, 1] * (damping * signals.sensed[:, joint])
         changes, control = {}, None
         for motor in np.flatnonzero(subject.motor_from_joint[:, joint]).tolist():
             if subject.motors[motor] not in driven_motors(subject) or not is_commanded(signals, motor):
                 continue
-            # a torque that is measured is what the controller made of its own sensors, their noise and aliases included
-            exact = is_measured(signals, motor) or is_logged(signals, motor)
-            seen = signals.asked[:, :, joint] if signals.asked is not None and exact else smooth
-            spring, damper = scale[:, 0] * seen[0], scale[:, 1] * seen[1]
-            share = subject.motor_from_joint[motor, joint] * (signals.supplied[:, motor] * spring + damper)
+            share = subject.motor_from_joint[motor, joint] * (signals.supplied[:, motor] * spring - damper)
             if is_logged(signals, motor):
                 if "control" in signals.residual:
                     control = np.zeros((*share.shape, len(subject.motors))) if control is None else control

@@ -107,7 +107,7 @@ def given(signals: Signals, motor: int) -> np.ndarray:
     share = subject.motor_from_joint[motor]
     own = share != 0
     spring = (signals.target - signals.position)[:, own] @ (stiffness * share)[own]
-    asked = signals.supplied[:, motor] * spring - signals.velocity[:, own] @ (damping * share)[own]
+    asked = signals.supplied[:, motor] * spring - signals.sensed[:, own] @ (damping * share)[own]
     return np.where(np.isfinite(asked), limited(signals, motor, asked), believed)
 
 
