@@ -38,6 +38,8 @@ PHASES = 48
 """Of a swing over which friction is averaged."""
 UNSETTLED = 0.2
 """Share of a log in which a joint must chatter to count as unsettled."""
+MOVED = 0.3
+"""Share of the largest joint's swing from which a joint's own loop and motors may be to blame."""
 UNSETTLING = ("command_delay", "actuator_bandwidth", "controller_gain", "transmission_elasticity", "backlash")
 """Effects that can bring a control loop to the edge of its stability."""
 
@@ -108,6 +110,18 @@ def unsettled(samples: Samples) -> tuple[str, ...]:
     signals = [s.signals for s in samples.sieves]
     joints = signals[0].subject.joints
     return tuple(joints[j] for j in np.flatnonzero(np.broadcast_to(chattering(signals), len(joints))))
+
+
+def shaking(samples: Samples) -> tuple[str, ...]:
+    """Those of the unsettled joints whose own loops or belts may be to blame, in any log: the others are shaken along."""
+    names = unsettled(samples)
+    signals = [s.signals for s in samples.sieves if s.signals.chatter is not None and s.signals.chatter.joints.any()]
+    found: set[str] = set()
+    for one in signals:
+        assert one.chatter is not None
+        size = np.sqrt(np.mean(one.chatter.speed**2, 0)) * one.chatter.joints
+        found |= {one.subject.joints[j] for j in np.flatnonzero(size >= MOVED * size.max())}
+    return tuple(name for name in names if name in found)
 
 
 def swings(signals: Sequence[Signals], joint: str) -> str:

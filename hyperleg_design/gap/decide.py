@@ -106,7 +106,7 @@ def decide(
     elif float(judge.gap(chosen.held.bare, rows)) < thresholds.least_gap:
         rows = judge.own(chosen, 0)
     shaped = shaping.instead(judge, chosen, rows, max((m.gain for m in singles), default=0.0)) or shaping.beside(judge, chosen, rows)
-    lost = 0.0 if _sags(judge, chosen, rows) else _lost(base.samples, chosen.held.left, thresholds)
+    lost = 0.0 if _sags(judge, chosen, rows) or _leaves_nothing(judge, chosen) else _lost(base.samples, chosen.held.left, thresholds)
     shaken = () if any(c.unsettling for c in chosen.causes) else swinging
     swung = [screen.NotJudged(*name, "its joint chatters, which averages friction out") for name in averaged]
     swung += [screen.NotJudged(*name, "its voltage is that of the reference logs") for name in supplied]
@@ -181,6 +181,7 @@ def _chosen(judge: Judge, wanted: Sequence[tuple[str, str]], singles: list[Model
     best = next((m for m in singles if worth_naming(judge, m)), None)
     if best is None:
         return judge.nothing, []
+    best = likelier(judge, singles, best)
     chosen, slots = best, [_from(singles, best)]
     while len(chosen.causes) < MOST_CAUSES:
         more, _ = _finalists(judge, wanted, chosen.causes)
@@ -297,6 +298,12 @@ def _sags(judge: Judge, chosen: Model, rows: np.ndarray) -> bool:
     """Whether a weak battery is named, which all drives feel at once: its model need not get each of them right."""
     sagging = any(c.effect == SAG for c in chosen.causes)
     return sagging and judge.closed(chosen.held, rows, chosen.held) >= judge.thresholds.far_required
+
+
+def _leaves_nothing(judge: Judge, chosen: Model) -> bool:
+    """Whether causes leave no gap in any row nor its episodes: what lost commands do is large while it lasts."""
+    left = judge.rows(chosen.held.square)
+    return bool(chosen.causes) and float(np.sqrt(left.max())) < judge.thresholds.largest_excess
 
 
 def _lost(samples: Samples, left: np.ndarray, rules: Thresholds) -> float:

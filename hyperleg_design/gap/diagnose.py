@@ -25,6 +25,7 @@ from hyperleg_design.gap.held_out import Held, predict
 from hyperleg_design.gap.holding import sticks
 from hyperleg_design.gap.imu_offset import PLACE, imu_offset
 from hyperleg_design.gap.judge import CHATTERS, Judge, Model, rank
+from hyperleg_design.gap.naming import sticks_alone
 from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.regimes import worst
@@ -175,6 +176,8 @@ class _Report:
         """All of it."""
         judge, found = self.judge, self.found
         verdict = found.verdict
+        if verdict in NAMING and not self.carries_over():
+            verdict = "unknown"
         named = found.model.causes if verdict in NAMING else ()
         doubts = self.doubts()
         sets: list[list[Model]] = []
@@ -206,6 +209,14 @@ class _Report:
         rules, rows = self.judge.thresholds, self.found.rows
         likely = sum(table.get(names, 0.0) for names in {self.found.model.names, *(m.names for m in alike_first)})
         return likely < rules.likely and float(self.judge.gap(self.found.model.held.bare, rows)) < rules.largest_excess
+
+    def carries_over(self) -> bool:
+        """Whether causes also close the gap of whole logs that were held out: what stands for something else does so in one motion alone."""
+        judge, found = self.judge, self.found
+        if self.way == BLOCKS or self.small or sticks_alone(judge, found.model, found.rows):
+            return True
+        left = float(judge.gap(self.held(found.model).square, found.rows))
+        return left <= judge.thresholds.largest_excess or self.closed(found.model) >= judge.thresholds.required
 
     def _differs(self, model: Model) -> int:
         names = self.found.model.names

@@ -38,8 +38,9 @@ ENDS = (3.0, 97.0)
 """Percentiles between which a torque ranges."""
 WITHIN = 1.88
 """Standard deviations between which noise lies as often as between `ENDS`."""
-OF_LOAD = 0.15
-"""Share of the range of the load, as other joints move, that the model may have wrong (assumed)."""
+OF_LOAD, OF_JOLTS, AFOOT = 0.15, 0.3, 0.5
+"""Share of the range of the load, as other joints move, that the model may have wrong; of what of it is no straight line in time, as other
+joints knock; and of all of it where a robot stands on its feet, whose forces are known roughly (assumed)."""
 BEYOND, LEAST = 0.25, 0.01
 """Friction beyond the known one that counts: of that, and of the torque that the joint is made for; belts and drives hold some, too."""
 SURE = 20.0
@@ -63,8 +64,8 @@ def held(signals: Signals) -> np.ndarray:
             # the rest alone: what the motion before and after it needs must not leak into it
             part = slice(whole.start + edge, whole.stop - edge)
             torque = band_limited(np.pad(motion[part, joint], around, mode="edge"), signals.step, band)[around:-around]
-            range_of_load = OF_LOAD * _half(signals.rigid[part, joint])
-            found[joint] = max(found[joint], _half(torque) - range_of_load - WITHIN * level)
+            unsure = _unsure(signals.rigid[part, joint], subject.floating)
+            found[joint] = max(found[joint], _half(torque) - unsure - WITHIN * level)
     return found
 
 
@@ -118,6 +119,14 @@ def _load(signals: Sequence[Signals], joint: str) -> float:
     place = signals[0].subject.joints.index(joint)
     sent = [applied(s.subject.joint_from_motor, s.believed)[:, place] for s in signals]
     return float(np.nanpercentile(np.abs(np.concatenate(sent)), 90))
+
+
+def _unsure(load: np.ndarray, floating: bool) -> float:
+    """Half the range of what may be wrong in the load of a joint at rest [Nm]."""
+    if floating:
+        return AFOOT * _half(load)
+    time = np.arange(len(load))
+    return OF_LOAD * _half(load) + OF_JOLTS * _half(load - np.polyval(np.polyfit(time, load, 1), time))
 
 
 def _half(values: np.ndarray) -> float:

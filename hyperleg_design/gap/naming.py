@@ -79,7 +79,7 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
         return False
     plain = gain >= (1.0 if own else PLAIN) * rules.second_evident * already
     calm = judge.shown(model, already)[judge.calm]
-    if visible and float(np.sqrt(calm.max())) >= (1.0 if plain else rules.second_visible):
+    if visible and float(np.sqrt(calm.max())) >= (1.0 if own or plain else rules.second_visible):
         return True
     return (own and plain and _in_a_band(judge, model)) or shows_in_a_band(judge, model, before)
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from hyperleg_design.gap import telling
 from hyperleg_design.gap.base import Base
-from hyperleg_design.gap.chatter import UNSETTLING, unsettled
+from hyperleg_design.gap.chatter import UNSETTLING, shaking
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.endogenous import factor
 from hyperleg_design.gap.fit import Cause, Design, Fit
@@ -140,7 +140,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
 
 def _unsettling(samples: Samples, effect: Effect, location: str) -> bool:
     """Whether a joint chatters that an effect could have made unstable, in any log."""
-    shaken = set(unsettled(samples)) if effect.identifier in UNSETTLING else set()
+    shaken = set(shaking(samples)) if effect.identifier in UNSETTLING else set()
     subject = samples.sieves[0].signals.subject
     if location in subject.motors and effect.kind == "motor":
         moves = subject.joint_from_motor[:, subject.motors.index(location)] != 0

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.chatter import MOVED
 from hyperleg_design.gap.diagnosis import Named, Value
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.belt import rotor
@@ -38,8 +39,6 @@ RINGS = np.geomspace(110.0, 6.0, 18)
 """Frequencies of a rotor on its belt that are tried [Hz]."""
 STARTS = (0.75, 1.0, 1.3)
 """Where modes are looked for, over the chatter's frequency."""
-MOVED = 0.3
-"""Share of the largest joint's swing from which a joint's own loop and motors may be to blame."""
 LOWER, HIGHER = 0.15, 0.35
 """Of the chatter's frequency below and above the mode's: spread of its logarithm (assumed, see above)."""
 ALIKE = 4.0

@@ -32,6 +32,9 @@ SAG = 0.2
 """Share of the voltage that is missing at the reference power, where nobody logged it (assumed: 5.8-7.4 V of an XL330's 7.4 V)."""
 AT_REST = 0.5
 """Part of `SAG` that is missing without load, as batteries run down (assumed)."""
+FAR, FALLS_SHORT, FEWEST = 6.0, 0.02, 20
+"""A motor falls short where it gives less than it is told, by so many times the median of its error, and by this share of the torque that
+it is made for; ticks that a line needs."""
 REFERENCE_SPEED = 0.5
 """Reference power: the torque that the joints are made for at this speed [rad/s]; assumed."""
 
@@ -94,12 +97,30 @@ class VoltageSag(Effect):
         return WeakBattery(values[..., 0], values[..., 1], values[..., 2], strength, ratios, reference_power(subject))
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Limits alone, torques alone."""
+        """Limits alone, torques alone; of motors whose line nobody knows, also the line on which they give less than they are told."""
         if np.isfinite(signals.subject.stall_torque).all():
             return np.array([[1.0, 0.0, 10.0], [3.0, 0.0, 10.0], [0.0, 1.0, 10.0]])
-        return np.array(
-            [[1.0, 0.0, 10.0], [1.0, 0.0, 20.0], [1.0, 0.0, 40.0], [0.5, 0.0, 20.0], [2.0, 0.0, 20.0], [4.0, 0.0, 20.0], [0.0, 1.0, 10.0]]
-        )
+        usual = [[1.0, 0.0, 10.0], [1.0, 0.0, 20.0], [1.0, 0.0, 40.0], [0.5, 0.0, 20.0], [2.0, 0.0, 20.0], [4.0, 0.0, 20.0], [0.0, 1.0, 10.0]]
+        return np.array([*_lines(signals), *usual])
+
+
+def _lines(signals: Signals) -> list[list[float]]:
+    """`limits`, `torque` and `speed` of the line through what each measured motor gives at most `(3,)`; empty where none falls short."""
+    subject, found = signals.subject, []
+    for motor in range(len(subject.motors)):
+        if not is_commanded(signals, motor) or signals.measured is None:
+            continue
+        torque = signals.measured[:, motor]
+        way = np.sign(torque)
+        short = (limited(signals, motor, commanded(signals, motor)) - torque) * way
+        far = np.flatnonzero(short > max(FAR * float(np.nanmedian(np.abs(short))), FALLS_SHORT * motor_strength(subject, motor)))
+        if len(far) < FEWEST:
+            continue
+        lines = np.nan_to_num(np.stack([1 - missing(signals), -motor_velocity(signals, motor) * way], -1)[far])
+        (level, slope), *_ = np.linalg.lstsq(lines, np.abs(torque[far]) / motor_strength(subject, motor))
+        if level > 0 and slope > 0:
+            found.append([1 / level, 0.0, level / (slope * ratio(subject, motor))])
+    return found
 
 
 def missing(signals: Signals) -> np.ndarray:
