@@ -84,6 +84,21 @@ def test_joints_of_all_logs_are_told():
     assert unsettled(SimpleNamespace(sieves=[sieve()])) == ()
 
 
+def test_joints_that_are_shaken_along_are_not_to_blame():
+    from hyperleg_design.gap.chatter import MOVED, shaking, unsettled
+
+    def sieve(speed, *joints):
+        swing = None if speed is None else SimpleNamespace(joints=np.array(joints, bool), speed=np.broadcast_to(np.array(speed, float), (5, 3)))
+        return SimpleNamespace(signals=SimpleNamespace(chatter=swing, subject=SimpleNamespace(joints=("hip", "knee", "toe"))))
+
+    logs = SimpleNamespace(sieves=[sieve(None), sieve([0.9 * MOVED, 1.1 * MOVED, 1.0], 1, 1, 1)])
+    assert unsettled(logs) == ("hip", "knee", "toe")
+    assert shaking(logs) == ("knee", "toe")
+    logs.sieves.append(sieve([0.1, 9.0, 0.0], 1, 0, 0))
+    assert shaking(logs) == ("hip", "knee", "toe"), "it is loudest in one log; what does not chatter there is not"
+    assert shaking(SimpleNamespace(sieves=[sieve(None)])) == ()
+
+
 def test_a_joint_that_chatters_makes_the_answer_unknown_and_is_told(robot_files):
     import diagnosed
 

@@ -7,7 +7,20 @@ import robots
 from diagnosed import in_episodes
 
 from hyperleg_design.gap import decide
-from hyperleg_design.gap.decide import BELTS, DECISIVE, _as_healthy, _fails, _finalists, _from, _paired, _taken, _told_apart, _verdict
+from hyperleg_design.gap.decide import (
+    BELTS,
+    DECISIVE,
+    _as_healthy,
+    _chosen,
+    _fails,
+    _finalists,
+    _from,
+    _leaves_nothing,
+    _paired,
+    _taken,
+    _told_apart,
+    _verdict,
+)
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.judge import Judge, rank
 from hyperleg_design.gap.thresholds import load_thresholds
@@ -132,3 +145,20 @@ def test_a_drive_that_often_fails_its_commands_is_a_gap():
     told = in_episodes(1.2 * rules.failing, "motion", "motion", "drive")
     told.group[told.row == 2] = 0
     assert not _fails(told, rules), "drives that were measured do what they are told"
+
+
+def test_commands_that_get_lost_leave_something_in_rows_or_their_episodes(judged):
+    judge, found = judged
+    assert _leaves_nothing(judge, found.model)
+    assert not _leaves_nothing(judge, replace(found.model, causes=())), "what nobody explains may be anything"
+    assert not _leaves_nothing(replace(judge, thresholds=replace(judge.thresholds, largest_excess=0.1)), found.model)
+
+
+def test_the_first_cause_is_not_what_imitates_a_much_likelier_one(two_wrong, monkeypatch):
+    wanted = [("viscous_friction", "knee"), ("coulomb_friction", "knee")]
+    singles, _ = _finalists(two_wrong, wanted, ())
+    assert [m.names[0] for m in singles] == wanted
+    assert rank(singles[0]) > rank(singles[1]) + two_wrong.thresholds.alike
+    monkeypatch.setattr(decide, "worth_naming", lambda judge, model: model.names == singles[1].names)
+    monkeypatch.setattr(decide, "worth_adding", lambda *_: False)
+    assert _chosen(two_wrong, wanted, singles)[0].names == singles[0].names

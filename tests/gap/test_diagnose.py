@@ -8,6 +8,7 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.diagnose import _Report, diagnose, diagnose_signals
 from hyperleg_design.gap.diagnosis import SCHEMA_FILE
+from hyperleg_design.gap.samples import BLOCKS, LOGS
 from hyperleg_design.gap.thresholds import load_thresholds
 
 
@@ -106,3 +107,16 @@ def test_of_a_small_gap_rivals_close_what_they_close_over_what_is_left():
     assert [report.closed(held[name]) for name in ("chosen", "rival", "none")] == pytest.approx([1.0, 0.5, 0.0])
     held["chosen"].held.bare = 1.2
     assert not report.small, "a gap over the floor is measured against the floor"
+
+
+@pytest.mark.parametrize(("way", "small", "left", "closed", "carries"), [
+    (LOGS, False, 3.0, 0.2, False), (LOGS, False, 3.0, 0.9, True), (LOGS, False, 1.2, 0.2, True), (LOGS, True, 3.0, 0.2, True),
+    (BLOCKS, False, 3.0, 0.2, True),
+])  # fmt: skip
+def test_causes_must_close_much_of_the_gap_of_whole_logs_that_were_held_out(way, small, left, closed, carries):
+    judge = SimpleNamespace(holds={}, thresholds=load_thresholds(), gap=lambda square, rows: left, rows=lambda square: np.full(2, left**2))
+    judge.base = SimpleNamespace(samples=SimpleNamespace(rows=[SimpleNamespace(name="knee")]))
+    model = SimpleNamespace(held=SimpleNamespace(square=None))
+    report = SimpleNamespace(way=way, small=small, judge=judge, found=SimpleNamespace(model=model, rows=np.ones(2, bool)))
+    report.held, report.closed = lambda one: one.held, lambda one: closed
+    assert _Report.carries_over(report) is carries

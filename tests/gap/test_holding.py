@@ -1,10 +1,12 @@
+import dataclasses
+
 import numpy as np
 import pytest
 import robots
 from diagnosed import conditioned
 
 from hyperleg_design.gap.diagnose import diagnose_signals
-from hyperleg_design.gap.holding import held, noticed
+from hyperleg_design.gap.holding import AFOOT, OF_LOAD, _unsure, held, noticed
 
 SERVO = robots.PENDULUM.replace(
     '<motor name="servo" joint="swing" ctrlrange="-3 3"/>', '<position name="servo" joint="swing" kp="8" kv="0.3" forcerange="-3 3"/>'
@@ -75,3 +77,22 @@ def test_noise_of_a_slow_log_is_no_friction(servo):
     signals = conditioned(servo, healthy.changed(time=healthy.time[::4], signals=rough))
     assert noticed(signals, ()) == {}
     assert float(held(signals[0])[0]) < 0.12
+
+
+def test_loads_that_knock_or_stand_on_feet_are_known_less_well():
+    ramp = np.linspace(0.0, 1.0, 101)
+    range_of_ramp = 0.47  # half of what lies between the percentiles
+    assert _unsure(ramp, floating=False) == pytest.approx(OF_LOAD * range_of_ramp)
+    assert _unsure(ramp, floating=True) == pytest.approx(AFOOT * range_of_ramp)
+    knocks = 5.0 * (np.arange(101) % 10 == 0)
+    assert _unsure(ramp + knocks, floating=False) > _unsure(ramp, floating=False) + 0.5
+
+
+def test_a_leg_on_its_feet_and_a_joint_among_knocks_hold_nothing(servo):
+    """The same rests show friction as long as the load does not change more than what they are said to hold."""
+    signals = conditioned(servo, log(0.6))[0]
+    shown = float(held(signals)[0])
+    rng = np.random.default_rng(5)
+    knocked = dataclasses.replace(signals, rigid=signals.rigid + 4.0 * rng.standard_normal(signals.rigid.shape))
+    assert shown > 0.3
+    assert float(held(knocked)[0]) < 0.2 * shown

@@ -167,6 +167,7 @@ class Faint(Judge):
 @pytest.mark.parametrize(("size", "band", "gain", "alone", "worth"), [
     (0.8, 1.1, 20.0, 19.0, True), (0.8, 0.9, 20.0, 19.0, False), (0.8, 1.1, 14.0, 14.0, False), (0.8, 1.1, 20.0, 12.0, False),
     (1.1, 0.9, 16.0, 16.0, True), (1.5, 0.9, 9.0, 9.0, True), (1.5, 0.9, 7.5, 7.5, False), (1.5, 0.9, 8.5, 2.0, False),
+    (1.1, 0.9, 9.0, 9.0, True), (0.95, 0.9, 9.0, 9.0, False),
 ])  # fmt: skip
 def test_a_further_cause_with_evidence_of_its_own_needs_less(two_wrong, size, band, gain, alone, worth):
     samples = two_wrong.base.samples

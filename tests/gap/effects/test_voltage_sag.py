@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from pendulum import Wrong, misfit, voltage
 
 from hyperleg_design.gap.effects import effect
@@ -63,3 +64,11 @@ def test_an_unknown_line_falls_with_voltage_and_speed(pendulum, simulated):
 
 def test_the_battery_is_also_the_robot(pendulum):
     assert SAG.place("robot", pendulum(Wrong()).subject) == "battery"
+
+
+def test_a_line_that_a_motor_falls_short_of_is_read_off_its_torque(pendulum, simulated):
+    weak = simulated("voltage_sag", [4.0, 0.0, 4.0], battery=voltage)
+    line, *usual = SAG.starts(weak, "battery")
+    assert line[0] == pytest.approx(4.0, rel=0.25)
+    assert line[2] == pytest.approx(4.0, rel=0.25)
+    assert np.array_equal(usual, SAG.starts(pendulum(Wrong(), sees=("motor_torque", "voltage")), "battery")), "a healthy motor gives what it is told"
