@@ -26,7 +26,7 @@ GENTLE = 0.05
 """Least speed over which it may do so [rad/s]."""
 PASSES = 2.0
 """Gain that is stated, over the least that tells, of a shape that does for several causes."""
-PRECISE = 0.12
+PRECISE = 0.03
 """What models of effects get wrong of their traces, root mean square over the trace's (assumed)."""
 SHAPED_ROWS = 4
 """Rows with the largest excess whose shape is looked at."""
