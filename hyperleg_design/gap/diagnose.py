@@ -216,7 +216,7 @@ class _Report:
         if self.way == BLOCKS or self.small or sticks_alone(judge, found.model, found.rows):
             return True
         left = float(judge.gap(self.held(found.model).square, found.rows))
-        return left <= judge.thresholds.largest_excess or self.closed(found.model) >= judge.thresholds.required
+        return left <= judge.thresholds.largest_excess or self.closed(found.model) >= judge.thresholds.worth
 
     def _differs(self, model: Model) -> int:
         names = self.found.model.names

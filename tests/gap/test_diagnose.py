@@ -110,7 +110,7 @@ def test_of_a_small_gap_rivals_close_what_they_close_over_what_is_left():
 
 
 @pytest.mark.parametrize(("way", "small", "left", "closed", "carries"), [
-    (LOGS, False, 3.0, 0.2, False), (LOGS, False, 3.0, 0.9, True), (LOGS, False, 1.2, 0.2, True), (LOGS, True, 3.0, 0.2, True),
+    (LOGS, False, 3.0, 0.2, False), (LOGS, False, 3.0, 0.3, True), (LOGS, False, 1.2, 0.2, True), (LOGS, True, 3.0, 0.2, True),
     (BLOCKS, False, 3.0, 0.2, True),
 ])  # fmt: skip
 def test_causes_must_close_much_of_the_gap_of_whole_logs_that_were_held_out(way, small, left, closed, carries):
