@@ -144,14 +144,18 @@ def _balance(signals: Signals, causes: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _where(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals], shown: Sequence[Evidence]) -> list[Any]:
-    rows = [[w["location"], w["kind"], w["regime"], f"{100 * float(w['share']):.0f} %"] for w in diagnosis["where"]]
+    rows = [
+        [w["location"], w["kind"], w["regime"], f"{100 * float(w['share']):.0f} %" + ("" if w["regime"] == "all" else " of its own")]
+        for w in diagnosis["where"]
+    ]
     if not rows:
         return []
     shares: dict[str, float] = {}
     for entry in diagnosis["where"]:
-        shares[str(entry["location"])] = max(shares.get(str(entry["location"]), 0.0), float(entry["share"]))
+        if entry["regime"] == "all":  # the share of a regime is one of its place's own gap
+            shares[str(entry["location"])] = max(shares.get(str(entry["location"]), 0.0), float(entry["share"]))
     content: list[Any] = []
-    if signals and max(shares.values()) > 0:
+    if signals and max(shares.values(), default=0.0) > 0:
         save(gap_figures.robot_figure(signals[0].subject, shares), folder / FIGURES / "where.png")
         pictures = [Picture(f"{FIGURES}/where.png", "The robot at rest, its joints coloured by their share of the gap.", wide=False)]
         alike = [one for one in shown if one.balance == shown[0].balance]

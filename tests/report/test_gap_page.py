@@ -9,6 +9,7 @@ from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.metadata import Metadata
 from hyperleg_design.gap.subject import load_subject
+from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_page import cause_text, write_gap_page
 from hyperleg_design.report.gap_text import diagnosis_text
 
@@ -88,3 +89,16 @@ def test_what_a_joint_shows_at_rest_is_told_and_no_gap_is_said_to_close(tmp_path
 
 def test_causes_read_as_a_sentence() -> None:
     assert cause_text(CAUSE) == "coulomb_friction at swing (torque 0.2 Nm, 0.17 .. 0.21)"
+
+
+def test_the_robot_is_coloured_by_shares_of_the_whole_gap_and_regimes_are_of_their_own_place(tmp_path: Path, signals, monkeypatch) -> None:
+    drawn, draw = [], gap_figures.robot_figure
+    monkeypatch.setattr(gap_figures, "robot_figure", lambda subject, shares: drawn.append(shares) or draw(subject, shares))
+    where = [
+        {"location": "swing", "kind": "joint", "regime": "all", "share": 0.4},
+        {"location": "swing", "kind": "joint", "regime": "forward", "share": 0.63},
+    ]
+    text = write_gap_page(tmp_path, diagnosis("unknown", where=where), signals).read_text()
+    assert drawn == [{"swing": 0.4}]
+    assert "63 % of its own" in text
+    assert "40 % of its own" not in text
