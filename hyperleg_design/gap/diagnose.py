@@ -30,6 +30,7 @@ from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.regimes import worst
 from hyperleg_design.gap.samples import BLOCKS, LOGS
+from hyperleg_design.gap.sensitivity import smallest
 from hyperleg_design.gap.shaping import tells
 from hyperleg_design.gap.signals import BALANCES
 from hyperleg_design.gap.sinking import EFFECT as SOFT
@@ -124,9 +125,12 @@ def diagnose_signals(
     ready = prepare(signals, references, rules, threads)
     samples = ready.base.samples
     say(f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue")
-    judge, found = decide(ready.base, rules, screen.places(samples.sieves[0].signals.subject, effects), threads, references)
-    say("intervals, rivals and the next experiment")
+    places = screen.places(samples.sieves[0].signals.subject, effects)
+    judge, found = decide(ready.base, rules, places, threads, references)
+    say("intervals, rivals, the next experiment and what these logs can show")
     told = _Report(ready, judge, found, seed, list(signals), list(references), list(checks)).diagnosis()
+    judged = [name for name in places if name not in {(n.effect, n.location) for n in found.not_judged}]
+    told = replace(told, sensitivity=tuple(one.mapping() for one in smallest(judge, judged)))
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
         if effects is None or effect in effects:
             told = of_feet(told, tell(signals, references))

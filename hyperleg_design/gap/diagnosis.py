@@ -95,6 +95,8 @@ class Diagnosis:
     checks: tuple[str, ...] = ()
     at_rest: tuple[Mapping[str, Any], ...] = ()
     """Joints that hold more than all known friction while they stand: `location`, `torque` beyond it [Nm], and `says`."""
+    sensitivity: tuple[Mapping[str, Any], ...] = ()
+    """Smallest change of each effect's parameters that these logs would have shown, see `sensitivity`."""
     nuisance: tuple[Mapping[str, Any], ...] = ()
     """Calibration errors that were fitted along, the largest first, in usual sizes."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
@@ -118,6 +120,7 @@ class Diagnosis:
             "residual_shape": [dict(one) for one in self.residual_shape],
             "checks": list(self.checks),
             "at_rest": [dict(one) for one in self.at_rest],
+            "sensitivity": [dict(one) for one in self.sensitivity],
             "nuisance": [dict(one) for one in self.nuisance],
             "provenance": dict(self.provenance),
         }
@@ -164,6 +167,7 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
             residual_shape=tuple(content.get("residual_shape", ())),
             checks=tuple(content.get("checks", ())),
             at_rest=tuple(content.get("at_rest", ())),
+            sensitivity=tuple(content.get("sensitivity", ())),
             nuisance=tuple(content.get("nuisance", ())),
             provenance=dict(content.get("provenance", {})),
         )

@@ -178,7 +178,15 @@ class Judge:
 
     def shown(self, model: Model, place: int) -> np.ndarray:
         """Mean square of one cause's trace in each row, and in its episodes, over the floor `(2 rows,)`."""
-        return np.bincount(self.group_row, self._traced(model, place), 2 * len(self.base.samples.rows)) / np.maximum(self.row_floor, 1e-300)
+        return self._over_rows(self._traced(model, place))
+
+    def in_rows(self, trace: np.ndarray) -> np.ndarray:
+        """Mean square of a trace `(S,)`, in its unit, in each row, and in its episodes, over the floor `(2 rows,)`."""
+        return self._over_rows(self._means(trace**2))
+
+    def _over_rows(self, squares: np.ndarray) -> np.ndarray:
+        """Mean squares by group `(G,)` as such of rows over the floor `(2 rows,)`."""
+        return np.bincount(self.group_row, squares, 2 * len(self.base.samples.rows)) / np.maximum(self.row_floor, 1e-300)
 
     def shown_in_bands(self, model: Model, place: int) -> np.ndarray:
         """As `shown`, of each band of a row by itself `(G,)`: what is slow may be clear where the row's fast noise is large."""

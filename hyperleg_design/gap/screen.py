@@ -46,7 +46,7 @@ KEPT = 2**29
 DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
 """Signals of `Signals` that drive an effect."""
 
-_TRACED: WeakKeyDictionary[Samples, dict[tuple[str, str], _Traces]] = WeakKeyDictionary()
+_TRACED: WeakKeyDictionary[Samples, dict[tuple[str, str], Traces]] = WeakKeyDictionary()
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -76,7 +76,7 @@ class NotJudged:
     reason: str
 
 
-_Traces: TypeAlias = NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]
+Traces: TypeAlias = NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]
 """Why an effect at a place is not judged; it linearised, in each variant; or starts `(s, k)` and their traces `(s, S)`."""
 
 
@@ -209,7 +209,7 @@ class _Rough:
     gain: float
 
 
-def _traced(base: Base, effect: Effect, location: str) -> _Traces:
+def traced(base: Base, effect: Effect, location: str) -> Traces:
     """What an effect at a place leaves, whatever is beside it; kept, up to `KEPT`."""
     kept = _TRACED.setdefault(base.samples, {})
     name = effect.identifier, location
@@ -221,14 +221,14 @@ def _traced(base: Base, effect: Effect, location: str) -> _Traces:
     return found
 
 
-def _size(traced: _Traces) -> int:
+def _size(traced: Traces) -> int:
     """Memory that traces take [byte]."""
     if isinstance(traced, NotJudged):
         return 0
     return sum(c.columns.nbytes + c.constant.nbytes for c in traced) if isinstance(traced, list) else sum(a.nbytes for a in traced)
 
 
-def _trace(base: Base, effect: Effect, location: str) -> _Traces:
+def _trace(base: Base, effect: Effect, location: str) -> Traces:
     missing = lacking(effect, location, [s.signals for s in base.samples.sieves])
     if missing:
         return NotJudged(effect.identifier, location, missing)
@@ -242,12 +242,12 @@ def _trace(base: Base, effect: Effect, location: str) -> _Traces:
 
 
 def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[Cause]) -> Candidate | NotJudged | _Rough:
-    traced = _traced(base, EFFECTS[name], location)
-    if isinstance(traced, NotJudged):
-        return traced
-    if isinstance(traced, list):
-        return max((_candidate(base, c, nothing, beside) for c in traced), key=lambda c: c.gain)
-    starts, columns = traced
+    found = traced(base, EFFECTS[name], location)
+    if isinstance(found, NotJudged):
+        return found
+    if isinstance(found, list):
+        return max((_candidate(base, c, nothing, beside) for c in found), key=lambda c: c.gain)
+    starts, columns = found
     gains = []
     none, one = np.zeros(0), np.zeros(1)
     for column in columns:

@@ -21,7 +21,7 @@ from hyperleg_design.gap.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.slipping import SLIPS, contacts
 from hyperleg_design.gap.unstable import swinging
 from hyperleg_design.report import gap_figures
-from hyperleg_design.report.gap_text import chosen
+from hyperleg_design.report.gap_text import change_text, chosen, sensitivity_rows
 from hyperleg_design.report.page import Cell, Details, Heading, Page, Picture, Section, Table, render
 from hyperleg_design.report.style import save
 from hyperleg_design.writing import write_text
@@ -37,6 +37,11 @@ VERDICTS = {
     "unknown": "There is a gap, and no effect of the catalogue closes it; the shape of what is left is described below.",
 }
 
+SENSITIVITY = (
+    "How small a fault could have been and still been named, nine times in ten, beside the calibration errors that robots usually have. "
+    "What is smaller these logs do not show, whatever the verdict; more excitation, longer logs or reference logs make it less."
+)
+HIDDEN = " The gap that no effect explains hides more."
 MOST_SWINGING = 4
 """Joints that are drawn as they swing by themselves."""
 LEAST_CLOSED = 0.05
@@ -320,6 +325,11 @@ def _next_steps(diagnosis: Mapping[str, Any]) -> list[Any]:
 
 def _limits(diagnosis: Mapping[str, Any]) -> list[Any]:
     content: list[Any] = []
+    if rows := sensitivity_rows(diagnosis):
+        content.append(SENSITIVITY + (HIDDEN if diagnosis["verdict"] == "unknown" else ""))
+        content.append(Table(["effect", "of which", "where it shows best, from", "where it shows least, from"], [list(row) for row in rows]))
+        every = [[one["effect"], one["location"], one["parameter"], change_text(one)] for one in diagnosis["sensitivity"]]
+        content.append(Details(f"All {len(every)}, place by place", [Table(["effect", "where", "of which", "from"], every)]))
     if diagnosis.get("residual_shape"):
         rows = [[one["location"], one["says"], f"{100 * one['closed_beyond']:.0f} %", f"{one['gain']:.1f}"] for one in diagnosis["residual_shape"]]
         content += [Heading("Shape of what is left"), Table(["where", "looks like", "would close of it", "log-likelihood"], rows)]

@@ -96,6 +96,25 @@ def chosen(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> list[tup
     return found
 
 
+def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
+    """Smallest change that the logs would have shown, an effect's parameter a row: effect, parameter, where it is least and where most."""
+    groups: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    for one in diagnosis.get("sensitivity", ()):
+        groups.setdefault((str(one["effect"]), str(one["parameter"])), []).append(one)
+    rows = []
+    for (effect, parameter), members in groups.items():
+        ordered = sorted(members, key=lambda one: float(one["change"]))
+        least, most = (f"{change_text(one)} at {one['location']}" for one in (ordered[0], ordered[-1]))
+        rows.append((effect, parameter, least, most if len(ordered) > 1 else ""))
+    return rows
+
+
+def change_text(one: Mapping[str, Any]) -> str:
+    """A change of a parameter as people say it: shares in per cent, anything else in its unit."""
+    change, unit = float(one["change"]), str(one["unit"])
+    return f"{change:.2g} {unit}" if unit else f"{100 * change:.2g} %"
+
+
 def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     """Verdict, gap, causes, rivals and what to do next."""
     gap = diagnosis["gap"]
@@ -118,6 +137,9 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["verdict"] == "unknown":
         left = [one for one in diagnosis.get("residual_shape", ()) if one["shape"] not in APART]
         lines += [f"  left: {one['shape']} at {one['location']}: {one['says']}" for one in left[:3]]
+    if diagnosis["verdict"] == "none" and (rows := sensitivity_rows(diagnosis)):
+        lines.append("  these logs would have shown, nine times in ten, from:")
+        lines += [f"    {effect} {parameter}: {least}{f' to {most}' if most else ''}" for effect, parameter, least, most in rows]
     if diagnosis["separating_experiment"]:
         told = "; ".join(f"{key.replace('_', ' ')}: {value}" for key, value in diagnosis["separating_experiment"].items())
         lines.append(f"  to tell them apart: {told}")

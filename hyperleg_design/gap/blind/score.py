@@ -3,6 +3,9 @@
 A cause counts as named when it is the first of the causes (top-1), among the first two of causes and rivals (top-2). The
 lenient count also takes a cause that stands in a set of `equivalent` ones with the one named first: the diagnosis then said
 that these data cannot tell them apart.
+
+Every diagnosis says how small a change of each parameter its logs would have shown (`sensitivity`). Rows of what is shown count the
+single causes that are no smaller than that at their place; the rest nobody could have named from these logs by these rules.
 """
 
 from __future__ import annotations
@@ -21,6 +24,8 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.blind.trial import CASES, DIAGNOSES, FAILED, KEY, read_seal
 from hyperleg_design.gap.diagnosis import NAMING
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.sensitivity import RARELY
 from hyperleg_design.writing import write_json
 
 SCORED = "scored.json"
@@ -164,11 +169,15 @@ def compared(
     single = [v for v in views if v.kind == "single"]
     sizable = [v for v in single if v.multiple >= SIZABLE]
     found = [v for v in sizable if v.first(lenient=True)]
+    shown, hidden = ([v for v in sizable if v.shown is not None and v.shown == large] for large in (True, False))
     null, outside, both = ([v for v in views if v.kind == k] for k in ("null", "outside", "compound"))
     rows = [
         _share("right effect, single cause at >= 2 x floor, first", [v.first() for v in sizable], 0.90),
         _share("... or in one set with the first", [v.first(lenient=True) for v in sizable], None),
         _share("... among the first two", [v.top_two() for v in sizable], 0.97),
+        _share("... first, of those no smaller than what the diagnosis says its logs show", [v.first() for v in shown], None),
+        _share("... among the first two, of the same", [v.top_two() for v in shown], None),
+        _share("... first, of those smaller than that", [v.first() for v in hidden], None),
         _share("right location, where the effect is right", [v.located() for v in found], 0.95),
         _share("... of all single causes at >= 2 x floor", [v.located() for v in sizable], None),
         _share("false alarm when nothing is wrong", [v.alarm for v in null], 0.05, most=True),
@@ -222,6 +231,20 @@ class _View:
     def alarm(self) -> bool:
         """Whether a cause was named."""
         return self.verdict in NAMING
+
+    @property
+    def shown(self) -> bool | None:
+        """Whether the logs show an effect of this size at its place, by what the diagnosis says of them; None where it does not say.
+
+        Sizes of several parameters add up as squares.
+        """
+        wrong, told = self.wrongs[0], self.diagnosis.get("sensitivity") or []
+        sizes = {p.name: p.null for p in EFFECTS[wrong["effect"]].parameters if p.name in wrong["parameters"] and not p.shape}
+        if not told or not sizes or wrong["effect"] in RARELY:
+            return None
+        here = [one for one in told if one["effect"] == wrong["effect"] and one["location"] in wrong["also"] and one["parameter"] in sizes]
+        # what no possible size would show is in no list
+        return bool(np.hypot.reduce([(wrong["parameters"][one["parameter"]] - sizes[one["parameter"]]) / one["change"] for one in here]) >= 1.0)
 
     def first(self, *, lenient: bool = False) -> bool:
         return bool(self.alarm and self.ranked and self._is(self.ranked[0]["effect"], self.effects[0], lenient))

@@ -59,6 +59,29 @@ def test_second_place_and_equivalents_are_told_apart_from_first():
         assert lenient.misses == ()
 
 
+def test_what_logs_do_not_show_is_counted_apart():
+    """Of a load of 1 kg at twice the floor: where the logs would have shown half of it, three times it, none, and where nothing is said."""
+    smallest = {"effect": "payload", "location": "flange", "parameter": "mass", "unit": "kg"}
+    other = {**smallest, "effect": "link_mass"}
+    told = [[{**smallest, "change": 0.5}], [{**smallest, "change": 3.0}], [{**other, "change": 0.1}], []]
+    answers = [said("explained", RIGHT), said("none"), said("none"), said("none")]
+    found = compared([truth("single", PAYLOAD)] * 4, [{**a, "sensitivity": t} for a, t in zip(answers, told, strict=True)], [None] * 4)
+    large, small = (found.row(m) for m in (
+        "... first, of those no smaller than what the diagnosis says its logs show", "... first, of those smaller than that",
+    ))  # fmt: skip
+    assert (large.value, large.cases, small.value, small.cases) == (1.0, 1, 0.0, 2)
+    assert found.row("right effect, single cause at >= 2 x floor, first").cases == 4
+
+
+def test_changes_of_several_parameters_add_up():
+    gain = ("controller_gain", "flange", 3.0, {"stiffness_scale": 1.09, "damping_scale": 0.91})
+    told = [{"effect": "controller_gain", "location": "flange", "parameter": p, "change": 0.1, "unit": ""} for p in ("stiffness_scale",
+    "damping_scale")]  # fmt: skip
+    row = "... first, of those no smaller than what the diagnosis says its logs show"
+    assert compared([truth("single", gain)], [{**said("none"), "sensitivity": told}], [None]).row(row).cases == 1
+    assert compared([truth("single", gain)], [{**said("none"), "sensitivity": told[:1]}], [None]).row(row).cases == 0
+
+
 def test_misses_of_every_kind():
     two = truth("compound", PAYLOAD, ("command_delay", "robot", 3.0, {}))
     cases = [
