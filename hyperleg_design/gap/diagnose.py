@@ -20,12 +20,12 @@ from hyperleg_design.gap.decide import Decision, decide
 from hyperleg_design.gap.diagnosis import LEAST_SHARE, MOST_RIVALS, NAMING, Diagnosis, Named, Place, Shrinkage
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
-from hyperleg_design.gap.fit import Design
+from hyperleg_design.gap.fit import Cause, Design
 from hyperleg_design.gap.held_out import Held, predict
-from hyperleg_design.gap.holding import sticks
+from hyperleg_design.gap.holding import sticks, ungiven
 from hyperleg_design.gap.imu_offset import PLACE, imu_offset
 from hyperleg_design.gap.judge import CHATTERS, Judge, Model, rank
-from hyperleg_design.gap.naming import sticks_alone
+from hyperleg_design.gap.naming import HELD, sticks_alone
 from hyperleg_design.gap.parameters import parameters
 from hyperleg_design.gap.preparation import Prepared, prepare
 from hyperleg_design.gap.regimes import worst
@@ -194,7 +194,7 @@ class _Report:
             verdict, named, sets = "none", (), []
         causes, rivals = self.named(probabilities) if verdict != "none" else ((), self.rivals_of_none())
         if verdict == "unknown":
-            rivals, causes = (*causes, *rivals), ()
+            rivals, causes = self.at_most_likely((*causes, *rivals)), ()
         equivalent = tuple(
             (found.model.causes[place].name, *(m.causes[self._differs(m)].name for m in group)) for place, group in enumerate(sets) if group
         )
@@ -204,7 +204,7 @@ class _Report:
             equivalent=equivalent, separating_experiment=None if trial is None else experiment.as_mapping(trial, equivalent[0]),
             not_judged=tuple({"effect": n.effect, "location": n.location, "reason": n.reason} for n in found.not_judged),
             residual_shape=self.shape(), checks=doubts, nuisance=self.nuisance(), provenance=self.provenance(),
-            at_rest=tuple({"location": j, "torque": t, "says": sticks(j, t)} for j, t in judge.holds.items()),
+            at_rest=tuple({"location": j, "torque": t, "says": sticks(j, t)} for j, t in judge.holds.items() if not self.moot(j, t, named)),
         )  # fmt: skip
         return told if found.heard is None else of_heard(told, found.heard)
 
@@ -221,6 +221,10 @@ class _Report:
             return True
         left = float(judge.gap(self.held(found.model).square, found.rows))
         return left <= judge.thresholds.largest_excess or self.closed(found.model) >= judge.thresholds.worth
+
+    def moot(self, joint: str, torque: float, named: Sequence[Cause]) -> bool:
+        """Whether named causes say that the torque which a joint seems to hold at rest never came."""
+        return bool(named) and ungiven(self.found.model, joint, [s.signals for s in self.judge.base.samples.sieves]) >= HELD * torque
 
     def _differs(self, model: Model) -> int:
         names = self.found.model.names
@@ -334,10 +338,19 @@ class _Report:
     def rivals_of_none(self) -> tuple[Named, ...]:
         """What was tried though nothing is wrong; what the rules did not find worth its name is less likely than that."""
         table = self.probabilities([])[0]
-        share = min(1.0, (1 - self.judge.thresholds.likely) / max(sum(table.values()), 1e-300))
+        share = self.at_most(sum(table.values()))
         return tuple(
             Named(*m.causes[0].name, share * table.get(m.names, 0.0), self.closed(m), parameters(self.judge, m, 0)) for m in self.found.singles[:3]
         )
+
+    def at_most(self, total: float) -> float:
+        """Factor by which probabilities are too large of what the rules did not find worth its name: that nothing of it is so is likelier."""
+        return min(1.0, (1 - self.judge.thresholds.likely) / max(total, 1e-300))
+
+    def at_most_likely(self, rivals: Sequence[Named]) -> tuple[Named, ...]:
+        """Rivals of `unknown`: each has less than what else it may be."""
+        share = self.at_most(sum(one.probability for one in rivals))
+        return tuple(replace(one, probability=share * one.probability) for one in rivals)
 
     def shape(self) -> tuple[dict[str, Any], ...]:
         """What the residual beside the causes looks like."""

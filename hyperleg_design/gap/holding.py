@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.chatter import chattering
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.series import band_limited
@@ -28,6 +30,8 @@ if TYPE_CHECKING:
 
 RUBBING = FRICTION - {"viscous_friction"}
 """Effects that hold a joint at rest."""
+UNGIVEN = ("command_delay", "torque_saturation")
+"""Effects by which a torque that nobody measured is not there while a joint rests: no friction holds what never came."""
 SHORTEST = 0.1
 """Rests that count [s]."""
 BAND = 10.0
@@ -48,25 +52,43 @@ SURE = 20.0
 SURELY = 0.9
 """Share of what a joint holds that its breakaway friction has at least, where that is the cause."""
 
+_STUCK: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
+
 
 def held(signals: Signals) -> np.ndarray:
     """Friction at rest that a log shows at least, by joint `(n,)` [Nm]."""
+    return np.array([held_by(signals, joint) for joint in range(len(signals.subject.joints))])
+
+
+def held_by(signals: Signals, joint: int, without: np.ndarray | float = 0.0) -> float:
+    """Friction at rest that a log shows of one joint at least [Nm].
+
+    Args:
+        signals: of the log.
+        joint: its place.
+        without: part of the torque on it that never was there `(t,)` [Nm].
+    """
     subject = signals.subject
-    motion = signals.residual["motion"] + subject.coulomb * turned(signals.velocity, subject.friction_speed)
-    rest = sticking(signals, np.inf) & (np.abs(signals.velocity) < CREEP) & signals.valid[:, None] & np.isfinite(motion)
-    found = np.zeros(len(subject.joints))
+    friction = subject.coulomb[joint] * turned(signals.velocity, subject.friction_speed)[:, joint]
+    motion = signals.residual["motion"][:, joint] + friction - without
+    rest = _stuck(signals)[:, joint] & (np.abs(signals.velocity[:, joint]) < CREEP) & signals.valid & np.isfinite(motion)
     band = min(BAND, 0.3 / signals.step)
-    for joint in range(len(found)):
-        level = noise(motion[rest[:, joint], joint]) * np.sqrt(2 * band * signals.step)
-        around = round(1 / (band * signals.step))
-        edge = max(2, round(EDGE / signals.step))
-        for whole in stretches(rest[:, joint], SHORTEST / signals.step + 2 * edge):
-            # the rest alone: what the motion before and after it needs must not leak into it
-            part = slice(whole.start + edge, whole.stop - edge)
-            torque = band_limited(np.pad(motion[part, joint], around, mode="edge"), signals.step, band)[around:-around]
-            unsure = _unsure(signals.rigid[part, joint], subject.floating)
-            found[joint] = max(found[joint], _half(torque) - unsure - WITHIN * level)
-    return found
+    level = noise(motion[rest]) * np.sqrt(2 * band * signals.step)
+    around = round(1 / (band * signals.step))
+    edge, found = max(2, round(EDGE / signals.step)), 0.0
+    for whole in stretches(rest, SHORTEST / signals.step + 2 * edge):
+        # the rest alone: what the motion before and after it needs must not leak into it
+        part = slice(whole.start + edge, whole.stop - edge)
+        torque = band_limited(np.pad(motion[part], around, mode="edge"), signals.step, band)[around:-around]
+        found = max(found, _half(torque) - _unsure(signals.rigid[part, joint], subject.floating) - WITHIN * level)
+    return float(found)
+
+
+def _stuck(signals: Signals) -> np.ndarray:
+    """Ticks at which joints may stick, however far they have come `(t, n)` of bool; kept while the signals live."""
+    if signals not in _STUCK:
+        _STUCK[signals] = sticking(signals, np.inf)
+    return _STUCK[signals]
 
 
 def noticed(signals: Sequence[Signals], references: Sequence[Signals], learned: Sequence[Learned] = ()) -> dict[str, float]:
@@ -92,16 +114,32 @@ def share(model: Model, joint: str, torque: float, signals: Sequence[Signals]) -
     """How much of what a joint holds a model's friction explains, from 0 to 1.
 
     Args:
-        model: of some causes.
+        model: of some causes; beside its friction, what motors do not give, see `ungiven`.
         joint: that holds.
         torque: beyond known friction [Nm].
         signals: conditioned logs under test.
     """
-    given = 0.0
+    given = ungiven(model, joint, signals)
     for place, cause in enumerate(model.causes):
         if cause.location == joint and cause.effect in RUBBING:
             given += _given(cause.effect, joint, model.values(place), signals)
     return float(np.clip(given / torque, 0.0, 1.0))
+
+
+def ungiven(model: Model, joint: str, signals: Sequence[Signals]) -> float:
+    """How much less a joint holds as its motors never gave what they seem to have given, by a model's limits and delays [Nm]."""
+    parts = [(place, cause) for place, cause in enumerate(model.causes) if cause.effect in UNGIVEN]
+    if not parts:
+        return 0.0
+    shows, less, column = 0.0, 0.0, signals[0].subject.joints.index(joint)
+    for one in signals:
+        missing = np.zeros(len(one.time))
+        for place, cause in parts:
+            trace = EFFECTS[cause.effect].trace(one, cause.location, model.values(place)[None])
+            missing += trace["motion"][0, :, column] if "motion" in trace else 0.0
+        shows = max(shows, held_by(one, column))
+        less = max(less, held_by(one, column, missing) if missing.any() else shows)
+    return shows - less
 
 
 def sticks(joint: str, torque: float) -> str:

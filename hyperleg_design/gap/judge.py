@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -170,7 +171,14 @@ class Judge:
 
     def held(self, model: Model, joint: str) -> float:
         """Share of what a joint holds that a model explains."""
-        return share(model, joint, self.holds[joint], [s.signals for s in self.base.samples.sieves])
+        kept = self._shares.setdefault(model, {})
+        if joint not in kept:
+            kept[joint] = share(model, joint, self.holds[joint], [s.signals for s in self.base.samples.sieves])
+        return kept[joint]
+
+    @cached_property
+    def _shares(self) -> WeakKeyDictionary[Model, dict[str, float]]:
+        return WeakKeyDictionary()
 
     def gain(self, fit: Fit, held: Held) -> float:
         """Log-likelihood of held-out blocks over that of no cause, the cost of the calibration errors taken into account."""

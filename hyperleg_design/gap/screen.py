@@ -130,7 +130,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     scaled = factor(samples, effect.identifier, location, usual)
     driver = DRIVERS.get(effect.identifier)
     unseen = driver is not None and all(getattr(s.signals, driver) is None for s in samples.sieves)
-    shakes = _unsettling(samples, effect, location)
+    shakes = effect.unsettles(values) and _unsettling(samples, effect, location)
     return Cause(
         effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen, shakes,
         effect.doubtful(values), subject.tree.beyond(location),

@@ -105,7 +105,9 @@ def _probes(judge: Judge, effect: Effect, location: str) -> list[_Probes]:
         return [_probe(effect, i, bounds, [c.usual[i] for c in traced], np.stack([c.columns[i] for c in traced]), linear=True) for i in sizes]
     starts, columns = traced
     if len(sizes) == 1:
-        return [_probe(effect, sizes[0], bounds, starts[:, sizes[0]] - effect.nulls[sizes[0]], columns)]
+        choices = [i for i, p in enumerate(effect.parameters) if p.choices]
+        alike = (starts[:, choices] == starts[0, choices]).all(1)  # one of several ways in which it may act, the first
+        return [_probe(effect, sizes[0], bounds, starts[alike, sizes[0]] - effect.nulls[sizes[0]], columns[alike])]
     found = []
     for i in sizes:
         # the others stay as the model has them; what only shapes the trace, as a first look would have it

@@ -171,7 +171,7 @@ def _variants(subject: Subject, moved: np.ndarray) -> Iterator[_Variants]:
 
     sizes = np.geomspace(*LATE)
     late, slow, gains = loops(len(sizes))
-    yield _Variants("command_delay", ROBOT, sizes[:, None], Loops(late + sizes, slow, gains))
+    yield _Variants("command_delay", ROBOT, np.column_stack([sizes, np.zeros(len(sizes))]), Loops(late + sizes, slow, gains))
     for joint in np.flatnonzero(moved & ~subject.passive).tolist():
         for ways, changes in ((((1, 0), (0, 1), (1, 1)), LOUDER), (((0, 1),), WEAKER)):
             for way in ways:

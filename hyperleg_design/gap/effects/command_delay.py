@@ -1,14 +1,24 @@
-"""Commands that arrive late."""
+"""Commands, or targets, that arrive late."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import ROBOT, before_measurement, commanded, driven_motors, is_commanded, limited
+from hyperleg_design.gap.effects.placing import (
+    ROBOT,
+    before_measurement,
+    commanded,
+    driven_motors,
+    is_commanded,
+    is_logged,
+    limited,
+    moved_joints,
+)
 from hyperleg_design.gap.effects.series import delayed
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
@@ -16,18 +26,28 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.subject import Subject
 
+LATE = ("all that controllers ask for", "their targets alone")
+"""Choices of the parameter `late`."""
+TARGETS = 0.5
+"""Value of it from which it is the targets."""
+
 
 class CommandDelay(Effect):
-    """Drives follow the torque that the controller asked for some time ago: all of them (`robot`), or one motor.
+    """Drives follow what they were told some time ago: all of them (`robot`), or one motor.
 
-    The whole loop is late: the torque is that of the targets and of the measured state of then. Trace, by the rule of `placing`:
-    the command of then within the nominal limits minus that of now.
+    What comes late is the torque that the controller asked for (`late` 0), so that the whole loop is: the torque is that of the
+    targets and of the measured state of then. Or it is the targets alone (1), on the way to controllers that know their own joints'
+    state at once. Trace, by the rule of `placing`: the command with what is late less that of now, within the nominal limits. Of motors
+    whose commands are logged, late targets show in the balance of the control instead.
     """
 
     identifier: ClassVar[str] = "command_delay"
     kind: ClassVar[str] = "robot"
-    summary: ClassVar[str] = "drives follow commands that are some milliseconds old"
-    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("delay", "s", 0.0, 0.0, 0.05, 0.005, "up to 25 ms (PACE, arXiv 2509.06342)"),)
+    summary: ClassVar[str] = "drives follow commands or targets that are some milliseconds old"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("delay", "s", 0.0, 0.0, 0.05, 0.005, "up to 25 ms (PACE, arXiv 2509.06342)"),
+        Parameter("late", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=LATE),
+    )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """The robot, and where it has several motors, each of them."""
@@ -40,56 +60,116 @@ class CommandDelay(Effect):
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
-        delay = np.atleast_2d(np.asarray(values, float))[:, 0]
-        changes = {}
+        delay, late = np.atleast_2d(np.asarray(values, float)).T
+        targets = late >= TARGETS
+        moved = _moved(signals, np.where(targets, delay, 0.0)) if targets.any() and _told(signals, location) else None
+        changes, control = {}, None
         for motor, name in enumerate(signals.subject.motors):
-            if location in (ROBOT, name) and is_commanded(signals, motor):
-                asked = commanded(signals, motor)
-                changes[motor] = limited(signals, motor, delayed(asked, delay, signals.step)) - limited(signals, motor, asked)
-        return before_measurement(signals, changes)
+            if location not in (ROBOT, name) or not is_commanded(signals, motor):
+                continue
+            asked = commanded(signals, motor)
+            after = delayed(asked, np.where(targets, 0.0, delay), signals.step)
+            if moved is not None:
+                share = signals.supplied[:, motor] * np.tensordot(moved, signals.subject.motor_from_joint[motor], 1)
+                if not is_logged(signals, motor):
+                    after = after + share
+                elif "control" in signals.residual:
+                    control = np.zeros((*share.shape, len(signals.subject.motors))) if control is None else control
+                    control[..., motor] = share
+            changes[motor] = limited(signals, motor, after) - limited(signals, motor, asked)
+        return before_measurement(signals, changes) | ({} if control is None else {"control": control})
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
         motors = driven_motors(subject) if location == ROBOT else (location,)
-        return LateCommand(motors, np.asarray(values, float)[..., 0])
+        joints = tuple(dict.fromkeys(joint for motor in motors for joint in moved_joints(subject, subject.motors.index(motor))))
+        delay, late = np.moveaxis(np.asarray(values, float), -1, 0)
+        return LateCommand(motors, joints, np.where(late < TARGETS, delay, 0.0), np.where(late < TARGETS, 0.0, delay))
+
+    def fixed(self, values: np.ndarray) -> np.ndarray:
+        """Nothing is between commands and targets."""
+        return np.array([False, True])
+
+    def unsettles(self, values: np.ndarray) -> bool:
+        """Late targets are in no loop."""
+        return bool(values[1] < TARGETS)
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A few delays."""
-        return np.array([[0.003], [0.01], [0.025]])
+        """A few delays, of commands and, where they are known, of targets."""
+        ways = (0.0, 1.0) if _told(signals, location) else (0.0,)
+        return np.array([[delay, way] for way in ways for delay in (0.003, 0.01, 0.025)])
+
+
+def _told(signals: Signals, location: str) -> bool:
+    """Whether targets are known that can come late by themselves: to one motor only where it has its joint to itself."""
+    return signals.target is not None and (location == ROBOT or signals.subject.one_to_one)
+
+
+def _moved(signals: Signals, delay: np.ndarray) -> np.ndarray:
+    """Joint torque that controllers ask for more while their targets are old `(k, t, n)` [Nm]; 0 where no target or gain is known."""
+    assert signals.target is not None
+    stiffness = np.where(signals.subject.passive, 0.0, np.nan_to_num(signals.subject.gains[:, 0]))
+    found = np.zeros((len(delay), *signals.target.shape))
+    for joint in np.flatnonzero(stiffness).tolist():
+        target = signals.target[:, joint]
+        if np.isfinite(target).any():
+            found[..., joint] = stiffness[joint] * (delayed(target, delay, signals.step) - target)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
 class LateCommand(Alteration):
-    """Some motors' commands come late, interpolated between simulation steps."""
+    """Some motors' commands, and some joints' targets, come late, interpolated between simulation steps."""
 
     motors: tuple[str, ...]
+    joints: tuple[str, ...]
     delay: Any
-    """`()` or `(n,)` [s]."""
+    """Of commands, `()` or `(n,)` [s]."""
+    target_delay: Any = 0.0
+    """Of targets, likewise."""
+
+
+class _Past:
+    """What was told in the last steps, to be had some time later."""
+
+    def __init__(self, delay: Any, count: int, step: float, places: Sequence[int]) -> None:
+        steps = np.broadcast_to(np.maximum(np.asarray(delay, float), 0.0) / step, (count,))
+        self.whole = np.floor(steps + 1e-9).astype(int)
+        self.part = np.maximum(steps - self.whole, 0.0)[:, None]
+        self.rows, self.places = np.arange(count), list(places)
+        self.values = np.zeros((count, int(self.whole.max(initial=0)) + 2, len(self.places)))
+        self.begun = np.zeros(count)
+
+    def told(self, values: np.ndarray) -> np.ndarray:
+        """Take in what is told now, and give what was told then `(n, places)`."""
+        fresh = values[:, self.places]
+        # Before the first one the same is taken to have been told all the time.
+        self.values[self.begun == 0] = fresh[self.begun == 0][:, None]
+        self.begun[:] = 1.0
+        self.values[:, 1:] = self.values[:, :-1].copy()
+        self.values[:, 0] = fresh
+        return np.asarray((1 - self.part) * self.values[self.rows, self.whole] + self.part * self.values[self.rows, self.whole + 1])
 
 
 class _Late(Live):
-    kept: ClassVar[tuple[str, ...]] = ("past", "begun")
+    kept: ClassVar[tuple[str, ...]] = ("commands", "commands_begun", "targets", "targets_begun")
 
     alteration: LateCommand
 
     def prepare(self) -> None:
-        self.places = [self.machine.motor(name) for name in self.alteration.motors]
-        steps = np.broadcast_to(np.maximum(np.asarray(self.alteration.delay, float), 0.0) / self.step, (self.count,))
-        self.whole = np.floor(steps + 1e-9).astype(int)
-        self.part = np.maximum(steps - self.whole, 0.0)[:, None]
-        self.rows = np.arange(self.count)
-        self.past = np.zeros((self.count, int(self.whole.max(initial=0)) + 2, len(self.places)))
-        self.begun = np.zeros(self.count)
+        one = self.alteration
+        self.of_motors = _Past(one.delay, self.count, self.step, [self.machine.motor(name) for name in one.motors])
+        self.of_joints = _Past(one.target_delay, self.count, self.step, [self.machine.joint(name) for name in one.joints])
+        self.commands, self.commands_begun = self.of_motors.values, self.of_motors.begun
+        self.targets, self.targets_begun = self.of_joints.values, self.of_joints.begun
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
-        fresh = command[:, self.places]
-        # Before the first command the same one is taken to have been given all the time.
-        self.past[self.begun == 0] = fresh[self.begun == 0][:, None]
-        self.begun[:] = 1.0
-        self.past[:, 1:] = self.past[:, :-1].copy()
-        self.past[:, 0] = fresh
-        command[:, self.places] = (1 - self.part) * self.past[self.rows, self.whole] + self.part * self.past[self.rows, self.whole + 1]
+        command[:, self.of_motors.places] = self.of_motors.told(command)
         return command
+
+    def target(self, target: np.ndarray, tick: Tick) -> np.ndarray:
+        target[:, self.of_joints.places] = self.of_joints.told(target)
+        return target
 
 
 LateCommand.live = _Late

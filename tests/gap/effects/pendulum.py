@@ -42,6 +42,8 @@ class Wrong:
     limit: float = math.inf
     derating: float = 0.0
     delay: float = 0.0
+    late_target: float = 0.0
+    """By which targets alone come late [s]."""
     lag: float = 0.0
     rotor: float = 0.0
     compliance: float = 0.0
@@ -106,7 +108,7 @@ def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tu
         time = tick * STEP
         told, told_speed = (angle, speed) if wrong.motor_side else (q, v)
         told += wrong.offset
-        command = wrong.stiffness_scale * gains[0] * (target(time) - told) - wrong.damping_scale * gains[1] * told_speed
+        command = wrong.stiffness_scale * gains[0] * (target(max(time - wrong.late_target, 0.0)) - told) - wrong.damping_scale * gains[1] * told_speed
         wanted = command
         if wrong.delay:
             late.append(command)

@@ -21,8 +21,8 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 
 def test_a_lag_is_no_delay(pendulum):
     signals = pendulum(Wrong(lag=0.02), target=fast)
-    lag = BANDWIDTH.trace(signals, "swing", np.array([[0.02]]))
-    delay = effect("command_delay").trace(signals, "robot", np.array([[0.02]]))
+    lag = BANDWIDTH.trace(signals, "swing", np.array([[0.02, 0.0]]))
+    delay = effect("command_delay").trace(signals, "robot", np.array([[0.02, 0.0]]))
     assert misfit(signals, lag, "drive") < 0.1 * misfit(signals, delay, "drive")
 
 
