@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from hyperleg_design.gap.base import Base, number_of
-from hyperleg_design.gap.endogenous import Factor
+from hyperleg_design.gap.endogenous import Factor, Shrinking
 from hyperleg_design.gap.samples import BLOCKS, Products, products
 from hyperleg_design.gap.sums import Sums
 
@@ -53,8 +53,8 @@ class Cause:
     linear: bool
     declared: float = 0.0
     """Payload that the logs declare at its place [kg]."""
-    factor: Factor | None = None
-    """How it scales the torque that the balance trusts."""
+    factor: Factor | Shrinking | None = None
+    """How it scales the torque that the balance trusts, or noise of accelerations."""
     unseen: bool = False
     """Whether no log has the signal that drives it, a voltage or a temperature, so that it is modelled."""
     unsettling: bool = False

@@ -1,23 +1,28 @@
 """What a residual may be when nothing is wrong: noise that a log shows by itself, and how well models of robots are known anyhow.
 
 Of each sample of `filtering`, as a standard deviation. Torque noise is the residual's own level above its cutoff, taken as white;
-noise of accelerations is the smoother's, times the joint's inertia. Beyond noise, drives and friction of a healthy robot are known
-to shares of their size (`floor_torque`, `floor_friction`), which `nuisance` cannot express. Reference logs scale all of it.
+noise of accelerations is the smoother's, times the inertias by which the accelerations of all joints load one, and larger where joints
+are fast, as far as the samples scatter more there: what is stamped a moment early or late is off by its speed. Beyond noise, drives and
+friction of a healthy robot are known to shares of their size (`floor_torque`, `floor_friction`), which `nuisance` cannot express.
+Reference logs scale all of it.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap import rigid
 from hyperleg_design.gap.channels import applied
-from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
+from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.ground import footings
 from hyperleg_design.gap.nuisance import stop
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.filtering import Band, Sieve
+    from hyperleg_design.gap.signals import Signals
     from hyperleg_design.gap.thresholds import Thresholds
 
 NEAR = 0.5
@@ -28,8 +33,15 @@ FAST = 10.0
 """Speed that a motor is made for where nobody gives its limits [rad/s]; assumed."""
 AT_MOST, ENOUGH = 1.5, 16
 """Noise over all that a band shows, at most, and samples that tell what it shows."""
+POSTURE = 0.05
+"""Time in which a posture, and its inertia, hardly changes [s] (assumed)."""
+FEWEST = 64
+"""Samples of a position that tell whether its noise goes with speed."""
 LEAST = 1e-4
 """Floor over the torque that a joint is made for, at least: what single precision and rounding in logs leave."""
+
+_SHAKEN: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
+_INERTIAS: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
 
 def expected(sieve: Sieve, thresholds: Thresholds) -> list[np.ndarray]:
@@ -54,7 +66,7 @@ def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, n
         part = slice(start, start + len(band.kept))
         start = part.stop
         local = _smoothed(samples[part] ** 2, band.count / (sieve.length * signals.step) * NEAR)
-        noise = white * (band.high - band.low) + _of_acceleration(sieve, row, band.low, band.high)
+        noise = white * (band.high - band.low) + _at(_of_acceleration(sieve, row, band.low, band.high), band)
         share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
         dry = ((thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant) ** 2 / len(sieve.bands[row])
         found[part] = np.sqrt(noise + share + dry + _at(sinking, band) + (LEAST * _strength(sieve, row)) ** 2)
@@ -154,16 +166,70 @@ def _capped(sieve: Sieve, row: int, residual: np.ndarray, white: float) -> np.nd
     return np.minimum.accumulate(np.r_[white, found[::-1]])[:0:-1]
 
 
-def _of_acceleration(sieve: Sieve, row: int, low: float, high: float) -> float:
-    """Variance in a band of the torque that noise of positions feigns, twice differentiated, below the smoother's crossover."""
+def _of_acceleration(sieve: Sieve, row: int, low: float, high: float) -> np.ndarray:
+    """Variance in a band of the torque that noise of positions feigns at each tick, twice differentiated, below the smoother's crossover `(t,)`."""
     signals, one = sieve.signals, sieve.rows[row]
     if one.balance != "motion" or signals.noise is None or not np.isfinite(signals.noise[one.column]):
-        return 0.0
-    subject = signals.subject
-    inertia = float(joint_inertia(subject)[one.column] + subject.armature[one.column, one.column])
-    density = 2 * signals.step * float(signals.noise[one.column]) ** 2
+        return np.zeros(len(signals.time))
+    square = _shaken(signals)
     stiff = _feedback(sieve, row)
-    return density * (inertia**2 * (2 * np.pi) ** 4 * (high**5 - low**5) / 5 + stiff**2 * (high - low))
+    turned = (2 * np.pi) ** 4 * (high**5 - low**5) / 5
+    own = inertias(signals)[one.column][np.arange(len(square)) // _every(signals)]
+    found = turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, one.column]
+    return np.asarray(_smoothed(2 * signals.step * found, 0.5 / (high - low) / signals.step))  # as long as a sample of the band sees
+
+
+def _shaken(signals: Signals) -> np.ndarray:
+    """Variance of the noise of positions at each tick `(t, n)` [rad^2]: clocks that jitter make more of it where joints are fast.
+
+    Its mean is what smoothing found; that a share of it goes with the square of speed, what the samples show beside the smoothed motion.
+    """
+    assert signals.noise is not None
+    if signals in _SHAKEN:
+        return _SHAKEN[signals]
+    level = np.nan_to_num(signals.noise)
+    found = np.broadcast_to(level**2, signals.position.shape).copy()
+    raw = signals.log.stack("position", signals.subject.joints)
+    for joint, samples in enumerate(raw.T):
+        square = np.nan_to_num(signals.velocity[:, joint]) ** 2
+        known = np.isfinite(samples)
+        if known.sum() < FEWEST or not square.any():
+            continue
+        beside = (samples - np.interp(signals.log.time, signals.time, signals.position[:, joint]))[known] ** 2
+        speed = np.interp(signals.log.time[known], signals.time, square)
+        share = _share(beside, speed / square.mean())
+        found[:, joint] *= 1 - share + share * square / square.mean()
+    _SHAKEN[signals] = found
+    return found
+
+
+def of_acceleration(sieve: Sieve, row: int) -> tuple[np.ndarray, np.ndarray]:
+    """Variance of each sample of a row that noise of accelerations feigns, and the mean square of that noise's frequency `(samples,)` each."""
+    bands = sieve.bands[row]
+    if not bands:
+        return np.zeros(0), np.zeros(0)
+    feigned = [_at(_of_acceleration(sieve, row, b.low, b.high), b) for b in bands]
+    rate = [np.full(len(b.kept), (2 * np.pi) ** 2 * 5 / 7 * (b.high**7 - b.low**7) / (b.high**5 - b.low**5)) for b in bands]
+    return np.concatenate(feigned), np.concatenate(rate)
+
+
+def _share(square: np.ndarray, speed: np.ndarray) -> float:
+    """Share of squares `(s,)` that goes with those of speed over their mean `(s,)`, from 0 to 1, by least squares."""
+    apart = speed - speed.mean()
+    rise = float(apart @ square) / max(float(apart @ apart), 1e-300)
+    return float(np.clip(rise * speed.mean() / max(float(square.mean()), 1e-300), 0.0, 1.0))
+
+
+def inertias(signals: Signals) -> np.ndarray:
+    """Torque at each joint over the acceleration of each, rotors included, every `POSTURE` along a log `(n, p, n)` [kg m^2]."""
+    if signals not in _INERTIAS:
+        some = np.nan_to_num(signals.position[:: _every(signals)])
+        _INERTIAS[signals] = np.stack(rigid.accelerating(signals.subject, some, np.eye(some.shape[1])), -1).swapaxes(0, 1)
+    return _INERTIAS[signals]
+
+
+def _every(signals: Signals) -> int:
+    return max(round(POSTURE / signals.step), 1)
 
 
 def _feedback(sieve: Sieve, row: int) -> float:

@@ -127,7 +127,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         columns = np.where(some[:, None], (found[:k] - found[k]) / np.where(some, divide, 1.0)[:, None], 0.0)
         constant = found[k] - ((values - nulls) / usual) @ columns
     declared = max((float(kg[0]) for place, kg in subject.declared.payload.items() if _same_place(subject, place, location)), default=0.0)
-    scaled = factor(samples, effect.identifier, location, usual)
+    scaled = factor(samples, effect.identifier, location, usual, values)
     driver = DRIVERS.get(effect.identifier)
     unseen = driver is not None and all(getattr(s.signals, driver) is None for s in samples.sieves)
     shakes = effect.unsettles(values) and _unsettling(samples, effect, location)

@@ -23,7 +23,7 @@ def robot_files(tmp_path_factory) -> dict[str, Path]:
 
     folder = tmp_path_factory.mktemp("robots")
     found = {}
-    for name in ("pendulum", "arm", "coupled", "geared"):
+    for name in ("pendulum", "arm", "coupled", "geared", "servos"):
         found[name] = folder / f"{name}.xml"
         found[name].write_text(getattr(robots, name.upper()))
     return found

@@ -46,6 +46,13 @@ def run(kind: str, seed: int, **metadata):
     return log.changed(signals=signals, name=f"{kind}_{seed}")
 
 
+def stamped_badly(seed: int):
+    """Targets and positions of two healthy servos, by a clock that is a quarter of a millisecond early or late."""
+    log = robots.servo_run(robots.SERVOS, robots.waves(2, [0.6, 0.8], seed=seed), 12.0)
+    late = np.random.default_rng([8, seed]).uniform(-2.5e-4, 2.5e-4, len(log.time))
+    return robots.without(log, "velocity", "motor_torque").changed(time=log.time + late, name=f"stamped_badly_{seed}")
+
+
 def conditioned(robot, *logs):
     """Signals of logs of one robot."""
     subject = load_subject(robot, logs)

@@ -89,6 +89,26 @@ COUPLED = """
 </mujoco>
 """
 
+SERVOS = """
+<mujoco model="servos">
+  <option timestep="0.0005"/>
+  <worldbody>
+    <body name="thigh" pos="0 0 1">
+      <joint name="hip" axis="0 1 0" damping="0.5" frictionloss="0.5" armature="0.05"/>
+      <inertial pos="0 0 -0.15" mass="3" diaginertia="0.03 0.03 0.003"/>
+      <body name="shank" pos="0 0 -0.35">
+        <joint name="knee" axis="0 1 0" damping="0.4" frictionloss="0.4" armature="0.04"/>
+        <inertial pos="0 0 -0.15" mass="2" diaginertia="0.02 0.02 0.002"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <position name="s_hip" joint="hip" kp="200" kv="8" forcerange="-80 80"/>
+    <position name="s_knee" joint="knee" kp="120" kv="5" forcerange="-60 60"/>
+  </actuator>
+</mujoco>
+"""
+
 
 def without_missing_meshes(text: str) -> str:
     """The arm as its simulation can load it."""

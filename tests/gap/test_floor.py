@@ -15,6 +15,11 @@ def one(robot_files):
     return sieve(signals)
 
 
+@pytest.fixture(scope="module")
+def jittering(robot_files):
+    return sieve(diagnosed.conditioned(robot_files["servos"], diagnosed.stamped_badly(0))[0])
+
+
 def noise_of(one, floors, row):
     band, _, _ = one.labels(row)
     return {b: float(np.sqrt(np.mean(floors[row][band == b] ** 2))) for b in np.unique(band).tolist()}
@@ -58,3 +63,22 @@ def test_a_worse_known_torque_raises_the_floor(one):
         assert np.all(a > 0)
         assert np.all(b >= a)
     assert high[0].mean() > 1.2 * low[0].mean()
+
+
+def test_positions_stamped_early_or_late_are_noisier_where_joints_are_fast(jittering):
+    signals, rules = jittering.signals, load_thresholds()
+    even = sieve(dataclasses.replace(signals, velocity=np.ones_like(signals.velocity)))  # no tick faster than any other
+    for row, (told, before) in enumerate(zip(expected(jittering, rules), expected(even, rules), strict=True)):
+        top = jittering.labels(row)[0] == jittering.labels(row)[0].max()
+        shown = jittering.sample(row, signals.residual["motion"][:, jittering.rows[row].column][None])[0][top] ** 2
+        after, flat = (np.corrcoef(np.log(shown), np.log(floors[top]))[0, 1] for floors in (told, before))
+        assert after > flat + 0.1
+
+
+def test_noise_of_one_joint_is_in_the_balances_of_those_that_it_shakes(jittering):
+    signals, floors = jittering.signals, []
+    for times in (1.0, 10.0):
+        noisier = dataclasses.replace(signals, noise=signals.noise * np.array([1.0, times]))
+        floors.append(expected(dataclasses.replace(jittering, signals=noisier), load_thresholds()))
+    hip = next(i for i, row in enumerate(jittering.rows) if row.name == "hip")
+    assert floors[1][hip].max() > 2 * floors[0][hip].max()
