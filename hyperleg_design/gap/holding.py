@@ -24,8 +24,10 @@ from hyperleg_design.gap.rigid import turned
 from hyperleg_design.gap.sampling import noise
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.base import Prior
     from hyperleg_design.gap.judge import Model
     from hyperleg_design.gap.learned import Learned
+    from hyperleg_design.gap.nuisance import Usual
     from hyperleg_design.gap.signals import Signals
 
 RUBBING = FRICTION - {"viscous_friction"}
@@ -47,6 +49,8 @@ OF_LOAD, OF_JOLTS, AFOOT = 0.15, 0.3, 0.5
 joints knock; and of all of it where a robot stands on its feet, whose forces are known roughly (assumed)."""
 BEYOND, LEAST = 0.25, 0.01
 """Friction beyond the known one that counts: of that, and of the torque that the joint is made for; belts and drives hold some, too."""
+OPEN = 2.0
+"""Standard deviations of calibrated friction up to which it is known friction."""
 SURE = 20.0
 """Log-likelihood of friction that explains what a joint holds."""
 SURELY = 0.9
@@ -91,23 +95,44 @@ def _stuck(signals: Signals) -> np.ndarray:
     return _STUCK[signals]
 
 
-def noticed(signals: Sequence[Signals], references: Sequence[Signals], learned: Sequence[Learned] = ()) -> dict[str, float]:
+def noticed(
+    signals: Sequence[Signals],
+    references: Sequence[Signals],
+    learned: Sequence[Learned] = (),
+    errors: Sequence[Usual] = (),
+    prior: Prior | None = None,
+) -> dict[str, float]:
     """Joints that hold more than the friction that the model has and reference logs show, and by how much [Nm].
 
     Args:
         signals: conditioned logs under test.
         references: conditioned logs of the healthy robot.
         learned: effects that it has already.
+        errors: calibration errors.
+        prior: of these, as reference logs tell them.
     """
     subject = signals[0].subject
-    known = np.max([subject.coulomb, *(held(s) for s in references)], 0)
+    shown = np.zeros(len(subject.joints)) if prior is None else calibrated(errors, prior, signals)
     for one in learned:
         if one.effect in RUBBING:
-            joint = subject.joints.index(one.location)
-            known[joint] = max(known[joint], subject.coulomb[joint] + _given(one.effect, one.location, one.values, signals))
+            shown[subject.joints.index(one.location)] += _given(one.effect, one.location, one.values, signals)
+    known = np.max([subject.coulomb, subject.coulomb + shown, *(held(s) for s in references)], 0)
     shows = np.max([held(s) for s in signals], 0)
     counts = (shows - known > BEYOND * known + LEAST * joint_strength(subject)) & ~chattering(signals) & ~subject.passive
     return {subject.joints[j]: float(shows[j] - known[j]) for j in np.flatnonzero(counts).tolist()}
+
+
+def calibrated(errors: Sequence[Usual], prior: Prior, signals: Sequence[Signals]) -> np.ndarray:
+    """Friction at rest over the model's that reference logs show, and what they leave open, by joint `(n,)` [Nm].
+
+    All errors that rub together: which of them it is, slow motion hardly tells.
+    """
+    found = np.zeros(len(signals[0].subject.joints))
+    for place, joint in enumerate(signals[0].subject.joints):
+        rubs = [e.location == joint and e.effect in RUBBING for e in errors]
+        row = np.array([_given(e.effect, joint, np.array([e.spread]), signals) if r else 0.0 for e, r in zip(errors, rubs, strict=True)])
+        found[place] = row @ prior.mean + OPEN * np.sqrt(row @ prior.covariance @ row)
+    return found
 
 
 def share(model: Model, joint: str, torque: float, signals: Sequence[Signals]) -> float:

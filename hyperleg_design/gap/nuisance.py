@@ -89,6 +89,9 @@ between both sensors' samples, and belts and gears as stiff as they are, which g
 SPEEDS = (GEARED, TOLD_LATE, GIVING)
 OF_SPEED = 0.003
 """Of the joints' speed: cords run on their own thickness, linkages off their drawing (assumed)."""
+UNDESCRIBED = dict.fromkeys(("coulomb_friction", "viscous_friction", "stribeck_friction", TURNOVER), 50.0)
+"""Instead of `WIDE` at joints of whose friction the model tells nothing: all of it is an error then, and gears rub by up to a tenth of the
+torque that the joint is made for, and as much again at 1 rad/s (assumed); errors go to `base.LIMIT` of this."""
 STIFF, GIVES = 60.0, 0.001
 """Frequency of a rotor on a belt that nobody calls soft [Hz], and angle at a joint by which one gives under all of its torque [rad]; the
 softer of both is usual."""
@@ -135,14 +138,22 @@ class Usual:
         return f"{self.effect} at {self.location}: {parameter}"
 
 
-def usual_errors(subject: Subject, step: float) -> list[Usual]:
-    """Calibration errors of a robot whose logs have a step [s]."""
+def usual_errors(subject: Subject, step: float, calibrated: bool = False) -> list[Usual]:
+    """Calibration errors of a robot.
+
+    Args:
+        subject: the robot.
+        step: of its logs [s].
+        calibrated: whether reference logs tell of friction that the model does not have, which turns over as the model's does.
+    """
     strength, inertia = joint_strength(subject), joint_inertia(subject)
     found: list[Usual] = []
     for j, joint in enumerate(subject.joints):
         if subject.coulomb[j] > 0:
             found += [Usual(TURNOVER, joint, i, OF_WAY if i else AT_ONCE) for i in range(1 + len(WAYS))]
             found += [Usual(SWUNG, joint, i, OF_SWING) for i in range(len(SWINGS))]
+        elif calibrated:  # what is calibrated turns over at once already
+            found += [Usual(TURNOVER, joint, 1 + i, OF_WAY) for i in range(len(WAYS))]
         coulomb = COULOMB * subject.coulomb[j] + COULOMB_LEAST * strength[j]
         found += [
             Usual("coulomb_friction", joint, 0, coulomb),
@@ -191,15 +202,17 @@ def usual_errors(subject: Subject, step: float) -> list[Usual]:
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 
 
-def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarray]]:
+def traces(signals: Signals, errors: Sequence[Usual], calibrated: bool = False) -> list[dict[str, np.ndarray]]:
     """Trace of each error at one spread from its null, by balance `(t, columns)`.
 
     Torque constants scale the torque that the motion needs, not the measured one, and so do gains where nobody measured any: else
-    all of them together could scale the noise away, masses and loads along with it, which no motion contradicts.
+    all of them together could scale the noise away, masses and loads along with it, which no motion contradicts. So does friction under
+    load where the model has none and reference logs calibrate it: else its share of a torque that is mostly friction explains all of it.
     """
     needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)
     modelled = replace(signals, believed=np.where(np.isfinite(needed), needed, signals.believed), target=None)
     steered = _steered(signals)
+    bare = {joint for joint, coulomb in zip(signals.subject.joints, signals.subject.coulomb, strict=True) if calibrated and not coulomb}
     found = []
     for one in errors:
         if one.effect in (TURNOVER, SWUNG):
@@ -219,6 +232,8 @@ def traces(signals: Signals, errors: Sequence[Usual]) -> list[dict[str, np.ndarr
         sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
         values[one.parameter] = np.clip(values[one.parameter] + sign * one.spread, low, high)
         source = {"torque_constant": modelled, "controller_gain": steered}.get(one.effect, signals)
+        if one.effect == "load_dependent_friction" and one.location in bare:
+            source = modelled
         moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
         found.append({b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()} if moved else {})
     return found
@@ -318,15 +333,20 @@ def _told(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
 
 
 def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
-    """Friction of the model that turns over at once less that of the model as it is; or on a way, less that at once."""
+    """Friction that turns over at once less that of the model as it is; or on a way, less that at once."""
     subject, rows = signals.subject, np.zeros_like(signals.position)
     j = subject.joints.index(joint)
     at_once = sliding(signals)[:, j]
     swing = None if signals.chatter is None else signals.chatter.speed[:, j]
     turned = rigid.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
     shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
-    rows[:, j] = subject.coulomb[j] * shape
+    rows[:, j] = turning(subject)[j] * shape
     return {"motion": rows}
+
+
+def turning(subject: Subject) -> np.ndarray:
+    """Friction whose turning over is a calibration error `(n,)` [Nm]: the model's, or a usual error where it has none."""
+    return np.where(subject.coulomb > 0, subject.coulomb, COULOMB_LEAST * joint_strength(subject))
 
 
 def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
@@ -353,10 +373,10 @@ def stop(position: np.ndarray, way: float) -> np.ndarray:
     return out
 
 
-def columns(sieve: Sieve, errors: Sequence[Usual]) -> dict[int, np.ndarray]:
+def columns(sieve: Sieve, errors: Sequence[Usual], calibrated: bool = False) -> dict[int, np.ndarray]:
     """Samples of all errors at one spread each, by row `(errors, samples)`."""
     found = {row: np.zeros((len(errors), sieve.count(row))) for row in range(len(sieve.rows))}
-    for place, trace in enumerate(traces(sieve.signals, errors)):
+    for place, trace in enumerate(traces(sieve.signals, errors, calibrated)):
         for row, one in enumerate(sieve.rows):
             if one.balance in trace:
                 values = trace[one.balance][:, one.column]
@@ -373,5 +393,4 @@ def spreads(errors: Sequence[Usual], factors: Mapping[str, float]) -> np.ndarray
 def for_life(errors: Sequence[Usual], subject: Subject) -> np.ndarray:
     """Deviation of each error of a healthy robot, in usual ones `(errors,)`."""
     told = {joint for joint, coulomb in zip(subject.joints, subject.coulomb, strict=True) if coulomb > 0}
-    described = np.array([one.location in told and one.effect in DESCRIBED for one in errors], bool)
-    return np.where(described, spreads(errors, DESCRIBED), spreads(errors, WIDE))
+    return np.array([({**WIDE, **(DESCRIBED if one.location in told else UNDESCRIBED)}).get(one.effect, 1.0) for one in errors])

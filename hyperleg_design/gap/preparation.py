@@ -71,21 +71,21 @@ def prepare(signals: Sequence[Signals], references: Sequence[Signals], threshold
     """
     signals = newly(signals, references)
     subject = signals[0].subject
-    usual = nuisance.usual_errors(subject, signals[0].step)
-    own = _columns(signals, usual, thresholds, sessions_of(signals))
+    usual = nuisance.usual_errors(subject, signals[0].step, bool(references))
+    own = _columns(signals, usual, thresholds, sessions_of(signals), bool(references))
     if not len(own.samples.value):
         raise InputError(signals[0].log.name, "", None, "has too few ticks of which torques and motion are known: log longer, or more signals")
     kept = _showing(own)
     if references:
-        healthy = _columns(references, usual, thresholds, np.zeros(len(references), int))
+        healthy = _columns(references, usual, thresholds, np.zeros(len(references), int), True)
         kept |= _showing(healthy)
         errors = [one for one, k in zip(usual, kept, strict=True) if k]
         base = healthy.base(kept, _felt(_wide(errors, subject), errors, references), thresholds)
         limits = [name for name in AT_LIMITS if name != "voltage_sag" or any(s.voltage is not None for s in references)]
         before = shown_already(base, thresholds, [*screen.places(subject, limits), *unsaid(subject)], threads)
-        prior = _felt(_after(base, before.fit, errors), errors, signals)
+        prior = _felt(_after(base, before.fit, errors, subject), errors, signals)
         own, known = own.scaled(_scales(base, before)), learned(before)
-        own = replace(own, holds=noticed(signals, references, known))
+        own = replace(own, holds=noticed(signals, references, known, errors, prior))
         return _with_learned(own, kept, prior, errors, known, thresholds)
     own = replace(own, holds=noticed(signals, ()))
     errors = [one for one, k in zip(usual, kept, strict=True) if k]
@@ -192,13 +192,13 @@ class _Columns:
         return _base(replace(samples, holds=self.holds), self.errors[kept], prior, thresholds, self.known)
 
 
-def _columns(signals: Sequence[Signals], usual: Sequence[nuisance.Usual], thresholds: Thresholds, sessions: np.ndarray) -> _Columns:
+def _columns(signals: Sequence[Signals], usual: Sequence[nuisance.Usual], thresholds: Thresholds, sessions: np.ndarray, calibrated: bool) -> _Columns:
     sieves = [filtering.sieve(s, filtering.sticking(s)) for s in signals]
     floors = [floor.expected(one, thresholds) for one in sieves]
     samples = gather(sieves, floors, sessions.tolist(), thresholds.information)
     errors = np.zeros((len(usual), len(samples.value)))
     for one, places in zip(sieves, samples.where, strict=True):
-        for row, columns in nuisance.columns(one, usual).items():
+        for row, columns in nuisance.columns(one, usual, calibrated).items():
             errors[:, places[row]] = columns
     return _Columns(sieves, floors, samples, errors, sessions, thresholds)
 
@@ -209,8 +209,8 @@ def _base(samples: Samples, errors: np.ndarray, prior: Prior, thresholds: Thresh
     return Base(samples, errors * weight, (value - prior.mean @ errors) * weight, prior, thresholds.floor_weight)
 
 
-def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual]) -> Prior:
-    """What reference logs tell of another day."""
+def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual], subject: Subject) -> Prior:
+    """What reference logs tell of another day; friction that they show turns over as nobody knows, as that of the model does."""
     weight = 1 / fit.scale
     size = len(errors)
     normal = base.total[0].weighed(weight)[:size, :size] + base.prior.precision
@@ -219,7 +219,16 @@ def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual]) -> Prior:
     day = nuisance.spreads(errors, nuisance.DAY)
     friction = np.array([one.effect in FRICTION for one in errors])
     day = np.hypot(day, np.where(friction, nuisance.ABOVE_CALIBRATED * np.abs(mean), 0.0))
+    day *= _turning(errors, mean, subject)
     return Prior(mean, known + np.diag(day**2), told=True)
+
+
+def _turning(errors: Sequence[nuisance.Usual], mean: np.ndarray, subject: Subject) -> np.ndarray:
+    """How many times as much friction as they stand for turns over, by reference logs, of such errors; 1 of others `(errors,)`."""
+    shown = {e.location: float(m) * e.spread for e, m in zip(errors, mean, strict=True) if e.effect == "coulomb_friction"}
+    unit = nuisance.turning(subject)
+    rubs = {j: abs(own + shown.get(j, 0.0)) / of for j, own, of in zip(subject.joints, subject.coulomb, unit, strict=True)}
+    return np.array([max(rubs[e.location], 1.0) if e.effect == nuisance.TURNOVER else 1.0 for e in errors])
 
 
 def _scales(base: Base, model: Model) -> dict[tuple[str, int, int], float]:

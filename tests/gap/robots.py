@@ -160,6 +160,14 @@ def waves(count: int, amplitude, slow: float = 0.2, fast: float = 1.5, seed: int
     return at
 
 
+def swift(seed: int):
+    """Targets of one joint that turn round at once and never stand still, from time to `(1,)`."""
+    rng = np.random.default_rng(seed)
+    corners = np.array([-1.0, 1.0] * 20) * rng.uniform(0.2, 0.9, 40)
+    times = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(corners)) / rng.uniform(1.0, 3.5, 39))])
+    return lambda time: np.array([np.interp(time, times, corners)])
+
+
 def quantised(log: Log, size: float) -> Log:
     """Positions rounded to a grid, velocities taken out."""
     signals = {c: np.round(v / size) * size if c.startswith("position/") else v for c, v in log.signals.items() if not c.startswith("velocity/")}

@@ -5,8 +5,12 @@ import pytest
 import robots
 from diagnosed import conditioned
 
+from hyperleg_design.gap.base import Prior
 from hyperleg_design.gap.diagnose import diagnose_signals
-from hyperleg_design.gap.holding import AFOOT, OF_LOAD, _unsure, held, noticed
+from hyperleg_design.gap.holding import AFOOT, OF_LOAD, OPEN, _unsure, calibrated, held, noticed
+from hyperleg_design.gap.nuisance import Usual
+from hyperleg_design.gap.preparation import prepare
+from hyperleg_design.gap.thresholds import load_thresholds
 
 SERVO = robots.PENDULUM.replace(
     '<motor name="servo" joint="swing" ctrlrange="-3 3"/>', '<position name="servo" joint="swing" kp="8" kv="0.3" forcerange="-3 3"/>'
@@ -59,6 +63,34 @@ def test_what_held_before_is_no_news(servo):
     signals = conditioned(servo, log(0.5), log(0.5, session="before", role="reference"))
     assert list(noticed(signals[:1], ())) == ["swing"]
     assert noticed(signals[:1], signals[1:]) == {}
+
+
+def test_errors_that_rub_are_known_together(servo):
+    errors = [Usual("coulomb_friction", "swing", 0, 0.1), Usual("stribeck_friction", "swing", 0, 0.2), Usual("viscous_friction", "swing", 0, 1.0)]
+    prior = Prior(np.array([3.0, -0.5, 4.0]), np.array([[4.0, -1.9, 0.0], [-1.9, 1.0, 0.0], [0.0, 0.0, 1.0]]))
+    variance = 0.04 + 0.04 - 2 * 0.1 * 0.2 * 1.9  # Nm^2: much less than of either alone
+    assert calibrated(errors, prior, conditioned(servo, log()))[0] == pytest.approx(0.3 - 0.1 + OPEN * np.sqrt(variance))
+
+
+def test_calibrated_friction_is_known_at_rest_as_far_as_it_may_reach(servo):
+    signals = conditioned(servo, log(0.5))
+    errors = [Usual("coulomb_friction", "swing", 0, 0.01)]
+    for mean, deviation, holds in ((0.5, 0.02, False), (0.1, 0.02, True), (0.1, 0.2, False), (-0.5, 0.02, True)):
+        prior = Prior(np.array([mean / 0.01]), np.array([[(deviation / 0.01) ** 2]]))
+        assert bool(noticed(signals, (), (), errors, prior)) == holds
+
+
+def test_friction_that_references_show_while_they_move_is_known_at_rest(servo):
+    """They never rest, so that nothing but their calibration tells it; the model has none."""
+    moving = [log(0.25, target=robots.swift(s), session="before", role="reference") for s in (1, 2)]
+    signals = conditioned(servo, log(0.25), log(0.55), *moving)
+    assert max(float(held(s)[0]) for s in signals[2:]) < 0.1
+    rules = load_thresholds(None)
+    assert list(noticed(signals[:1], signals[2:])) == ["swing"]
+    assert prepare(signals[:1], signals[2:], rules).base.samples.holds == {}
+    more = prepare(signals[1:2], signals[2:], rules).base.samples.holds
+    assert 0.1 < more["swing"] < 0.3
+    assert diagnose_signals(signals[:1], signals[2:], threads=1).verdict == "none"
 
 
 def test_a_joint_that_sticks_is_never_called_healthy(servo):

@@ -5,17 +5,21 @@ import numpy as np
 import pytest
 import robots
 
+from hyperleg_design.gap.base import LIMIT
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.diagnose import diagnose
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.filtering import sieve
 from hyperleg_design.gap.nuisance import (
     DAY,
     DESCRIBED,
     FILTERED,
     FORCES_SCALED,
+    OF_WAY,
     TURNOVER,
     UNLISTED,
+    WAYS,
     WIDE,
     columns,
     for_life,
@@ -53,6 +57,31 @@ def test_friction_under_load_is_narrow_only_where_the_model_tells_of_friction(si
     assert found["load_dependent_friction", "knee"] == DESCRIBED["load_dependent_friction"] < WIDE["load_dependent_friction"]
     assert found["load_dependent_friction", "hip"] == WIDE["load_dependent_friction"]
     assert found["viscous_friction", "knee"] == WIDE["viscous_friction"]
+
+
+def test_friction_of_which_the_model_tells_nothing_is_wide_and_turns_over_once_it_is_calibrated(signals):
+    subject = signals.subject
+    bare = replace(subject, coulomb=np.where(np.arange(len(subject.joints)) == subject.joints.index("knee"), 0.3, 0.0))
+    alone, calibrated = usual_errors(bare, signals.step), usual_errors(bare, signals.step, calibrated=True)
+    more = [e for e in calibrated if e not in alone]
+    expected = {(TURNOVER, joint, 1 + i) for joint in subject.joints if joint != "knee" for i in range(len(WAYS))}
+    assert {(e.effect, e.location, e.parameter) for e in more} == expected
+    widths = {(e.effect, e.location): width * e.spread for e, width in zip(calibrated, for_life(calibrated, bare), strict=True)}
+    strength = dict(zip(subject.joints, joint_strength(bare), strict=True))
+    for effect in ("coulomb_friction", "viscous_friction"):
+        assert 0.08 < LIMIT * widths[effect, "hip"] / strength["hip"] < 0.11
+        assert widths[effect, "knee"] == next(e.spread for e in calibrated if (e.effect, e.location) == (effect, "knee")) * WIDE[effect]
+    trace = next(t for e, t in zip(calibrated, traces(replace(signals, subject=bare), calibrated), strict=True) if e in more)
+    assert 0 < np.abs(trace["motion"]).max() < OF_WAY * 0.001 * strength["hip"] * 2
+
+
+def test_friction_under_load_is_no_share_of_the_measured_torque_where_the_model_has_no_friction(signals, errors):
+    bare = replace(signals, subject=replace(signals.subject, coulomb=np.zeros_like(signals.subject.coulomb)))
+    errors = [one for one in errors if one.effect != TURNOVER]
+    rubbing = replace(bare, believed=3 * signals.believed)
+    for one, now, then in zip(errors, traces(rubbing, errors, True), traces(bare, errors, True), strict=True):
+        if one.effect == "load_dependent_friction":
+            np.testing.assert_array_equal(now["motion"], then["motion"])
 
 
 def test_usual_errors_are_smaller_than_usual_causes(signals, errors):

@@ -1,12 +1,14 @@
 import diagnosed
 import numpy as np
 import pytest
+import robots
 
 from hyperleg_design.gap import preparation
 from hyperleg_design.gap.base import Prior
 from hyperleg_design.gap.fit import Design
-from hyperleg_design.gap.nuisance import Usual
+from hyperleg_design.gap.nuisance import TURNOVER, Usual
 from hyperleg_design.gap.preparation import MOST_SESSIONS, sessions_of
+from hyperleg_design.gap.thresholds import load_thresholds
 
 
 def test_logs_without_a_session_are_sessions_of_their_own(robot_files):
@@ -47,3 +49,26 @@ def test_what_the_accelerometer_feels_too_much_is_known_along_the_vertical_alone
     assert preparation._felt(prior, errors[:1] * 4, []) is prior
     monkeypatch.setattr(preparation, "felt_upright", lambda signals: None)
     assert preparation._felt(prior, errors, []) is prior
+
+
+def test_friction_that_the_model_lacks_is_calibrated_and_turns_over_as_that_of_the_model(tmp_path):
+    """Of a drive that loses a tenth of its torque, described by nobody."""
+    robot, friction, damping = tmp_path / "servo.xml", 0.3, 0.15
+    plain = robots.PENDULUM.replace(
+        '<motor name="servo" joint="swing" ctrlrange="-3 3"/>', '<position name="servo" joint="swing" kp="8" kv="0.1" forcerange="-3 3"/>'
+    )
+    robot.write_text(plain)
+    real = plain.replace('damping="0.02"', f'damping="{damping}" frictionloss="{friction}"')
+    days = (("before", "reference"), ("before", "reference"), ("today", "test"))
+    logs = [robots.servo_run(real, robots.swift(seed), 12.0, session=day, role=role) for seed, (day, role) in enumerate(days)]
+    signals = diagnosed.conditioned(robot, *logs)
+    known = preparation.prepare(signals[2:], signals[:2], load_thresholds(None))
+    place = {(e.effect, e.parameter): i for i, e in enumerate(known.errors) if e.location == "swing"}
+    mean = known.base.prior.mean * np.array([e.spread for e in known.errors])
+    assert mean[place["coulomb_friction", 0]] == pytest.approx(friction, rel=0.15)
+    assert mean[place["viscous_friction", 0]] == pytest.approx(damping - 0.02, rel=0.2)
+    coulomb = place["coulomb_friction", 0]
+    ways = [i for (effect, _), i in place.items() if effect == TURNOVER]
+    assert ways
+    assert np.all(np.sqrt(np.diag(known.base.prior.covariance)[ways]) >= known.base.prior.mean[coulomb])
+    assert known.errors[coulomb].spread < 0.01 * friction
