@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +22,7 @@ from hyperleg_design.gap.diagnosis import LEAST_SHARE, MOST_RIVALS, NAMING, Diag
 from hyperleg_design.gap.equivalence import alike
 from hyperleg_design.gap.finding import NOTE, WARNING
 from hyperleg_design.gap.fit import Cause, Design
-from hyperleg_design.gap.held_out import Held, predict
+from hyperleg_design.gap.held_out import Held, predict, untold
 from hyperleg_design.gap.holding import sticks, ungiven
 from hyperleg_design.gap.imu_offset import PLACE, imu_offset
 from hyperleg_design.gap.judge import CHATTERS, Judge, Model, rank
@@ -182,6 +183,8 @@ class _Report:
         verdict = found.verdict
         if verdict in NAMING and not self.carries_over():
             verdict = "unknown"
+        elif verdict in NAMING and self.way == LOGS and not self.told.all():
+            self.way = BLOCKS  # what some logs alone do not tell of a cause says nothing of how much it closes
         named = found.model.causes if verdict in NAMING else ()
         doubts = self.doubts()
         sets: list[list[Model]] = []
@@ -215,12 +218,27 @@ class _Report:
         return likely < rules.likely and float(self.judge.gap(self.found.model.held.bare, rows)) < rules.largest_excess
 
     def carries_over(self) -> bool:
-        """Whether causes also close the gap of whole logs that were held out: what stands for something else does so in one motion alone."""
+        """Whether causes also close the gap of whole logs that were held out: what stands for something else does so in one motion alone.
+
+        Logs whose causes the others do not tell, as where one motor alone was warm in one log, say nothing of that.
+        """
         judge, found = self.judge, self.found
         if self.way == BLOCKS or self.small or sticks_alone(judge, found.model, found.rows):
             return True
-        left = float(judge.gap(self.held(found.model).square, found.rows))
-        return left <= judge.thresholds.largest_excess or self.closed(found.model) >= judge.thresholds.worth
+        if not self.told.any():
+            return True
+        held, told = self.held(found.model), self.told.astype(float)
+        left = float(judge.gap(held.square, found.rows, told))
+        return left <= judge.thresholds.largest_excess or judge.closed(held, found.rows, held, told) >= judge.thresholds.worth
+
+    @cached_property
+    def told(self) -> np.ndarray:
+        """Blocks of logs whose causes the other logs tell `(B,)` of bool: so well that what is twice its deviation off closes `worth`."""
+        model, samples = self.found.model, self.judge.base.samples
+        known = untold(Design(self.judge.base, model.causes), model.fit, LOGS) <= (1 - self.judge.thresholds.worth) / 2
+        found = np.zeros(self.judge.base.blocks, bool)
+        found[samples.block] = known[samples.fold[LOGS][samples.part]]
+        return found
 
     def moot(self, joint: str, torque: float, named: Sequence[Cause]) -> bool:
         """Whether named causes say that the torque which a joint seems to hold at rest never came."""

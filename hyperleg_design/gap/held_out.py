@@ -89,6 +89,25 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
     return Held(likelihood, squares, left, over, whole)
 
 
+def untold(design: Design, fit: Fit, way: int = BLOCKS) -> np.ndarray:
+    """How far the other folds leave the causes' trace in each fold open: standard deviation over the trace, root mean squares `(folds,)`.
+
+    Args:
+        design: columns of the model.
+        fit: to all data, whose trace it is.
+        way: of holding out.
+    """
+    samples, own = design.base.samples, design.columns[: design.count]
+    fold_of, trace = samples.fold[way][samples.part], design.trace(fit.phi)
+    found = np.zeros(samples.folds(way))
+    for fold in range(len(found)):
+        here = fold_of == fold
+        known = design.fit(way, fold, fit.scale, rounds=2).covariance
+        doubtful = float(np.einsum("ks,kl,ls->", own[:, here], known, own[:, here], optimize=True))
+        found[fold] = np.sqrt(doubtful / max(float(np.sum(trace[here] ** 2)), 1e-12))
+    return found
+
+
 def _student(square: np.ndarray, size: np.ndarray, nu: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """Log density of cells of `size` numbers whose squares sum up to `square`, of a t-distribution of `nu` and `scale`; each `(cells,)`."""
     return np.asarray(-0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale))

@@ -234,9 +234,9 @@ class Judge:
         """Root mean square over some rows, each over its floor `()` or `(k,)`; squares as of `held_out.Held`."""
         return np.asarray(np.sqrt(self.rows(square, blocks)[..., rows].mean(-1)))
 
-    def closed(self, held: Held, rows: np.ndarray, before: Held) -> float:
-        """Share of the excess gap of some rows that a model closes; the gap is the one without the causes of `before`."""
-        first, after = float(self.gap(before.bare, rows)), float(self.gap(held.square, rows))
+    def closed(self, held: Held, rows: np.ndarray, before: Held, blocks: np.ndarray | None = None) -> float:
+        """Share of the excess gap of some rows, in all blocks or some `(B,)`, that a model closes; the gap is that without `before`'s causes."""
+        first, after = float(self.gap(before.bare, rows, blocks)), float(self.gap(held.square, rows, blocks))
         lowest = min(1.0, after)
         return (first - after) / (first - lowest) if first > lowest + 1e-9 else 0.0
 

@@ -19,6 +19,7 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import moved_joints
 from hyperleg_design.gap.heard import KNOCKING, Heard
 from hyperleg_design.gap.loose import LIKELIER, PLAY, SPRING, sided, valued
+from hyperleg_design.gap.stamps import of_acceleration
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
@@ -30,7 +31,7 @@ HIGHEST = 0.3
 SLOWEST = 0.5
 """Of what sizes are told by [Hz]."""
 EPISODE = 6.0
-"""Residual over the robust scale of its row, above `LOWEST`, from which there is a knock."""
+"""Residual over the robust scale of its row, above `LOWEST`, from which there is a knock; what samples off their stamps make of it included."""
 LEAST = 100
 """Ticks of knocks, of all logs, that must be seen."""
 EXPLAINED = 0.5
@@ -125,12 +126,20 @@ def _knocks(signals: Signals) -> _Knocks:
     subject, fast = signals.subject, _between(signals, signals.residual["motion"], LOWEST)
     scale = _scale(fast)
     when = (np.abs(fast) > EPISODE * scale).any(1) & signals.valid
+    when[when] = (np.abs(fast[when]) > EPISODE * np.hypot(scale, _shaken(signals, when))).any(1)
     position, fast = signals.position[when], fast[when]
     explained = np.zeros((len(fast), len(subject.motors)))
     for motor, column in enumerate(rigid.accelerating(subject, position, subject.motor_from_joint, rotors=False)):
         column = column / scale
         explained[:, motor] = np.einsum("tn,tn->t", column, fast / scale) ** 2 / np.maximum(np.einsum("tn,tn->t", column, column), 1e-12)
     return _Knocks(fast / scale, explained, fast, int(signals.valid.sum()))
+
+
+def _shaken(signals: Signals, when: np.ndarray) -> np.ndarray:
+    """Torque of motion that is only samples off their stamps, standard deviation at some ticks `(k, n)` [Nm]."""
+    noise = of_acceleration(signals)[when]
+    columns = rigid.accelerating(signals.subject, signals.position[when], np.eye(noise.shape[1]))
+    return np.asarray(np.linalg.norm([column * noise[:, joint, None] for joint, column in enumerate(columns)], axis=0))
 
 
 def _between(signals: Signals, values: np.ndarray, lowest: float) -> np.ndarray:

@@ -55,6 +55,7 @@ KINDS = {
     "position": "a torque that depends on the joint's position",
     "speed": "a torque that depends on the joint's speed, not in proportion",
     "friction_over_position": "friction that depends on where the joint is",
+    "friction_over_time": "friction that changes with time",
     "time": "a torque that drifts with time",
     "memory": "a torque that depends on the way the joint came (hysteresis)",
     OF_LOAD: "a share of the load that varies with the joint's position",
@@ -165,6 +166,8 @@ class _Basis:
             return np.stack([x * np.abs(x), x**3, np.tanh(3 * x), np.abs(x), x**2])
         if name == "friction_over_position":
             return self._pieces(q) * sliding(signals)[:, self.joint]
+        if name == "friction_over_time":
+            return (2 * time / self.longest - 1) ** np.arange(4)[:, None] * sliding(signals)[:, self.joint]
         if name == "time":
             x = 2 * time / self.longest - 1
             return np.stack([x, x**2, x**3, (x - 0.3) * (x > 0.3), (x + 0.3) * (x < -0.3)])

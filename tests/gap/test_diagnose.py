@@ -109,14 +109,20 @@ def test_of_a_small_gap_rivals_close_what_they_close_over_what_is_left():
     assert not report.small, "a gap over the floor is measured against the floor"
 
 
-@pytest.mark.parametrize(("way", "small", "left", "closed", "carries"), [
-    (LOGS, False, 3.0, 0.2, False), (LOGS, False, 3.0, 0.3, True), (LOGS, False, 1.2, 0.2, True), (LOGS, True, 3.0, 0.2, True),
-    (BLOCKS, False, 3.0, 0.2, True),
+@pytest.mark.parametrize(("way", "small", "left", "closed", "told", "carries"), [
+    (LOGS, False, 3.0, 0.2, (1, 1), False), (LOGS, False, 3.0, 0.3, (1, 1), True), (LOGS, False, 1.2, 0.2, (1, 1), True),
+    (LOGS, True, 3.0, 0.2, (1, 1), True), (BLOCKS, False, 3.0, 0.2, (1, 1), True), (LOGS, False, 3.0, 0.2, (0, 0), True),
+    (LOGS, False, 3.0, 0.2, (1, 0), True), (LOGS, False, 3.0, 0.2, (0, 1), False),
 ])  # fmt: skip
-def test_causes_must_close_much_of_the_gap_of_whole_logs_that_were_held_out(way, small, left, closed, carries):
-    judge = SimpleNamespace(holds={}, thresholds=load_thresholds(), gap=lambda square, rows: left, rows=lambda square: np.full(2, left**2))
+def test_causes_must_close_much_of_the_gap_of_whole_logs_that_were_held_out(way, small, left, closed, told, carries):
+    """Of two blocks the second alone has a gap; only blocks of logs whose causes the other logs tell count."""
+
+    def gap(square, rows, blocks):
+        return left if blocks[1] else 1.0
+
+    judge = SimpleNamespace(holds={}, thresholds=load_thresholds(), gap=gap, rows=lambda square: np.full(2, left**2), closed=lambda *_: closed)
     judge.base = SimpleNamespace(samples=SimpleNamespace(rows=[SimpleNamespace(name="knee")]))
     model = SimpleNamespace(held=SimpleNamespace(square=None))
     report = SimpleNamespace(way=way, small=small, judge=judge, found=SimpleNamespace(model=model, rows=np.ones(2, bool)))
-    report.held, report.closed = lambda one: one.held, lambda one: closed
+    report.held, report.told = lambda one: one.held, np.array(told, bool)
     assert _Report.carries_over(report) is carries

@@ -55,9 +55,7 @@ def test_noise_that_shrinks_gains_nothing():
 def test_belts_pay_where_encoders_at_the_joints_bring_noise_into_their_load(robot_files):
     samples = diagnosed.prepared(robot_files["servos"], diagnosed.stamped_badly(0)).base.samples
     usual = np.array([0.004, 0.05, 1.0, 1.0, 30.0])
-    at_joints, at_rotors = (
-        factor(samples, "transmission_elasticity", "knee", usual, np.array([0.004, 0.05, side, 0.0, 0.0])) for side in (0.0, 1.0)
-    )
+    at_joints, at_rotors = (factor(samples, "transmission_elasticity", "knee", usual, np.array([0.004, 0.05, side, 0.0, 0.0])) for side in (0.0, 1.0))
     assert isinstance(at_joints, Shrinking)
     assert at_joints.log(0.5) < 0
     assert at_rotors is None

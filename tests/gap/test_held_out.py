@@ -1,10 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hyperleg_design.gap.base import number_of
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.fit import Design
-from hyperleg_design.gap.held_out import doubt, predict
+from hyperleg_design.gap.held_out import doubt, predict, untold
 from hyperleg_design.gap.samples import BLOCKS, LOGS
 from hyperleg_design.gap.screen import linearise
 
@@ -61,3 +63,14 @@ def test_a_row_that_other_blocks_pin_down_is_hardly_open(viscous_ready):
     found = doubt(base)
     prior = np.einsum("ps,pq,qs->s", base.errors, base.prior.covariance, base.errors) / base.samples.share
     assert found.mean() < 0.3 * prior.mean()
+
+
+def test_other_logs_tell_a_cause_that_they_show_and_no_other(viscous_ready, knee_friction):
+    samples = viscous_ready.base.samples
+    design = Design(viscous_ready.base, [knee_friction])
+    assert (untold(design, design.fit(), LOGS) < 0.2).all()
+    warm = samples.fold[LOGS][samples.part] == 0
+    alone = Design(viscous_ready.base, [replace(knee_friction, columns=knee_friction.columns * warm)])
+    found = untold(alone, alone.fit(), LOGS)
+    assert found[0] > 0.5, "no other log shows it"
+    assert (found[1:] == 0).all(), "it leaves nothing there"

@@ -28,6 +28,25 @@ def test_a_shape_of_position_tells_a_hardening_spring(ready):
     assert set(gains) <= set(KINDS)
 
 
+def test_friction_that_fades_away_is_told_from_friction_that_stays(robot_files):
+    logs = []
+    for seed in (0, 1):
+        log = diagnosed.run("healthy", seed, session="a")
+        fading = 0.2 * np.exp(-(log.time - log.time[0]) / 4) * np.tanh(log.column("velocity/hip") / 0.02)
+        logs.append(log.changed(signals={c: v + fading if c.startswith("motor_torque/") else v for c, v in log.signals.items()}))
+    base = diagnosed.prepared(robot_files["coupled"], *logs).base
+    nothing = Design(base).fit()
+    row = next(i for i, r in enumerate(base.samples.rows) if r.name == "hip")
+    gains = {}
+    for one in shapes(base.samples, np.array([row])):
+        found = columns(base, nothing, one)
+        if found is not None:
+            gains[one.name] = predict(Design(base, ridge=found)).total
+    best, second = sorted(gains, key=gains.__getitem__)[:-3:-1]
+    assert best == "friction_over_time"
+    assert gains[best] > gains[second] + 10
+
+
 def test_columns_are_finite_and_sit_in_their_row(ready):
     base = ready.base
     nothing = Design(base).fit()

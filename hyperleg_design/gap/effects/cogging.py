@@ -9,7 +9,8 @@ import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.friction import sliding
-from hyperleg_design.gap.effects.placing import at_motor, driven_motors, motor_position, motor_strength
+from hyperleg_design.gap.effects.placing import at_motor, driven_motors, motor_position, motor_strength, motor_velocity
+from hyperleg_design.gap.filtering import HIGHEST
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
@@ -18,8 +19,10 @@ if TYPE_CHECKING:
 
 SHARE = 0.02
 """Usual cogging over the torque that a motor is made for (EMBiR: cogging of a few per cent of rated torque)."""
-ORDERS = np.arange(1.0, 49.0)
-"""Periods a turn that a search tries."""
+ORDERS = np.arange(1.0, 201.0)
+"""Periods a turn that a search tries: of motors that count at the output of their gear, as many more as it has."""
+ALWAYS = 48
+"""Of these, how many are tried however fast the motor turns; more as long as half of a log shows them below `HIGHEST`."""
 TRIED = 3
 """Best orders kept as starts of a search."""
 
@@ -58,8 +61,9 @@ class Cogging(Effect):
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """A share of the torque that the motor is made for."""
-        share = SHARE * motor_strength(subject, subject.motors.index(location))
-        return np.array([share, share, self.parameters[2].typical])
+        motor = subject.motors.index(location)
+        share = SHARE * motor_strength(subject, motor)
+        return np.array([share, share, self.parameters[2].typical * max(abs(float(subject.gear[motor])), 1.0)])
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Amplitudes up to the torque that the motor is made for."""
@@ -99,8 +103,10 @@ class Cogging(Effect):
             return np.asarray(rows - basis @ (basis.T @ rows))
 
         wanted = alone(residual[known])
-        found = np.empty((len(ORDERS), 3))
-        for row, order in enumerate(ORDERS):
+        slow = float(np.median(np.abs(motor_velocity(signals, motor)[known])))
+        orders = ORDERS[(ORDERS <= ALWAYS) | (ORDERS * slow <= 2 * np.pi * HIGHEST)]
+        found = np.empty((len(orders), 3))
+        for row, order in enumerate(orders):
             waves = alone(np.stack([np.cos(order * angle[known]), np.sin(order * angle[known])], -1))
             gram = waves.T @ waves
             gram[np.diag_indices(2)] += 1e-4 * known.sum()
@@ -111,7 +117,7 @@ class Cogging(Effect):
         peaks = np.flatnonzero((gain[1:-1] >= gain[:-2]) & (gain[1:-1] >= gain[2:]))
         best = peaks[np.argsort(-found[peaks, 0], kind="stable")[:TRIED]]
         low, high = self.bounds(location, subject)
-        return np.clip(np.column_stack([found[best, 1:], ORDERS[best]]), low, high)
+        return np.clip(np.column_stack([found[best, 1:], orders[best]]), low, high)
 
 
 @dataclass(frozen=True, eq=False)

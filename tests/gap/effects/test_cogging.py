@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 from pendulum import Wrong, misfit
 
@@ -14,6 +16,17 @@ def test_trace_is_what_a_cogging_motor_leaves(pendulum):
 def test_starts_find_the_order_and_the_amplitudes(pendulum):
     signals = pendulum(Wrong(cosine=0.3, sine=0.2, order=13))
     np.testing.assert_allclose(COGGING.starts(signals, "swing")[0], [0.3, 0.2, 13.0], atol=0.05)
+
+
+def test_starts_find_periods_of_a_rotor_behind_a_gear(pendulum):
+    signals = pendulum(Wrong(cosine=0.3, sine=0.2, order=54))
+    np.testing.assert_allclose(COGGING.starts(signals, "swing")[0], [0.3, 0.2, 54.0], atol=0.1)
+
+
+def test_a_gear_makes_as_many_more_periods_usual(pendulum):
+    subject = pendulum(Wrong()).subject
+    geared = replace(subject, gear=np.full(len(subject.motors), -9.0))
+    np.testing.assert_allclose(COGGING.usual("swing", geared) / COGGING.usual("swing", subject), [1.0, 1.0, 9.0])
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):
