@@ -12,8 +12,9 @@ Rivals are left aside: what is seen may still look like something else.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,7 @@ from hyperleg_design.gap.samples import BLOCKS
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Effect
     from hyperleg_design.gap.judge import Judge
+    from hyperleg_design.gap.signals import Signals
 
 PAID = 1.0
 """Log-likelihood that a parameter costs on held-out data: half for its fit, half for its prior."""
@@ -115,10 +117,14 @@ def _probes(judge: Judge, effect: Effect, location: str) -> list[_Probes]:
         step = effect.usual(location, subject)[i]
         low, high = bounds[:, i]
         values[i] = values[i] + step if values[i] + step <= high else max(values[i] - step, low)
-        own = judge.base.samples.columns(lambda s, values=values: effect.trace(s, location, values[None]), 1)
+        own = judge.base.samples.columns(partial(_trace, effect, location, values), 1)
         if own is not None:
             found.append(_probe(effect, i, bounds, [values[i] - effect.nulls[i]], own))
     return found
+
+
+def _trace(effect: Effect, location: str, values: np.ndarray, signals: Signals) -> Mapping[str, np.ndarray]:
+    return effect.trace(signals, location, values[None])
 
 
 def _probe(

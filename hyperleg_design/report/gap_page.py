@@ -325,9 +325,9 @@ def _next_steps(diagnosis: Mapping[str, Any]) -> list[Any]:
 
 def _limits(diagnosis: Mapping[str, Any]) -> list[Any]:
     content: list[Any] = []
-    if rows := sensitivity_rows(diagnosis):
+    if smallest := sensitivity_rows(diagnosis):
         content.append(SENSITIVITY + (HIDDEN if diagnosis["verdict"] == "unknown" else ""))
-        content.append(Table(["effect", "of which", "where it shows best, from", "where it shows least, from"], [list(row) for row in rows]))
+        content.append(Table(["effect", "of which", "where it shows best, from", "where it shows least, from"], [list(row) for row in smallest]))
         every = [[one["effect"], one["location"], one["parameter"], change_text(one)] for one in diagnosis["sensitivity"]]
         content.append(Details(f"All {len(every)}, place by place", [Table(["effect", "where", "of which", "from"], every)]))
     if diagnosis.get("residual_shape"):
