@@ -66,10 +66,13 @@ def of_heard(told: Diagnosis, heard: Heard) -> Diagnosis:
 def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
     """A diagnosis with an IMU's constant error: beside what is named already, or instead of nothing; of an unknown gap it is a part.
 
+    Of one that is named already, its sizes where they are surer.
+
     A vertical that leans is no effect of the catalogue, but may be an accelerometer's error: alone, it is an unknown gap.
     """
     if any((c.effect, c.location) == PLACE for c in told.causes):
-        return told
+        causes = tuple(_surer(c, offset) if (c.effect, c.location) == PLACE else c for c in told.causes)
+        return told if causes == told.causes else replace(told, causes=causes)
     shape = {"shape": OFFSET, "location": PLACE[1], "says": offset.says, "closed_beyond": offset.closed, "gain": 0.0}
     told = replace(told, residual_shape=(shape, *told.residual_shape), rivals=tuple(r for r in told.rivals if (r.effect, r.location) != PLACE))
     cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
@@ -79,6 +82,12 @@ def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
         return replace(_with_part(told, cause), verdict="unknown")
     gap = Shrinkage(offset.size, offset.left, 0.0, offset.closed, (offset.closed, offset.closed), offset.unit)
     return _instead(told, (cause,), gap, (Place(PLACE[1], "sensor", "all", 1.0),))
+
+
+def _surer(cause: Named, offset: Offset) -> Named:
+    """An IMU's errors as balances tell them, or as other sensors do, whichever is surer; what no other sensor tells has no interval."""
+    told = {n: p for n, p in offset.parameters.items() if 0 < p.high - p.low < cause.parameters[n].high - cause.parameters[n].low}
+    return replace(cause, parameters={**cause.parameters, **told})
 
 
 def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:

@@ -58,6 +58,16 @@ def test_a_sensor_is_one_cause_more_beside_others_and_is_not_named_twice(none, o
     assert of_imu(told, offset) is told
 
 
+def test_a_sensor_that_is_named_already_has_the_surer_of_both_sizes(none, offset):
+    rough = {name: Value(0.0, -0.1, 0.1, "") for name in offset.parameters}
+    sure = {**rough, "gyro_x": Value(0.01, 0.009, 0.011, "")}
+    blind = replace(offset, parameters={**offset.parameters, "gyro_z": Value(0.0, 0.0, 0.0, "")})
+    told = of_imu(replace(none, verdict="explained", causes=(Named(*PLACE, 0.9, 0.8, sure),)), blind).causes[0].parameters
+    assert told["gyro_y"] == offset.parameters["gyro_y"]  # other sensors know it better
+    assert told["gyro_x"] == sure["gyro_x"]  # balances do
+    assert told["gyro_z"] == rough["gyro_z"]  # no other sensor tells it
+
+
 def test_a_sensor_does_not_explain_a_gap_that_is_unknown(none, offset):
     told = of_imu(replace(none, verdict="unknown"), offset)
     assert (told.verdict, told.causes) == ("unknown", ())
