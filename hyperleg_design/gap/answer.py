@@ -253,10 +253,12 @@ class Answer:
 
     def rivals_of_none(self) -> tuple[Named, ...]:
         """What was tried though nothing is wrong; what the rules did not find worth its name is less likely than that."""
+        excess = float(self.judge.gap(self.found.model.held.bare, self.found.rows)) >= self.judge.thresholds.least_gap
         table = self.probabilities([])[0]
         share = self.at_most(sum(table.values()))
         return tuple(
-            Named(*m.causes[0].name, share * table.get(m.names, 0.0), self.closed(m), parameters(self.judge, m, 0)) for m in self.found.singles[:3]
+            Named(*m.causes[0].name, share * table.get(m.names, 0.0), self.closed(m) if excess else 0.0, parameters(self.judge, m, 0))
+            for m in self.found.singles[:3]
         )
 
     def at_most(self, total: float) -> float:

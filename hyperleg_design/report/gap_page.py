@@ -69,7 +69,7 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
         *(_noises(folder, shape, noisy, causes, signals) if noisy else []),
         *_slipping(folder, slid, signals),
         *_sinking(folder, sunk, signals),
-        *(_traces(folder, shown, others) if others or not (noisy or of_feet) else []),
+        *(_traces(folder, shown, others, bool(diagnosis.get("provenance", {}).get("reference"))) if others or not (noisy or of_feet) else []),
     ]
     sections = [
         Section("Where the gap lies", _where(folder, diagnosis, signals, shown)),
@@ -174,9 +174,10 @@ def _where(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals
     return content
 
 
-def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[str, Any]]) -> list[Any]:
+def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[str, Any]], referred: bool) -> list[Any]:
     content: list[Any] = []
     says = "what the named causes predict, and what is left" if causes else "no cause is named"
+    says += ", that which reference logs show as well included" if referred else ""
     for i, one in enumerate(shown[:2]):
         name = f"trace-{i + 1}.png"
         save(gap_figures.trace_figure(one), folder / FIGURES / name)
@@ -296,7 +297,7 @@ def _causes(folder: Path, gap: Mapping[str, Any], causes: Sequence[Mapping[str, 
         save(gap_figures.waterfall_figure(gap, causes), folder / FIGURES / "waterfall.png")
         says = "The gap on held-out data: before, taken off by each cause, after; dashed, the floor."
         pictures.append(Picture(f"{FIGURES}/waterfall.png", says, wide=False))
-    if rivals:
+    if any(float(rival["closed"]) != 0 for rival in rivals):  # where there is no gap, nothing closes any of it
         save(gap_figures.rivals_figure(causes, rivals), folder / FIGURES / "rivals.png")
         pictures.append(Picture(f"{FIGURES}/rivals.png", "What was tried: how much of the excess gap each closes on held-out data.", wide=False))
     content += [pictures] if pictures else []
