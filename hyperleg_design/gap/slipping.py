@@ -35,6 +35,8 @@ SAME = 0.1
 """Range of the middle half of the ratios over their median, at most: they are one."""
 BEYOND, SELDOM = 1.1, 0.02
 """No more than so many of all loaded ticks have a ratio so far over the one of sliding."""
+VARIED = 1.5
+"""Faster over slower slides (90 and 10 % of the time), at least: at one speed what creeps has one ratio, too."""
 UNUSUAL = 2.0
 """Usual errors of the ground (`nuisance`), from which one is a finding."""
 
@@ -45,6 +47,8 @@ class _Sliding:
 
     load: np.ndarray
     ratio: np.ndarray
+    speed: np.ndarray
+    """Against the tangential force [m/s]."""
     along_edges: np.ndarray
     """Ratio of the sum of the force's parts along a pyramid's edges to the load: what is the same in all directions there."""
     time: float
@@ -99,9 +103,9 @@ def _coefficient(logs: Sequence[_Sliding]) -> float | None:
     """The ratio of all that slides; None where that is little, or not one ratio, or less than what sticks."""
     if sum(one.time for one in logs) < LEAST_TIME:
         return None
-    ratio, loaded = (np.concatenate([getattr(one, name) for one in logs]) for name in ("ratio", "loaded"))
-    middle = float(np.median(ratio))
-    if middle <= 0 or _spread(ratio) > SAME or float(np.mean(loaded > BEYOND * middle)) > SELDOM:
+    ratio, speed, loaded = (np.concatenate([getattr(one, name) for one in logs]) for name in ("ratio", "speed", "loaded"))
+    middle, (slower, faster) = float(np.median(ratio)), np.percentile(speed, [10, 90])
+    if faster < VARIED * slower or middle <= 0 or _spread(ratio) > SAME or float(np.mean(loaded > BEYOND * middle)) > SELDOM:
         return None
     return middle
 
@@ -158,4 +162,4 @@ def _sliding(signals: Signals, place: int) -> _Sliding | None:
         return None
     slides, loaded = of.slides, of.loaded
     time = float(slides.any(1).sum()) * signals.step
-    return _Sliding(of.load[slides], of.ratio[slides], of.along_edges[slides], time, of.ratio[loaded])
+    return _Sliding(of.load[slides], of.ratio[slides], of.against[slides], of.along_edges[slides], time, of.ratio[loaded])

@@ -56,6 +56,17 @@ def dry(coefficient):
     return lambda speed, angle: coefficient * np.minimum(speed / 0.005, 1.0)
 
 
+def test_what_moves_at_one_speed_alone_may_creep(subject):
+    """A tangential force that grows with the speed, of a base that is hardly ever faster than its contacts must be: one ratio, and no slip."""
+
+    def creeping(speed, angle):
+        return 0.23 * speed / 0.018
+
+    slow = condition(pushed(subject, creeping, speed=0.018), subject)
+    assert slips([slow]) == ()
+    assert slips([condition(pushed(subject, dry(0.23)), subject)])
+
+
 def pyramid(coefficient):
     """Friction as in a simulator whose cone is a pyramid with edges along x and y."""
     return lambda speed, angle: dry(coefficient)(speed, angle) / (np.abs(np.cos(angle)) + np.abs(np.sin(angle)))
