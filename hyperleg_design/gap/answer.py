@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 DRAWS = 400
 """Of the block bootstrap."""
+LEAST_CHANGE = 0.01
+"""Share of a gap that a small cause must make of it for others to be compared with it."""
 MOST_SHAPES, MOST_ERRORS = 3, 12
 """Listed."""
 
@@ -66,7 +68,9 @@ class Answer:
         if self.small:
             chosen, rows = self.held(self.found.model), self.found.rows
             before, least, after = (float(self.judge.gap(v, rows)) for v in (chosen.bare, chosen.square, self.held(model).square))
-            return float(np.clip((before - after) / max(before - least, 1e-9), -9.99, 1.0))
+            if before - least < LEAST_CHANGE * before:  # what it explains is in no balance
+                return 0.0
+            return float(np.clip((before - after) / (before - least), -9.99, 1.0))
         return float(np.clip(self.judge.closed(self.held(model), self.found.rows, self.held(self.found.model)), -9.99, 1.0))
 
     @property

@@ -125,13 +125,15 @@ def noticed(
 def calibrated(errors: Sequence[Usual], prior: Prior, signals: Sequence[Signals]) -> np.ndarray:
     """Friction at rest over the model's that reference logs show, and what they leave open, by joint `(n,)` [Nm].
 
-    All errors that rub together: which of them it is, slow motion hardly tells.
+    Of joints of whose friction the model tells nothing; all errors that rub together: which of them it is, slow motion hardly tells.
     """
-    found = np.zeros(len(signals[0].subject.joints))
-    for place, joint in enumerate(signals[0].subject.joints):
+    subject = signals[0].subject
+    found = np.zeros(len(subject.joints))
+    for place, joint in enumerate(subject.joints):
         rubs = [e.location == joint and e.effect in RUBBING for e in errors]
         row = np.array([_given(e.effect, joint, np.array([e.spread]), signals) if r else 0.0 for e, r in zip(errors, rubs, strict=True)])
-        found[place] = row @ prior.mean + OPEN * np.sqrt(row @ prior.covariance @ row)
+        if not subject.coulomb[place]:
+            found[place] = row @ prior.mean + OPEN * np.sqrt(row @ prior.covariance @ row)
     return found
 
 
