@@ -12,15 +12,17 @@ def ready(robot_files):
     return diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("cubic", s, session="a") for s in (0, 1)))
 
 
-def test_a_shape_of_position_tells_a_hardening_spring(ready):
-    base = ready.base
+def of_hip(base):
+    """Held-out likelihood of each shape at the hip, by name."""
     nothing = Design(base).fit()
     row = next(i for i, r in enumerate(base.samples.rows) if r.name == "hip")
-    gains = {}
-    for one in shapes(base.samples, np.array([row])):
-        found = columns(base, nothing, one)
-        if found is not None:
-            gains[one.name] = predict(Design(base, ridge=found)).total
+    found = {one.name: columns(base, nothing, one) for one in shapes(base.samples, np.array([row]))}
+    return {name: predict(Design(base, ridge=own)).total for name, own in found.items() if own is not None}
+
+
+def test_a_shape_of_position_tells_a_hardening_spring(ready):
+    base = ready.base
+    gains = of_hip(base)
     nothing_held = predict(Design(base)).total
     assert gains["position"] > nothing_held + 10
     assert max(gains, key=gains.__getitem__) in ("position", "load_over_position", "encoder_over_position")
@@ -35,13 +37,7 @@ def test_friction_that_fades_away_is_told_from_friction_that_stays(robot_files):
         fading = 0.2 * np.exp(-(log.time - log.time[0]) / 4) * np.tanh(log.column("velocity/hip") / 0.02)
         logs.append(log.changed(signals={c: v + fading if c.startswith("motor_torque/") else v for c, v in log.signals.items()}))
     base = diagnosed.prepared(robot_files["coupled"], *logs).base
-    nothing = Design(base).fit()
-    row = next(i for i, r in enumerate(base.samples.rows) if r.name == "hip")
-    gains = {}
-    for one in shapes(base.samples, np.array([row])):
-        found = columns(base, nothing, one)
-        if found is not None:
-            gains[one.name] = predict(Design(base, ridge=found)).total
+    gains = of_hip(base)
     best, second = sorted(gains, key=gains.__getitem__)[:-3:-1]
     assert best == "friction_over_time"
     assert gains[best] > gains[second] + 10

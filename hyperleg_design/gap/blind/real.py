@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING, Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import HyperlegError
-from hyperleg_design.gap.blind.score import said_of
 from hyperleg_design.gap.blind.trial import FAILED, as_mapping
+from hyperleg_design.gap.blind.view import said_of
 from hyperleg_design.gap.diagnosis import NAMING
 
 if TYPE_CHECKING:

@@ -23,9 +23,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.blind.trial import CASES, DIAGNOSES, FAILED, KEY, read_seal
-from hyperleg_design.gap.diagnosis import NAMING
-from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.sensitivity import RARELY
+from hyperleg_design.gap.blind.view import Miss, View
 from hyperleg_design.writing import write_json
 
 SCORED = "scored.json"
@@ -51,23 +49,6 @@ class Row:
     target: str
     reached: bool | None
     """None where no case speaks of it or no target is set."""
-
-
-@dataclass(frozen=True)
-class Miss:
-    """A case that was not answered rightly."""
-
-    case: str
-    kind: str
-    plant: str
-    robot: str
-    truth: str
-    """Effects, places and multiples."""
-    said: str
-    """Verdict and first causes."""
-    probability: float | None
-    """Of the first cause named."""
-    why: str
 
 
 @dataclass(frozen=True)
@@ -165,7 +146,7 @@ def compared(
     diagnosed: int | None = None, reread: bool = False,
 ) -> Score:  # fmt: skip
     """Score of diagnoses (as in `diagnosis.json`) against truths (as in the key), in the same order."""
-    views = [_View(t, d) for t, d in zip(truths, diagnoses, strict=True)]
+    views = [View(t, d) for t, d in zip(truths, diagnoses, strict=True)]
     single = [v for v in views if v.kind == "single"]
     sizable = [v for v in single if v.multiple >= SIZABLE]
     found = [v for v in sizable if v.first(lenient=True)]
@@ -206,145 +187,6 @@ def compared(
     )  # fmt: skip
 
 
-class _View:
-    """One case's truth beside what was said."""
-
-    def __init__(self, truth: Mapping[str, Any], diagnosis: Mapping[str, Any]) -> None:
-        self.truth, self.diagnosis = truth, diagnosis
-        self.kind, self.wrongs = str(truth["kind"]), list(truth["wrongs"])
-        self.verdict = str(diagnosis.get("verdict", FAILED))
-        self.causes = list(diagnosis.get("causes") or [])
-        self.ranked = self.causes + list(diagnosis.get("rivals") or [])
-        self.sets = [[_named(member) for member in group] for group in diagnosis.get("equivalent") or []]
-        self.effects = [w["effect"] for w in self.wrongs]
-
-    @property
-    def multiple(self) -> float:
-        return float(self.wrongs[0]["multiple"])
-
-    @property
-    def least(self) -> float:
-        """Of the multiples of several effects."""
-        return min(float(w["multiple"]) for w in self.wrongs)
-
-    @property
-    def alarm(self) -> bool:
-        """Whether a cause was named."""
-        return self.verdict in NAMING
-
-    @property
-    def shown(self) -> bool | None:
-        """Whether the logs show an effect of this size at its place, by what the diagnosis says of them; None where it does not say.
-
-        Sizes of several parameters add up as squares.
-        """
-        wrong, told = self.wrongs[0], self.diagnosis.get("sensitivity") or []
-        sizes = {p.name: p.null for p in EFFECTS[wrong["effect"]].parameters if p.name in wrong["parameters"] and not p.shape}
-        if not told or not sizes or wrong["effect"] in RARELY:
-            return None
-        here = [one for one in told if one["effect"] == wrong["effect"] and one["location"] in wrong["also"] and one["parameter"] in sizes]
-        # what no possible size would show is in no list
-        return bool(np.hypot.reduce([(wrong["parameters"][one["parameter"]] - sizes[one["parameter"]]) / one["change"] for one in here]) >= 1.0)
-
-    def first(self, *, lenient: bool = False) -> bool:
-        return bool(self.alarm and self.ranked and self._is(self.ranked[0]["effect"], self.effects[0], lenient))
-
-    def top_two(self) -> bool:
-        return bool(self.alarm and any(c["effect"] == self.effects[0] for c in self.ranked[:2])) or self.first(lenient=True)
-
-    def located(self) -> bool:
-        """Whether the first cause sits at the right place, or a set with it holds the right effect at the right place."""
-        if not (self.alarm and self.ranked):
-            return False
-        if self.first():
-            return self.ranked[0]["location"] in self.wrongs[0]["also"]
-        return any(e == self.effects[0] and (not p or p in self.wrongs[0]["also"]) for g in self._with_first() for e, p in g)
-
-    def all_found(self) -> bool:
-        return all(self._found(w) for w in self.wrongs)
-
-    def any_found(self) -> bool:
-        return any(self._found(w) for w in self.wrongs)
-
-    @property
-    def closed(self) -> float | None:
-        value = self.causes[0].get("closed") if self.causes else None
-        return None if value is None else float(value)
-
-    @property
-    def probability(self) -> float | None:
-        value = self.ranked[0].get("probability") if self.alarm and self.ranked else None
-        return None if value is None else float(value)
-
-    def right(self) -> bool:
-        """Whether the first cause is true: an effect that acts, at its place."""
-        return bool(self.ranked) and any(
-            self.ranked[0]["effect"] == w["effect"] and self.ranked[0]["location"] in w["also"] for w in self.wrongs if w["listed"]
-        )
-
-    def intervals(self) -> list[bool]:
-        """Of each parameter stated and known: whether its interval holds the truth."""
-        wrong = self.wrongs[0]
-        cause = next((c for c in self.ranked if c["effect"] == wrong["effect"] and c["location"] in wrong["also"]), None)
-        held = []
-        for name, value in (wrong["parameters"] if cause else {}).items():
-            stated = cause["parameters"].get(name) if cause else None
-            if stated and stated.get("low") is not None and stated.get("high") is not None:
-                held.append(bool(stated["low"] <= value <= stated["high"]))
-        return held
-
-    def miss(self) -> Miss | None:
-        why = self._why()
-        if not why:
-            return None
-        truth = ", ".join(f"{w['effect']} at {w['location']} ({w['multiple']:.1f} x)" for w in self.wrongs) or "nothing"
-        causes = said_of(self.diagnosis)
-        said = f"{self.verdict}{': ' if causes else ''}{causes}"
-        return Miss(str(self.truth["case"]), self.kind, str(self.truth["plant"]), str(self.truth["robot"]), truth, said, self.probability, why)
-
-    def _why(self) -> str:
-        if self.verdict == FAILED:
-            return "error"
-        if self.kind == "null":
-            return "false alarm" if self.alarm else ""
-        if self.kind == "outside":
-            return "" if self.verdict == "unknown" else "not called unknown"
-        if self.kind == "compound":
-            return "" if self.all_found() else ("one of two found" if self.any_found() else "neither found")
-        if not self.first(lenient=True):
-            return "wrong effect" if self.alarm else "no cause named"
-        return "" if self.located() else "wrong place"
-
-    def _found(self, wrong: Mapping[str, Any]) -> bool:
-        return self.alarm and any(c["effect"] == wrong["effect"] and c["location"] in wrong["also"] for c in self.causes)
-
-    def _with_first(self) -> list[list[tuple[str, str]]]:
-        first = (self.ranked[0]["effect"], self.ranked[0]["location"]) if self.ranked else ("", "")
-        return [g for g in self.sets if any(e == first[0] and p in ("", first[1]) for e, p in g)]
-
-    def _is(self, said: str, truth: str, lenient: bool) -> bool:
-        return said == truth or (lenient and any(e == truth for g in self._with_first() for e, _ in g))
-
-
-def said_of(diagnosis: Mapping[str, Any]) -> str:
-    """The causes that were named, and what else it may be where that was said."""
-    verdict = diagnosis.get("verdict")
-    if verdict not in NAMING:
-        return str(diagnosis.get("message", ""))
-    causes, rivals = ([f"{c['effect']} at {c['location']}" for c in diagnosis.get(k) or []] for k in ("causes", "rivals"))
-    return ", ".join(causes) + (f", or {rivals[0]}" if verdict == "ambiguous" and rivals else "")
-
-
-def _named(member: Any) -> tuple[str, str]:
-    """Effect and location of a member of an equivalence set: an object, a pair, or a text `effect@location` or `effect at location`."""
-    if isinstance(member, Mapping):
-        return str(member["effect"]), str(member.get("location", ""))
-    if isinstance(member, str):
-        effect, _, location = member.replace(" at ", "@").replace("/", "@").partition("@")
-        return effect, location
-    return str(member[0]), str(member[1]) if len(member) > 1 else ""
-
-
 def wilson(hits: int, cases: int) -> tuple[float, float]:
     """95 % interval of a share (Wilson, 1927)."""
     z = 1.959964
@@ -369,7 +211,7 @@ def _share(measure: str, hits: Sequence[bool], target: float | None, *, most: bo
     return Row(measure, value, *wilson(sum(hits), len(hits)), len(hits), aim, reached)
 
 
-def _calibration(views: Sequence[_View]) -> Row:
+def _calibration(views: Sequence[View]) -> Row:
     stated = [(v.probability, v.right()) for v in views if v.probability is not None]
     measure, aim = "expected calibration error of the stated probability", "<= 0.05"
     if not stated:
@@ -380,7 +222,7 @@ def _calibration(views: Sequence[_View]) -> Row:
     return Row(measure, value, low, high, len(stated), aim, value <= 0.05)
 
 
-def _coverage(views: Sequence[_View]) -> Row:
+def _coverage(views: Sequence[View]) -> Row:
     groups = [held for v in views if (held := v.intervals())]
     measure, aim = "95 % parameter intervals that hold the truth", "90-98 %"
     if not groups:
