@@ -42,8 +42,9 @@ class Evidence:
 
     @property
     def worst(self) -> int:
-        """Row with the largest residual."""
-        return int(np.nanargmax(rms(self.before)))
+        """Row of which causes explain most; where they explain nothing, the one with the largest residual."""
+        made = np.nan_to_num(rms(self.explained))
+        return int(np.argmax(made)) if made.any() else int(np.nanargmax(rms(self.before)))
 
 
 def evidence(signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str = "motion") -> Evidence:

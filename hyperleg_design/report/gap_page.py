@@ -10,7 +10,7 @@ import numpy as np
 
 from hyperleg_design import provenance
 from hyperleg_design.gap.beside_balances import APART
-from hyperleg_design.gap.evidence import Evidence, evidence
+from hyperleg_design.gap.evidence import Evidence, evidence, rms
 from hyperleg_design.gap.ground import footings
 from hyperleg_design.gap.heard import KNOCKING, RINGING, UNSTABLE
 from hyperleg_design.gap.knocking import struck
@@ -178,7 +178,8 @@ def _traces(folder: Path, shown: Sequence[Evidence], causes: Sequence[Mapping[st
     content: list[Any] = []
     says = "what the named causes predict, and what is left" if causes else "no cause is named"
     says += ", that which reference logs show as well included" if referred else ""
-    for i, one in enumerate(shown[:2]):
+    telling = sorted(shown, key=lambda one: -float(np.nan_to_num(rms(one.explained)).max(initial=0.0)))  # where causes show most, first
+    for i, one in enumerate(telling[:2]):
         name = f"trace-{i + 1}.png"
         save(gap_figures.trace_figure(one), folder / FIGURES / name)
         right = "; right, against speed" if np.isfinite(one.speed[:, one.worst]).any() else ""

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.evidence import evidence, rms
+from hyperleg_design.gap.evidence import Evidence, evidence, rms
 from hyperleg_design.gap.signals import Signals
 from hyperleg_design.gap.subject import load_subject
 
@@ -39,3 +39,11 @@ def test_unknown_ticks_are_left_out() -> None:
     found = rms(values)
     assert found[0] == pytest.approx(np.sqrt(12.5))
     assert np.isnan(found[1])
+
+
+def test_the_row_that_is_drawn_is_the_one_that_causes_explain():
+    """A larger residual elsewhere is another matter, unless nothing is explained."""
+    before = np.tile([3.0, 1.0], (5, 1))
+    one = Evidence("log", "motion", ("hip", "knee"), np.arange(5.0), before, np.tile([0.0, 0.5], (5, 1)), np.zeros((5, 2)))
+    nothing = Evidence("log", "motion", ("hip", "knee"), np.arange(5.0), before, np.zeros((5, 2)), np.zeros((5, 2)))
+    assert (one.worst, nothing.worst) == (1, 0)
