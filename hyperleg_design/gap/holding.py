@@ -73,7 +73,7 @@ def held_by(signals: Signals, joint: int, without: np.ndarray | float = 0.0) -> 
         without: part of the torque on it that never was there `(t,)` [Nm].
     """
     subject = signals.subject
-    friction = subject.coulomb[joint] * turned(signals.velocity, subject.friction_speed)[:, joint]
+    friction = subject.coulomb[joint] * turned(signals.velocity[:, joint], subject.friction_speed[joint])
     motion = signals.residual["motion"][:, joint] + friction - without
     rest = _stuck(signals)[:, joint] & (np.abs(signals.velocity[:, joint]) < CREEP) & signals.valid & np.isfinite(motion)
     band = min(BAND, 0.3 / signals.step)
