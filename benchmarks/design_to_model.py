@@ -1,4 +1,5 @@
-"""Time from a design's YAML to a compiled MuJoCo model, after imports, and what the parts of it cost.
+"""Time from a design's YAML to a compiled MuJoCo model, after imports, and what the parts of it
+cost.
 
 Run: python benchmarks/design_to_model.py
 """

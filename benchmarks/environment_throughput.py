@@ -1,9 +1,11 @@
-"""Policy steps per second of the whole environment, over those of bare mj_step on the same model and states.
+"""Policy steps per second of the whole environment, over those of bare mj_step on the same model
+and states.
 
-Bare physics is `mujoco.batch.Batch.step` with four substeps a policy step, on as many C threads, from the very states that
-the environment stepped and with the joint damping that stands for friction there. Both are timed in turn, in blocks of a few
-steps, so that the machine's drift hits both; between blocks the threads of the other come to rest. The ratio of processor
-times leaves out waiting, so it means something on a busy machine.
+Bare physics is `mujoco.batch.Batch.step` with four substeps a policy step, on as many C threads,
+from the very states that the environment stepped and with the joint damping that stands for
+friction there. Both are timed in turn, in blocks of a few steps, so that the machine's drift hits
+both; between blocks the threads of the other come to rest. The ratio of processor times leaves out
+waiting, so it means something on a busy machine.
 
     python benchmarks/environment_throughput.py --threads 2 --simulations 256 512 1024
 """
@@ -25,11 +27,17 @@ PAUSE = 0.02
 """Between blocks [s]."""
 
 
-def measure(simulations: int, threads: int, blocks: int, task: str, noise: float) -> dict[str, float]:
-    """Policy steps per second of the environment and of bare physics, and the ratio of the medians."""
+def measure(
+    simulations: int, threads: int, blocks: int, task: str, noise: float
+) -> dict[str, float]:
+    """Policy steps per second of the environment and of bare physics, and the ratio of the
+    medians.
+    """
     from mujoco import batch
 
-    environment = Environment(load_design(), load_task(task), simulations=simulations, seed=0, threads=threads)
+    environment = Environment(
+        load_design(), load_task(task), simulations=simulations, seed=0, threads=threads
+    )
     bare = batch.Batch(environment.model, simulations, threads)
     rng = np.random.default_rng(1)
     environment.reset()
@@ -46,7 +54,9 @@ def measure(simulations: int, threads: int, blocks: int, task: str, noise: float
             environment.step(actions[(block * BLOCK + step) % len(actions)])
             spent += time.perf_counter() - start
             for chunk in environment.chunks:
-                dampings[step, chunk.first : chunk.first + chunk.count] = chunk.batch.expand("dof_damping")
+                dampings[step, chunk.first : chunk.first + chunk.count] = chunk.batch.expand(
+                    "dof_damping"
+                )
         whole.append(spent / BLOCK)
         whole_work.append(time.process_time() - work)
         time.sleep(PAUSE)
@@ -71,18 +81,27 @@ def measure(simulations: int, threads: int, blocks: int, task: str, noise: float
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--simulations", type=int, nargs="+", default=[256, 512, 1024])
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--blocks", type=int, default=12)
     parser.add_argument("--task", default="walk")
-    parser.add_argument("--noise", type=float, nargs="+", default=[0.1, 1.0], help="standard deviations of the random actions")
+    parser.add_argument(
+        "--noise",
+        type=float,
+        nargs="+",
+        default=[0.1, 1.0],
+        help="standard deviations of the random actions",
+    )
     options = parser.parse_args()
     for noise in options.noise:
         for simulations in options.simulations:
             found = measure(simulations, options.threads, options.blocks, options.task, noise)
             print(
-                f"noise {noise:g}, {simulations} simulations, {options.threads} threads: environment {found['environment']:.0f}, "
+                f"noise {noise:g}, {simulations} simulations, {options.threads} threads: "
+                f"environment {found['environment']:.0f}, "
                 f"bare mj_step {found['bare']:.0f} policy steps/s, ratio {found['ratio']:.3f} "
                 f"(of processor time {found['work_ratio']:.3f})"
             )

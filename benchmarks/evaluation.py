@@ -1,8 +1,9 @@
-"""What an evaluation costs: ten trials of 15.5 s with all signals and measures, beside bare physics of as many steps.
+"""What an evaluation costs: ten trials of 15.5 s with all signals and measures, beside bare physics
+of as many steps.
 
-The policy stands (ankles answer to the pelvis's lean), since that needs no training and keeps both feet in contact, which is
-the dearer half of walking. The gait measures of a walk add some 0.06 s a trial. The ratio of processor
-times leaves out waiting, so it means something on a busy machine.
+The policy stands (ankles answer to the pelvis's lean), since that needs no training and keeps both
+feet in contact, which is the dearer half of walking. The gait measures of a walk add some 0.06 s a
+trial. The ratio of processor times leaves out waiting, so it means something on a busy machine.
 
 Run: python benchmarks/evaluation.py
 """
@@ -40,8 +41,12 @@ def standing_policy() -> Policy:
 
 
 def evaluate() -> None:
-    protocol = WalkProtocol(trials=TRIALS, time_limit=SECONDS, start=Start(joint_position=0, tilt=0))
-    found = evaluate_walk(standing_policy(), protocol, design=DESIGN, task=load_task("walk"), threads=1)
+    protocol = WalkProtocol(
+        trials=TRIALS, time_limit=SECONDS, start=Start(joint_position=0, tilt=0)
+    )
+    found = evaluate_walk(
+        standing_policy(), protocol, design=DESIGN, task=load_task("walk"), threads=1
+    )
     assert set(found.outcomes) == {"timed_out"}
 
 
@@ -68,8 +73,14 @@ def timed(work: Callable[[], None]) -> tuple[float, float]:
 def main() -> None:
     evaluate()  # imports
     whole, bare = timed(evaluate), timed(bare_physics)
-    print(f"{TRIALS} trials of {SECONDS} s, evaluated on one thread  {whole[0]:6.2f} s, {whole[1]:.2f} s of processor")
-    print(f"bare physics of as many steps               {bare[0]:6.2f} s, {bare[1]:.2f} s of processor")
+    print(
+        f"{TRIALS} trials of {SECONDS} s, evaluated on one thread  {whole[0]:6.2f} s, "
+        f"{whole[1]:.2f} s of processor"
+    )
+    print(
+        f"bare physics of as many steps               {bare[0]:6.2f} s, {bare[1]:.2f} s of "
+        f"processor"
+    )
     print(f"evaluation over bare physics, processor time {whole[1] / bare[1]:5.2f}")
 
 

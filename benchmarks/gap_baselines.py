@@ -1,8 +1,10 @@
-"""Time of parameter fits to the same held-out error: ours beside `mujoco.sysid` (Gauss-Newton) and PACE's CMA-ES.
+"""Time of parameter fits to the same held-out error: ours beside `mujoco.sysid` (Gauss-Newton) and
+PACE's CMA-ES.
 
-Logs come from the blind trials' rig plant (its own rigid-body code) with friction added at one joint. All three fit PACE's
-parameters to two logs; the error is the RMS position error of a replay of a third. A method's time is when its best values first
-come within `SLACK` of our error; one that never does counts with all its time, as a lower bound. Ratios are of medians within this run.
+Logs come from the blind trials' rig plant (its own rigid-body code) with friction added at one
+joint. All three fit PACE's parameters to two logs; the error is the RMS position error of a replay
+of a third. A method's time is when its best values first come within `SLACK` of our error; one that
+never does counts with all its time, as a lower bound. Ratios are of medians within this run.
 """
 
 from __future__ import annotations
@@ -33,13 +35,23 @@ ROBOTS = ("servo", "arm")
 
 
 def logs_of(robot: str) -> tuple[list[Signals], list[Signals], DriveSet]:
-    recorder = Recorder(rate=200.0, jitter=1e-4, dropped=0.0, torque="none", velocity=True, drives=False)
+    recorder = Recorder(
+        rate=200.0, jitter=1e-4, dropped=0.0, torque="none", velocity=True, drives=False
+    )
     case = rig_case(
         Plan(
-            index=0, kind="single", plant="rig", robot=robot, effects=("coulomb_friction",), multiples=(4.0,), references=False,
-            recorder=recorder, duration=10.0, seed=(90210, 0),
+            index=0,
+            kind="single",
+            plant="rig",
+            robot=robot,
+            effects=("coulomb_friction",),
+            multiples=(4.0,),
+            references=False,
+            recorder=recorder,
+            duration=10.0,
+            seed=(90210, 0),
         )
-    )  # fmt: skip
+    )
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.xml"
         path.write_text(case.mjcf or "")
@@ -48,7 +60,9 @@ def logs_of(robot: str) -> tuple[list[Signals], list[Signals], DriveSet]:
     return signals[:2], signals[2:], drive_set(signals[0].subject, signals[0].step)
 
 
-def reached(found: Fitted, held: list[Signals], drives: DriveSet, goal: float) -> tuple[float, bool]:
+def reached(
+    found: Fitted, held: list[Signals], drives: DriveSet, goal: float
+) -> tuple[float, bool]:
     """When the method's best values first reached an error, and whether they did."""
     for seconds, values in found.history:
         if float(position_gap(held, drives, values)[0]) <= goal:
@@ -67,7 +81,10 @@ def main() -> None:
         print(f"{robot}: {drives.count} parameters, held-out error {1e3 * before:.2f} mrad before")
         print(f"  own    {base:8.2f} s  {1e3 * error:.2f} mrad")
         budget = 1.5 * TARGETS["pace"] * statistics.median(one.seconds for one in own)
-        fits = {"sysid": lambda: fit_sysid(train, drives, seconds=budget), "pace": lambda: fit_pace(train, drives, seconds=budget)}  # noqa: B023
+        fits = {
+            "sysid": lambda: fit_sysid(train, drives, seconds=budget),  # noqa: B023
+            "pace": lambda: fit_pace(train, drives, seconds=budget),  # noqa: B023
+        }
         for name, fit in fits.items():
             found = [fit() for _ in range(REPEATS[name])]
             times = [reached(one, held, drives, goal) for one in found]
@@ -76,7 +93,10 @@ def main() -> None:
             ratio = median / base
             mark = "reached" if ratio >= TARGETS[name] else "missed"
             at_least = "" if all_reached else "at least "
-            print(f"  {name:<6} {median:8.2f} s  {1e3 * after:.2f} mrad  {at_least}{ratio:.0f} times ours; target {TARGETS[name]:g}: {mark}")
+            print(
+                f"  {name:<6} {median:8.2f} s  {1e3 * after:.2f} mrad  {at_least}{ratio:.0f} times "
+                f"ours; target {TARGETS[name]:g}: {mark}"
+            )
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
-"""What a diagnosis costs: time and memory of a single servo, and of all 14 joints with 60 s of logs at 200 Hz; time over log length.
+"""What a diagnosis costs: time and memory of a single servo, and of all 14 joints with 60 s of logs
+at 200 Hz; time over log length.
 
-Logs come from the blind trials' rig plant, with friction added at one joint. Each diagnosis runs in a process of its own, on two
-threads, and tells its own peak memory. Targets: servo 20 s, 14 joints 300 s on two cores, 4 GiB; time linear in length.
+Logs come from the blind trials' rig plant, with friction added at one joint. Each diagnosis runs in
+a process of its own, on two threads, and tells its own peak memory. Targets: servo 20 s, 14 joints
+300 s on two cores, 4 GiB; time linear in length.
 
 Run: python benchmarks/gap_diagnosis.py
 """
@@ -36,18 +38,28 @@ begun = time.perf_counter()
 found = diagnose(sys.argv[2], logs, threads=2)
 print(json.dumps({"seconds": time.perf_counter() - begun, "memory": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20,
                   "verdict": found.verdict, "causes": [f"{c.effect} at {c.location}" for c in found.causes]}))
-"""
+"""  # noqa: E501
 
 
 def logs_of(robot: str, seconds: float, folder: Path) -> str:
     """Write three logs of a robot with added friction; the robot for the diagnosis."""
-    recorder = Recorder(rate=200.0, jitter=1e-4, dropped=0.0, torque="motor_current", velocity=True, drives=False)
+    recorder = Recorder(
+        rate=200.0, jitter=1e-4, dropped=0.0, torque="motor_current", velocity=True, drives=False
+    )
     case = rig_case(
         Plan(
-            index=0, kind="single", plant="rig", robot=robot, effects=("coulomb_friction",), multiples=(4.0,), references=False,
-            recorder=recorder, duration=seconds, seed=(90211, 0),
+            index=0,
+            kind="single",
+            plant="rig",
+            robot=robot,
+            effects=("coulomb_friction",),
+            multiples=(4.0,),
+            references=False,
+            recorder=recorder,
+            duration=seconds,
+            seed=(90211, 0),
         ),
-    )  # fmt: skip
+    )
     folder.mkdir(parents=True)
     for number, log in enumerate(case.logs):
         write_log(folder / f"{number}.parquet", log)
@@ -59,7 +71,13 @@ def logs_of(robot: str, seconds: float, folder: Path) -> str:
 
 def cost(folder: Path, robot: str) -> dict[str, object]:
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-    done = subprocess.run([sys.executable, "-c", CHILD, str(folder), robot], check=True, capture_output=True, text=True, env=environment)
+    done = subprocess.run(
+        [sys.executable, "-c", CHILD, str(folder), robot],
+        check=True,
+        capture_output=True,
+        text=True,
+        env=environment,
+    )
     found: dict[str, object] = json.loads(done.stdout.splitlines()[-1])
     return found
 
@@ -70,13 +88,22 @@ def main() -> None:
             folder = Path(place) / robot
             found = cost(folder, logs_of(robot, seconds, folder))
             target = f"target {TARGETS[robot]:.0f} s, {MEMORY:.0f} GiB"
-            print(f"{robot}: 3 logs of {seconds:.0f} s: {found['seconds']:.1f} s, {found['memory']:.2f} GiB ({target}); {found['verdict']}")
+            print(
+                f"{robot}: 3 logs of {seconds:.0f} s: {found['seconds']:.1f} s, "
+                f"{found['memory']:.2f} GiB ({target}); {found['verdict']}"
+            )
         times = []
         for seconds in LENGTHS:
             folder = Path(place) / f"arm_{seconds:.0f}"
             times.append(float(str(cost(folder, logs_of("arm", seconds, folder))["seconds"])))
-        ratios = ", ".join(f"{t / times[0]:.2f} at {s / LENGTHS[0]:.0f} x" for s, t in zip(LENGTHS, times, strict=True))
-        print(f"arm: time over that of logs of {LENGTHS[0]:.0f} s: {ratios} the length (linear: the same)")
+        ratios = ", ".join(
+            f"{t / times[0]:.2f} at {s / LENGTHS[0]:.0f} x"
+            for s, t in zip(LENGTHS, times, strict=True)
+        )
+        print(
+            f"arm: time over that of logs of {LENGTHS[0]:.0f} s: {ratios} the length (linear: the "
+            f"same)"
+        )
 
 
 if __name__ == "__main__":

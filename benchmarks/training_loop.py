@@ -1,8 +1,10 @@
-"""Policy steps per second of the whole training loop on all cores, over those of bare mj_step from as many C threads.
+"""Policy steps per second of the whole training loop on all cores, over those of bare mj_step from
+as many C threads.
 
-One training of one thread a core, side by side, as a campaign runs them: physics, actuators, observations, rewards, acting and
-PPO's updates. Bare physics is `mujoco.batch.Batch.step` on the same model with as many threads, from a standing start, in turn
-with the trainings so that the machine's drift hits both. The walk is trained from scratch, so the robots fall about at first.
+One training of one thread a core, side by side, as a campaign runs them: physics, actuators,
+observations, rewards, acting and PPO's updates. Bare physics is `mujoco.batch.Batch.step` on the
+same model with as many threads, from a standing start, in turn with the trainings so that the
+machine's drift hits both. The walk is trained from scratch, so the robots fall about at first.
 
     python benchmarks/training_loop.py --processes 2 --iterations 24 --rounds 3
 """
@@ -36,14 +38,20 @@ def trained(processes: int, iterations: int, folder: Path) -> float:
     from hyperleg_design.learning.launch import surroundings
 
     begun = [
-        subprocess.Popen([sys.executable, "-c", TRAIN, str(seed), str(folder / str(seed)), str(iterations)], env=surroundings())
+        subprocess.Popen(
+            [sys.executable, "-c", TRAIN, str(seed), str(folder / str(seed)), str(iterations)],
+            env=surroundings(),
+        )
         for seed in range(processes)
     ]
     if any(process.wait() for process in begun):
         raise SystemExit("a training failed")
     rates = []
     for seed in range(processes):
-        lines = [json.loads(line) for line in (folder / str(seed) / "progress.jsonl").read_text().splitlines()]
+        lines = [
+            json.loads(line)
+            for line in (folder / str(seed) / "progress.jsonl").read_text().splitlines()
+        ]
         rates.append([line["rate"] for line in lines][-iterations:][WARM:])
     return float(sum(np.median(r) for r in rates))
 
@@ -56,7 +64,9 @@ def physics(threads: int, simulations: int = 256) -> float:
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.tasks import load_task
 
-    environment = Environment(load_design("toe"), load_task("walk"), simulations=simulations, seed=0, threads=threads)
+    environment = Environment(
+        load_design("toe"), load_task("walk"), simulations=simulations, seed=0, threads=threads
+    )
     environment.reset()
     bare = batch.Batch(environment.model, simulations, threads)
     for chunk in environment.chunks:
@@ -74,7 +84,9 @@ def physics(threads: int, simulations: int = 256) -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--iterations", type=int, default=24)
     parser.add_argument("--rounds", type=int, default=3)
@@ -85,8 +97,10 @@ def main() -> None:
             bare.append(physics(options.processes))
             loops.append(trained(options.processes, options.iterations, Path(folder)))
     print(
-        f"{options.processes} trainings side by side: {np.median(loops):.0f} policy steps/s together; bare mj_step on "
-        f"{options.processes} threads {np.median(bare):.0f}; ratio of medians {np.median(loops) / np.median(bare):.3f}"
+        f"{options.processes} trainings side by side: {np.median(loops):.0f} policy steps/s "
+        f"together; bare mj_step on "
+        f"{options.processes} threads {np.median(bare):.0f}; ratio of medians "
+        f"{np.median(loops) / np.median(bare):.3f}"
     )
 
 

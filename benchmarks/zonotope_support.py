@@ -1,4 +1,5 @@
-"""Support functions of the torque set: ours, batched and one at a time, against a cvxpy problem that is compiled once.
+"""Support functions of the torque set: ours, batched and one at a time, against a cvxpy problem
+that is compiled once.
 
 Prints medians and their ratios. Run: python benchmarks/zonotope_support.py
 """
@@ -31,7 +32,9 @@ def median_seconds(work: Callable[[], object], repeats: int) -> float:
 
 
 def measure(directions: int = 20, repeats: int = 7, seed: int = 0) -> dict[str, float]:
-    """Time a direction of each [s], ratios of their medians, and the largest difference of their answers [Nm]."""
+    """Time a direction of each [s], ratios of their medians, and the largest difference of their
+    answers [Nm].
+    """
     design = load_design("hyperleg")
     matrix, peak = joint_from_motor(design), motor_envelope(design).peak_torque
     many = np.random.default_rng(seed).normal(size=(100 * directions, len(matrix)))
@@ -48,7 +51,9 @@ def measure(directions: int = 20, repeats: int = 7, seed: int = 0) -> dict[str, 
 
     difference = np.abs(by_cvxpy() - zonotope.support(matrix, -peak, peak, few)).max()
     ours = median_seconds(lambda: zonotope.support(matrix, -peak, peak, many), repeats) / len(many)
-    single = median_seconds(lambda: [zonotope.support(matrix, -peak, peak, one) for one in few], repeats) / len(few)
+    single = median_seconds(
+        lambda: [zonotope.support(matrix, -peak, peak, one) for one in few], repeats
+    ) / len(few)
     theirs = median_seconds(by_cvxpy, repeats) / len(few)
     return {
         "ours_seconds_per_direction": ours,
@@ -62,7 +67,9 @@ def measure(directions: int = 20, repeats: int = 7, seed: int = 0) -> dict[str, 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--directions", type=int, default=20, help="directions that cvxpy solves in each repeat")
+    parser.add_argument(
+        "--directions", type=int, default=20, help="directions that cvxpy solves in each repeat"
+    )
     parser.add_argument("--repeats", type=int, default=7)
     parser.add_argument("--json", action="store_true")
     options = parser.parse_args()

@@ -14,4 +14,6 @@ mass = hl.mass_table(batch).total
 torque = hl.max_joint_torque(batch)[:, 3]
 speed = hl.single_joint_speed(batch)[:, 3]
 for i in np.argsort(-torque):
-    print(f"{names[i]:12} robot {mass[i]:6.2f} kg   knee {torque[i]:6.1f} Nm   {speed[i]:5.1f} rad/s")
+    print(
+        f"{names[i]:12} robot {mass[i]:6.2f} kg   knee {torque[i]:6.1f} Nm   {speed[i]:5.1f} rad/s"
+    )

@@ -1,7 +1,9 @@
-"""Evaluate your own policy on your own robot: any function of observations, the shipped walk, numbers with intervals.
+"""Evaluate your own policy on your own robot: any function of observations, the shipped walk,
+numbers with intervals.
 
-The policy here knows no walking: its ankles answer to the lean of the pelvis, so the robot stands and sways. An ONNX file of
-`hyperleg train` is evaluated by `evaluate("policy.onnx")` alone, since it brings its robot and task.
+The policy here knows no walking: its ankles answer to the lean of the pelvis, so the robot stands
+and sways. An ONNX file of `hyperleg train` is evaluated by `evaluate("policy.onnx")` alone, since
+it brings its robot and task.
 
 Run: python examples/evaluate_your_own_policy.py
 """
@@ -20,7 +22,9 @@ ankles = layout_of(robot).joint_indices("ankle_pitch")
 
 
 def policy(observation):
-    """Actions (n, joints) from observations (n, size): pelvis rates, gravity in its frame, command, joints, last actions."""
+    """Actions (n, joints) from observations (n, size): pelvis rates, gravity in its frame, command,
+    joints, last actions.
+    """
     action = np.zeros((len(observation), 14))
     action[:, ankles] = (2.0 * observation[:, 3] + 0.6 * observation[:, 1] + 0.1)[:, None]
     return action

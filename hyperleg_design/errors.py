@@ -11,7 +11,9 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 100
 
 
 class HyperlegError(Exception):
-    """Base of every error this package raises on purpose; the command line prints it as one line."""
+    """Base of every error this package raises on purpose; the command line prints it as one
+    line.
+    """
 
 
 class InputError(HyperlegError):
@@ -22,17 +24,26 @@ class InputError(HyperlegError):
         field: dotted path of the field, empty when the whole file is meant.
         value: the value found.
         remedy: what would be right.
-        bad: in a batch of designs, which of them are wrong in this, `(n,)` of bool; None where that is not known.
+        bad: in a batch of designs, which of them are wrong in this, `(n,)` of bool; None where that
+            is not known.
     """
 
-    def __init__(self, where: str, field: str, value: object, remedy: str, *, bad: Any = None) -> None:
+    def __init__(
+        self, where: str, field: str, value: object, remedy: str, *, bad: Any = None
+    ) -> None:
         self.where, self.field, self.value, self.remedy, self.bad = where, field, value, remedy, bad
-        super().__init__(f"{self.place} = {shown(value)}: {remedy}" if value is not None else f"{self.place}: {remedy}")
+        super().__init__(
+            f"{self.place} = {shown(value)}: {remedy}"
+            if value is not None
+            else f"{self.place}: {remedy}"
+        )
 
     @property
     def place(self) -> str:
         """Where and field, the field as a user wrote it."""
-        field = self.field if self.field.isprintable() and len(self.field) <= 120 else shown(self.field)
+        field = (
+            self.field if self.field.isprintable() and len(self.field) <= 120 else shown(self.field)
+        )
         return f"{self.where}: {field}" if self.field else self.where
 
 
@@ -48,7 +59,9 @@ def shown(value: object) -> str:
 
 
 def in_short(error: Exception, width: int = 100) -> str:
-    """What a library says of an error: one line, cut where it is longer than `width` characters, between words unless one is very long."""
+    """What a library says of an error: one line, cut where it is longer than `width` characters,
+    between words unless one is very long.
+    """
     text = " ".join(str(error).split())
     cut = textwrap.shorten(text, width, placeholder=" ...")
     return cut if 2 * len(cut) > width or len(text) <= width else text[: width - 4] + " ..."
@@ -59,4 +72,6 @@ class OutputError(HyperlegError):
 
 
 class InfeasibleError(HyperlegError):
-    """A question with a well-formed input has no solution (a force outside the envelope, an unreachable pose)."""
+    """A question with a well-formed input has no solution (a force outside the envelope, an
+    unreachable pose).
+    """

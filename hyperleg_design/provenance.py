@@ -25,17 +25,29 @@ def versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
 
 @cache
 def git_commit(folder: Path | None = None) -> str:
-    """Commit of the checkout that holds the content folders, `-dirty` with local changes; empty outside a checkout."""
+    """Commit of the checkout that holds the content folders, `-dirty` with local changes; empty
+    outside a checkout.
+    """
     folder = folder or resources.home()
     if not (folder / ".git").exists():
         return ""
     try:
         commit = _git(folder, "rev-parse", "--short=12", "HEAD")
-        return f"{commit}-dirty" if _git(folder, "status", "--porcelain", "--untracked-files=no") else commit
+        return (
+            f"{commit}-dirty"
+            if _git(folder, "status", "--porcelain", "--untracked-files=no")
+            else commit
+        )
     except (OSError, subprocess.SubprocessError):
         return ""
 
 
 def _git(folder: Path, *arguments: str) -> str:
-    done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, timeout=10, check=True)
+    done = subprocess.run(
+        ["git", "-C", str(folder), *arguments],
+        capture_output=True,
+        text=True,
+        timeout=10,
+        check=True,
+    )
     return done.stdout.strip()

@@ -31,7 +31,9 @@ def read_yaml(path: Path) -> dict[str, Any]:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}" if mark else ""
         problem = " ".join(str(getattr(error, "problem", None) or error).split())
-        raise InputError(f"{short_name(path)}{place}", "", None, f"is not YAML: {problem}") from None
+        raise InputError(
+            f"{short_name(path)}{place}", "", None, f"is not YAML: {problem}"
+        ) from None
     if not isinstance(data, dict):
         raise InputError(short_name(path), "", data, "expects a mapping of sections")
     return data
@@ -50,9 +52,13 @@ def read_json(path: Path, where: str = "") -> Any:
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise InputError(where or short_name(path), "", None, f"cannot be read ({error.strerror})") from None
+        raise InputError(
+            where or short_name(path), "", None, f"cannot be read ({error.strerror})"
+        ) from None
     except (ValueError, RecursionError) as error:
-        raise InputError(where or short_name(path), "", None, f"is not JSON ({in_short(error, 80)})") from None
+        raise InputError(
+            where or short_name(path), "", None, f"is not JSON ({in_short(error, 80)})"
+        ) from None
 
 
 def parse_yaml(text: str) -> Any:
@@ -62,10 +68,17 @@ def parse_yaml(text: str) -> Any:
         yaml.YAMLError: malformed, a key twice, or a value that its own type forbids (a 13th month).
     """
     depth = 0
-    for event in yaml.parse(text, Loader=_BASE):  # PyYAML's C code crashes the process on very deep nesting
-        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+    for event in yaml.parse(
+        text, Loader=_BASE
+    ):  # PyYAML's C code crashes the process on very deep nesting
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(
+            event, yaml.CollectionEndEvent
+        )
         if depth > MAX_DEPTH:
-            raise yaml.MarkedYAMLError(problem=f"nested more than {MAX_DEPTH} deep", problem_mark=event.start_mark)  # type: ignore[arg-type]
+            raise yaml.MarkedYAMLError(
+                problem=f"nested more than {MAX_DEPTH} deep",
+                problem_mark=event.start_mark,  # type: ignore[arg-type]
+            )
     return yaml.load(text, Loader=_Loader)
 
 
@@ -77,9 +90,13 @@ class _Loader(_BASE):  # type: ignore[misc]
             seen = set()
             for key, _ in node.value:
                 if not isinstance(key, yaml.ScalarNode):
-                    raise yaml.constructor.ConstructorError(None, None, "a key must be a plain word", key.start_mark)
+                    raise yaml.constructor.ConstructorError(
+                        None, None, "a key must be a plain word", key.start_mark
+                    )
                 if key.value in seen:
-                    raise yaml.constructor.ConstructorError(None, None, f"{key.value} stands twice", key.start_mark)
+                    raise yaml.constructor.ConstructorError(
+                        None, None, f"{key.value} stands twice", key.start_mark
+                    )
                 seen.add(key.value)
         return super().construct_mapping(node, deep)
 
@@ -88,7 +105,9 @@ class _Loader(_BASE):  # type: ignore[misc]
             return super().construct_object(node, deep)
         except (ValueError, OverflowError, AttributeError, KeyError, TypeError) as error:
             # PyYAML lets through what Python's own types say: 2020-13-01, !!int x
-            raise yaml.constructor.ConstructorError(None, None, f"{node.value!r:.60} is no value ({error})", node.start_mark) from None
+            raise yaml.constructor.ConstructorError(
+                None, None, f"{node.value!r:.60} is no value ({error})", node.start_mark
+            ) from None
 
 
 def short_name(path: Path) -> str:

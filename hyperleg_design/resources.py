@@ -1,4 +1,5 @@
-"""Where the content folders are: beside the package in a checkout, inside it when installed from a wheel.
+"""Where the content folders are: beside the package in a checkout, inside it when installed from a
+wheel.
 
 This is the only place in the package that knows; `HYPERLEG_HOME` overrides it.
 """
@@ -19,7 +20,9 @@ def home() -> Path:
     chosen = os.environ.get("HYPERLEG_HOME")
     if chosen:
         if not (Path(chosen) / "descriptions").is_dir():
-            raise InputError("HYPERLEG_HOME", "", chosen, "is not a folder with descriptions/, motors/, sweeps/")
+            raise InputError(
+                "HYPERLEG_HOME", "", chosen, "is not a folder with descriptions/, motors/, sweeps/"
+            )
         return Path(chosen)
     return _own_home()
 
@@ -39,7 +42,8 @@ def content_folder(kind: str) -> Path:
 
 
 def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path:
-    """Path of a content file given by a user: a path as it stands, or the bare name of a shipped file.
+    """Path of a content file given by a user: a path as it stands, or the bare name of a shipped
+    file.
 
     Args:
         kind: content folder, one of `CONTENT`.
@@ -58,7 +62,9 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path
             return shipped
     except OSError as error:  # a name too long, a folder closed to us
         raise InputError(kind, "", str(name), f"cannot be read ({error.strerror})") from None
-    raise InputError(kind, "", str(name), f"no such file; shipped: {', '.join(names(kind, suffix)) or 'none'}")
+    raise InputError(
+        kind, "", str(name), f"no such file; shipped: {', '.join(names(kind, suffix)) or 'none'}"
+    )
 
 
 def names(kind: str, suffix: str = ".yaml") -> list[str]:

@@ -23,7 +23,8 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
     """Write a file atomically: a temporary file beside it, flushed, then renamed over it.
 
     Raises:
-        OutputError: the disk is full or the place cannot be written; the old file, if any, is untouched.
+        OutputError: the disk is full or the place cannot be written; the old file, if any, is
+        untouched.
     """
     path = Path(path)
     temporary: Path | None = None
@@ -39,7 +40,10 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
         temporary.replace(path)
         temporary = None
     except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({error.strerror or error}); free some space or choose another folder") from error
+        raise OutputError(
+            f"{path}: cannot be written ({error.strerror or error}); free some space or choose "
+            f"another folder"
+        ) from error
     finally:  # also when the user interrupts
         if temporary is not None:
             with contextlib.suppress(OSError):
@@ -56,12 +60,15 @@ def write_json(path: str | os.PathLike[str], content: object) -> Path:
     """`write_text` of indented JSON.
 
     Raises:
-        OutputError: as `write_bytes`, or the content holds a number that is not finite, which JSON cannot say.
+        OutputError: as `write_bytes`, or the content holds a number that is not finite, which JSON
+        cannot say.
     """
     try:
         text = json.dumps(content, indent=2, allow_nan=False)
     except ValueError as error:
-        raise OutputError(f"{path}: a result is not a finite number ({error}); nothing was written") from error
+        raise OutputError(
+            f"{path}: a result is not a finite number ({error}); nothing was written"
+        ) from error
     return write_text(path, text + "\n")
 
 
@@ -77,9 +84,14 @@ def check_output_folder(folder: str | os.PathLike[str]) -> Path:
             raise OutputError(f"{folder}: is a file, not a folder; choose another --out")
         foreign = folder.is_dir() and not (folder / MARKER).is_file() and any(folder.iterdir())
     except (OSError, ValueError) as error:
-        raise OutputError(f"{folder}: cannot be read ({getattr(error, 'strerror', None) or error}); choose another --out") from error
+        raise OutputError(
+            f"{folder}: cannot be read ({getattr(error, 'strerror', None) or error}); choose "
+            f"another --out"
+        ) from error
     if foreign:
-        raise OutputError(f"{folder}: holds files that hyperleg did not write; choose an empty or new folder")
+        raise OutputError(
+            f"{folder}: holds files that hyperleg did not write; choose an empty or new folder"
+        )
     return folder
 
 
@@ -87,7 +99,8 @@ def check_output_folder(folder: str | os.PathLike[str]) -> Path:
 def output_folder(folder: str | os.PathLike[str], keep: Sequence[str] = ()) -> Iterator[Path]:
     """Build a folder aside and put it in place when the block ends well.
 
-    A folder of ours is replaced, but for files that somebody added to it; on an error nothing changes.
+    A folder of ours is replaced, but for files that somebody added to it; on an error nothing
+    changes.
 
     Args:
         folder: to be written.
@@ -104,14 +117,19 @@ def output_folder(folder: str | os.PathLike[str], keep: Sequence[str] = ()) -> I
         temporary.chmod(0o755)
         yield temporary
         kept = _carried(folder, temporary, keep)
-        written = sorted({str(p.relative_to(temporary)) for p in temporary.rglob("*") if p.is_file()} - kept)
+        written = sorted(
+            {str(p.relative_to(temporary)) for p in temporary.rglob("*") if p.is_file()} - kept
+        )
         (temporary / MARKER).write_text("\n".join((MADE, *written, "")))
         if folder.exists():
             _swap(folder, temporary)
         else:
             temporary.replace(folder)
     except OSError as error:
-        raise OutputError(f"{folder}: cannot be written ({error.strerror or error}); free some space or choose another folder") from error
+        raise OutputError(
+            f"{folder}: cannot be written ({error.strerror or error}); free some space or choose "
+            f"another folder"
+        ) from error
     except OutputError as error:  # of a file inside: name it where it would have stood
         raise OutputError(str(error).replace(str(temporary), str(folder))) from error
     finally:
@@ -120,7 +138,9 @@ def output_folder(folder: str | os.PathLike[str], keep: Sequence[str] = ()) -> I
 
 
 def _carried(folder: Path, new: Path, keep: Sequence[str]) -> set[str]:
-    """Copy what somebody added to a folder, and what is to be kept, into its successor; the names of what was added."""
+    """Copy what somebody added to a folder, and what is to be kept, into its successor; the names
+    of what was added.
+    """
     marker = folder / MARKER
     lines = marker.read_text(encoding="utf-8").splitlines() if marker.is_file() else []
     if not lines or lines[0] != MADE:
@@ -128,7 +148,12 @@ def _carried(folder: Path, new: Path, keep: Sequence[str]) -> set[str]:
     ours, added = set(lines[1:]), set()
     for path in folder.rglob("*"):
         name = str(path.relative_to(folder))
-        if name == MARKER or not path.is_file() or (new / name).exists() or (name in ours and not any(path.match(p) for p in keep)):
+        if (
+            name == MARKER
+            or not path.is_file()
+            or (new / name).exists()
+            or (name in ours and not any(path.match(p) for p in keep))
+        ):
             continue
         (new / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(path, new / name)

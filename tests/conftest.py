@@ -15,7 +15,12 @@ from hyperleg_design.robot.inertials import inertials
 from hyperleg_design.robot.motors import catalogue
 
 # the same examples every time, and no clock
-settings.register_profile("suite", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much])
+settings.register_profile(
+    "suite",
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+)
 settings.load_profile("suite")
 
 
@@ -64,7 +69,9 @@ def _overrides() -> st.SearchStrategy[dict]:
 
 @pytest.fixture(scope="session")
 def random_designs(hyperleg: Design) -> st.SearchStrategy[Design]:
-    """Strategy for valid robots that differ from the paper's in masses, lengths, gears, motors, places and variant."""
+    """Strategy for valid robots that differ from the paper's in masses, lengths, gears, motors,
+    places and variant.
+    """
 
     @st.composite
     def made(draw) -> Design:
@@ -72,7 +79,11 @@ def random_designs(hyperleg: Design) -> st.SearchStrategy[Design]:
         variant = draw(st.sampled_from(["toe", "toe_locked", "toe_removed_matched", "toe_removed"]))
         try:
             design = load_design(
-                "hyperleg", overrides={k: v for k, v in values.items() if (k, variant) != ("toe.mass", "toe_removed")}, variant=variant
+                "hyperleg",
+                overrides={
+                    k: v for k, v in values.items() if (k, variant) != ("toe.mass", "toe_removed")
+                },
+                variant=variant,
             )
             inertials(design)
         except InputError:

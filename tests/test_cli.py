@@ -28,7 +28,9 @@ def test_analyze_prints_one_json_object(capsys):
     assert found["single_joint_speed"]["knee"] == pytest.approx(10.5, abs=0.05)
     assert len(found["reduction"]["walking"]) == len(found["reflected_inertia"]) == 7
     assert found["zonotope_to_box_volume"] == pytest.approx(0.130, abs=5e-4)
-    assert found["ablation_confound"]["toe_removed"]["max_joint_torque"]["ankle_pitch"] == pytest.approx(76.3, abs=0.05)
+    assert found["ablation_confound"]["toe_removed"]["max_joint_torque"][
+        "ankle_pitch"
+    ] == pytest.approx(76.3, abs=0.05)
 
 
 @pytest.mark.parametrize("variant", ["toe", "toe_locked", "toe_removed_matched", "toe_removed"])
@@ -41,19 +43,28 @@ def test_analyze_takes_every_variant(capsys, variant):
 
 
 def test_set_is_repeatable_and_reaches_the_design(capsys):
-    _, out, _ = run(capsys, "analyze", "--set", "toe.mass=0.3", "--set", "pelvis.mass=16.46", "--json")
+    _, out, _ = run(
+        capsys, "analyze", "--set", "toe.mass=0.3", "--set", "pelvis.mass=16.46", "--json"
+    )
     assert json.loads(out)["total_mass"] == pytest.approx(33.16, abs=1e-12)
 
 
 def test_overlay_is_applied_before_set(capsys, tmp_path: Path):
     overlay = tmp_path / "heavy.yaml"
-    overlay.write_text("toe: {mass: 0.5}\npelvis: {mass: {value: 10, label: assumed, source: test}}\n")
+    overlay.write_text(
+        "toe: {mass: 0.5}\npelvis: {mass: {value: 10, label: assumed, source: test}}\n"
+    )
     _, out, _ = run(capsys, "analyze", "--overlay", str(overlay), "--set", "toe.mass=0.3", "--json")
     assert json.loads(out)["total_mass"] == pytest.approx(10 + 2 * (8.27 + 0.08), abs=1e-12)
 
 
 def test_texts_for_people(capsys):
-    for arguments, word in ((("analyze",), "13.0 %"), (("list",), "RI70"), (("list", "parameters"), "toe.mass"), (("version",), "mujoco")):
+    for arguments, word in (
+        (("analyze",), "13.0 %"),
+        (("list",), "RI70"),
+        (("list", "parameters"), "toe.mass"),
+        (("version",), "mujoco"),
+    ):
         code, out, _ = run(capsys, *arguments)
         assert code == 0
         assert word in out
@@ -84,7 +95,10 @@ def test_list_speaks_json(capsys):
         (["campaign", "start"], ["start", "status"]),
         (["campaign", "status", "no-campaign"], ["no-campaign", "campaign"]),
         (["train", "--seed", "-1", "--out", "x"], ["seed", "-1", "from 0 on"]),
-        (["gap", "blind", "--cases", "2", "--seed", "-1", "--out", "x"], ["seed", "-1", "from 0 on"]),
+        (
+            ["gap", "blind", "--cases", "2", "--seed", "-1", "--out", "x"],
+            ["seed", "-1", "from 0 on"],
+        ),
     ],
 )
 def test_bad_input_is_one_clear_line_and_exit_code_two(capsys, arguments, words):
@@ -111,13 +125,19 @@ def test_build_writes_a_robot_that_other_tools_load(capsys, tmp_path: Path):
     import mujoco
     import pinocchio
 
-    code, out, _ = run(capsys, "build", "--set", "toe.mass=0.3", "--out", str(tmp_path / "robot"), "--json")
+    code, out, _ = run(
+        capsys, "build", "--set", "toe.mass=0.3", "--out", str(tmp_path / "robot"), "--json"
+    )
     files = json.loads(out)["files"]
     assert code == 0
     urdf = next(f for f in files if f.endswith(".urdf"))
     mjcf = next(f for f in files if f.endswith(".xml"))
-    assert pinocchio.computeTotalMass(pinocchio.buildModelFromUrdf(str(tmp_path / "robot" / urdf))) == pytest.approx(32.16 - 15.46, abs=1e-9)
-    assert mujoco.MjModel.from_xml_path(str(tmp_path / "robot" / mjcf)).body_mass.sum() == pytest.approx(32.16, abs=1e-9)
+    assert pinocchio.computeTotalMass(
+        pinocchio.buildModelFromUrdf(str(tmp_path / "robot" / urdf))
+    ) == pytest.approx(32.16 - 15.46, abs=1e-9)
+    assert mujoco.MjModel.from_xml_path(
+        str(tmp_path / "robot" / mjcf)
+    ).body_mass.sum() == pytest.approx(32.16, abs=1e-9)
 
 
 def test_build_leaves_a_foreign_folder_alone(capsys, tmp_path: Path):
@@ -140,7 +160,11 @@ def test_training_without_torch_says_what_to_install(capsys, tmp_path: Path, mon
     import importlib.util
 
     real = importlib.util.find_spec
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *rest: None if name == "torch" else real(name, *rest))
+    monkeypatch.setattr(
+        importlib.util,
+        "find_spec",
+        lambda name, *rest: None if name == "torch" else real(name, *rest),
+    )
     code, _, err = run(capsys, "train", "--out", str(tmp_path / "t"))
     assert code == 2
     assert "torch" in err
@@ -152,11 +176,21 @@ def test_a_campaign_is_packed_for_shipping(capsys, tmp_path: Path):
     folder.mkdir(parents=True)
     (folder / "policy.onnx").write_bytes(b"x" * 1000)
     (tmp_path / "campaign" / "walk-toe-1").mkdir()
-    code, out, _ = run(capsys, "campaign", "pack", "--from", str(tmp_path / "campaign"), "--to", str(tmp_path / "policies"))
+    code, out, _ = run(
+        capsys,
+        "campaign",
+        "pack",
+        "--from",
+        str(tmp_path / "campaign"),
+        "--to",
+        str(tmp_path / "policies"),
+    )
     assert code == 0
     assert "1 of 2 trainings, 1 policies, 0.0 MB" in out
     assert (tmp_path / "policies" / "walk-toe-0" / "policy.onnx").exists()
-    code, _, err = run(capsys, "campaign", "pack", "--from", str(tmp_path / "none"), "--to", str(tmp_path / "p"))
+    code, _, err = run(
+        capsys, "campaign", "pack", "--from", str(tmp_path / "none"), "--to", str(tmp_path / "p")
+    )
     assert code == 2
     assert "no such folder" in err
 
@@ -171,7 +205,17 @@ def test_gap_lists_its_effects(capsys):
 
 
 def test_gap_show_draws_a_figure(capsys, tmp_path):
-    code, out, _ = run(capsys, "gap", "show", "viscous_friction", "--set", "damping=0.5", "--out", str(tmp_path), "--json")
+    code, out, _ = run(
+        capsys,
+        "gap",
+        "show",
+        "viscous_friction",
+        "--set",
+        "damping=0.5",
+        "--out",
+        str(tmp_path),
+        "--json",
+    )
     found = json.loads(out)
     assert code == 0
     assert found["parameters"]["damping"]["value"] == 0.5
@@ -182,21 +226,39 @@ def test_gap_show_draws_a_figure(capsys, tmp_path):
 
 
 def test_gap_apply_writes_what_training_and_evaluation_read(capsys, tmp_path):
-    cause = {"effect": "coulomb_friction", "location": "left_knee", "parameters": {"torque": {"value": 1.9, "low": 1.7, "high": 2.1, "unit": "Nm"}}}
+    cause = {
+        "effect": "coulomb_friction",
+        "location": "left_knee",
+        "parameters": {"torque": {"value": 1.9, "low": 1.7, "high": 2.1, "unit": "Nm"}},
+    }
     diagnosis, overlay = tmp_path / "diagnosis.json", tmp_path / "overlay.yaml"
-    diagnosis.write_text(json.dumps({"schema": 1, "verdict": "explained", "gap": {"closed": 0.9}, "causes": [cause]}))
-    code, out, _ = run(capsys, "gap", "apply", str(diagnosis), "--robot", "hyperleg", "--out", str(overlay))
+    diagnosis.write_text(
+        json.dumps({"schema": 1, "verdict": "explained", "gap": {"closed": 0.9}, "causes": [cause]})
+    )
+    code, out, _ = run(
+        capsys, "gap", "apply", str(diagnosis), "--robot", "hyperleg", "--out", str(overlay)
+    )
     assert code == 0
     assert out.startswith("coulomb_friction at left_knee -> ")
     from hyperleg_design.gap.overlay import read_overlay
 
     assert read_overlay(overlay).change == {("coulomb_friction", "left_knee"): {"torque": 1.9}}
     overlay.write_text(overlay.read_text().replace("left_knee", "left_kne"))
-    code, _, err = run(capsys, "train", "--overlay", str(overlay), "--out", str(tmp_path / "training"))
+    code, _, err = run(
+        capsys, "train", "--overlay", str(overlay), "--out", str(tmp_path / "training")
+    )
     assert code == 2
     assert "did you mean left_knee" in err
     assert len(err.strip().splitlines()) == 1
-    code, _, err = run(capsys, "evaluate", "nothing.onnx", "--overlay", str(tmp_path / "none.yaml"), "--out", str(tmp_path / "evaluation"))
+    code, _, err = run(
+        capsys,
+        "evaluate",
+        "nothing.onnx",
+        "--overlay",
+        str(tmp_path / "none.yaml"),
+        "--out",
+        str(tmp_path / "evaluation"),
+    )
     assert code == 2
     assert "none.yaml: cannot be read" in err
 

@@ -5,17 +5,32 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hyperleg_design.errors import HyperlegError, InfeasibleError, InputError, OutputError, in_short, shown
+from hyperleg_design.errors import (
+    HyperlegError,
+    InfeasibleError,
+    InputError,
+    OutputError,
+    in_short,
+    shown,
+)
 
 
 def test_text_names_where_field_value_and_remedy():
     error = InputError("descriptions/a.yaml", "toe.mass", -1, "expects a number in kg")
     assert str(error) == "descriptions/a.yaml: toe.mass = -1: expects a number in kg"
-    assert (error.where, error.field, error.value, error.remedy) == ("descriptions/a.yaml", "toe.mass", -1, "expects a number in kg")
+    assert (error.where, error.field, error.value, error.remedy) == (
+        "descriptions/a.yaml",
+        "toe.mass",
+        -1,
+        "expects a number in kg",
+    )
 
 
 def test_nothing_is_shown_of_a_value_that_is_not_there():
-    assert str(InputError("a.yaml", "toe.mass", None, "is missing [kg]")) == "a.yaml: toe.mass: is missing [kg]"
+    assert (
+        str(InputError("a.yaml", "toe.mass", None, "is missing [kg]"))
+        == "a.yaml: toe.mass: is missing [kg]"
+    )
     assert str(InputError("a.yaml", "", None, "cannot be read")) == "a.yaml: cannot be read"
 
 
@@ -24,7 +39,12 @@ def test_one_base_for_all(kind):
     assert issubclass(kind, HyperlegError)
 
 
-@given(st.recursive(st.none() | st.text() | st.integers() | st.binary() | st.floats(), lambda x: st.lists(x) | st.dictionaries(st.text(), x)))
+@given(
+    st.recursive(
+        st.none() | st.text() | st.integers() | st.binary() | st.floats(),
+        lambda x: st.lists(x) | st.dictionaries(st.text(), x),
+    )
+)
 @settings(max_examples=60)
 def test_a_value_is_shown_in_one_short_line(value):
     assert len(shown(value)) <= 120
@@ -55,8 +75,13 @@ def test_a_field_with_odd_characters_stays_in_one_line():
     assert len(text) < 200
 
 
-@pytest.mark.parametrize(("said", "short"), [
-    ("no such\n  file", "no such file"), ("this is not a parquet file", "this is not a ..."), ("x" * 30, "x" * 16 + " ..."),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("said", "short"),
+    [
+        ("no such\n  file", "no such file"),
+        ("this is not a parquet file", "this is not a ..."),
+        ("x" * 30, "x" * 16 + " ..."),
+    ],
+)
 def test_what_libraries_say_is_cut_between_words(said, short):
     assert in_short(ValueError(said), 20) == short

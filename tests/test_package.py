@@ -1,4 +1,6 @@
-"""The package as a whole: what an import costs, which room knows which, that everything says what it is."""
+"""The package as a whole: what an import costs, which room knows which, that everything says what
+it is.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,19 @@ import hyperleg_design
 
 PACKAGE = Path(hyperleg_design.__file__).parent
 MODULES = sorted(PACKAGE.rglob("*.py"))
-HEAVY = ("mujoco", "pinocchio", "cvxpy", "pandas", "pyvista", "matplotlib", "scipy", "torch", "xacro", "yourdfpy", "lxml")
+HEAVY = (
+    "mujoco",
+    "pinocchio",
+    "cvxpy",
+    "pandas",
+    "pyvista",
+    "matplotlib",
+    "scipy",
+    "torch",
+    "xacro",
+    "yourdfpy",
+    "lxml",
+)
 ROOMS = ("robot", "sizing", "simulation", "learning", "evaluation", "gap", "sweep", "report", "cli")
 """In order: a room imports only rooms before it."""
 APART = {"evaluation": {"learning"}, "gap": {"learning"}, "sweep": {"learning"}}
@@ -24,7 +38,9 @@ def name_of(path: Path) -> str:
     return str(path.relative_to(PACKAGE))
 
 
-@pytest.mark.parametrize("statement", ["import hyperleg_design", "import hyperleg_design; hyperleg_design.load_design()"])
+@pytest.mark.parametrize(
+    "statement", ["import hyperleg_design", "import hyperleg_design; hyperleg_design.load_design()"]
+)
 def test_heavy_libraries_load_when_used(statement):
     code = f"import sys; {statement}; print(*sorted(set({HEAVY!r}) & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -42,12 +58,21 @@ def test_every_public_name_resolves():
 def test_public_names_are_the_same_to_a_type_checker():
     tree = ast.parse((PACKAGE / "__init__.py").read_text())
     guarded = next(node for node in tree.body if isinstance(node, ast.If))
-    typed = {(a.asname, node.module) for node in guarded.body if isinstance(node, ast.ImportFrom) for a in node.names}
-    assert typed == {(name, f"hyperleg_design.{home}") for name, home in hyperleg_design._HOME.items()}
+    typed = {
+        (a.asname, node.module)
+        for node in guarded.body
+        if isinstance(node, ast.ImportFrom)
+        for a in node.names
+    }
+    assert typed == {
+        (name, f"hyperleg_design.{home}") for name, home in hyperleg_design._HOME.items()
+    }
 
 
 def imported_rooms(path: Path) -> set[str]:
-    """First parts below the package of everything that a module imports, wherever in the module it does."""
+    """First parts below the package of everything that a module imports, wherever in the module it
+    does.
+    """
     found = set()
     for node in ast.walk(ast.parse(path.read_text())):
         names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
@@ -78,5 +103,9 @@ def test_library_code_prints_nothing():
     for path in MODULES:
         if path.parent.name == "cli":
             continue
-        calls = (n for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name))
+        calls = (
+            n
+            for n in ast.walk(ast.parse(path.read_text()))
+            if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
+        )
         assert not [n.lineno for n in calls if n.func.id == "print"], name_of(path)

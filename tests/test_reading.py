@@ -55,7 +55,11 @@ def test_files_that_cannot_be_opened(tmp_path: Path):
 
 
 @given(
-    st.recursive(st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(), lambda x: st.lists(x, max_size=3), max_leaves=5)
+    st.recursive(
+        st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
+        lambda x: st.lists(x, max_size=3),
+        max_leaves=5,
+    )
 )
 @settings(max_examples=50)
 def test_strictness_changes_no_value(value):

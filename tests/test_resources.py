@@ -23,10 +23,14 @@ def test_a_shipped_name_and_a_path_are_found(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert resources.find("descriptions", "own.yaml") == Path("own.yaml")
     (tmp_path / "hyperleg").touch()
-    assert resources.find("descriptions", "hyperleg").name == "hyperleg.yaml"  # a stray file does not hide what is shipped
+    assert (
+        resources.find("descriptions", "hyperleg").name == "hyperleg.yaml"
+    )  # a stray file does not hide what is shipped
 
 
-@pytest.mark.parametrize("name", ["no_such", "no/such.yaml", "", ".", "..", "../motors/RI70", "x" * 5000, "a\0b", "/tmp"])
+@pytest.mark.parametrize(
+    "name", ["no_such", "no/such.yaml", "", ".", "..", "../motors/RI70", "x" * 5000, "a\0b", "/tmp"]
+)
 def test_what_is_not_there_lists_what_is(name):
     with pytest.raises(InputError, match=r"hyperleg|cannot be read"):
         resources.find("descriptions", name)

@@ -35,7 +35,9 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: Path, monkeypatch, place):
         monkeypatch.setattr(os, "fsync", full_disk)
     else:
         monkeypatch.setattr(Path, "replace", full_disk)
-    with pytest.raises(OutputError, match=r"a\.txt: cannot be written \(No space left on device\); free some space"):
+    with pytest.raises(
+        OutputError, match=r"a\.txt: cannot be written \(No space left on device\); free some space"
+    ):
         writing.write_text(path, "new")
     assert everything(tmp_path) == {"a.txt": b"old"}
 
@@ -58,7 +60,10 @@ def test_numbers_that_json_cannot_say(tmp_path: Path):
 
 def test_a_place_that_is_no_folder(tmp_path: Path):
     (tmp_path / "file").touch()
-    for action in (lambda: writing.write_text(tmp_path / "file" / "a.txt", "x"), lambda: writing.check_output_folder(tmp_path / "file")):
+    for action in (
+        lambda: writing.write_text(tmp_path / "file" / "a.txt", "x"),
+        lambda: writing.check_output_folder(tmp_path / "file"),
+    ):
         with pytest.raises(OutputError, match="file"):
             action()
 
@@ -74,7 +79,10 @@ def test_our_folder_is_replaced_as_a_whole(tmp_path: Path):
     with writing.output_folder(out) as inside:
         (inside / "b.txt").touch()
     make(out, "two")
-    assert everything(tmp_path / "deep") == {"out/a.txt": b"two", f"out/{writing.MARKER}": (out / writing.MARKER).read_bytes()}
+    assert everything(tmp_path / "deep") == {
+        "out/a.txt": b"two",
+        f"out/{writing.MARKER}": (out / writing.MARKER).read_bytes(),
+    }
 
 
 def test_somebody_elses_folder_is_refused(tmp_path: Path):
@@ -107,7 +115,9 @@ def test_a_failure_inside_changes_nothing(tmp_path: Path, failure):
     assert everything(tmp_path) == before
 
 
-def test_the_old_folder_comes_back_if_the_new_one_cannot_take_its_place(tmp_path: Path, monkeypatch):
+def test_the_old_folder_comes_back_if_the_new_one_cannot_take_its_place(
+    tmp_path: Path, monkeypatch
+):
     make(tmp_path / "out", "old")
     before = everything(tmp_path)
     replace, calls = Path.replace, []
@@ -137,7 +147,9 @@ def small_disk(tmp_path: Path):
     place.mkdir()
     if (
         shutil.which("mount") is None
-        or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "none", str(place)], capture_output=True).returncode
+        or subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", "size=64k", "none", str(place)], capture_output=True
+        ).returncode
     ):
         pytest.skip("no file system can be mounted here")
     yield place
@@ -148,7 +160,10 @@ def test_a_disk_that_is_really_full(small_disk: Path):
     path = writing.write_text(small_disk / "a.txt", "old")
     with pytest.raises(OutputError, match="No space left"):
         writing.write_bytes(path, bytes(200_000))
-    with pytest.raises(OutputError, match="No space left"), writing.output_folder(small_disk / "out") as inside:
+    with (
+        pytest.raises(OutputError, match="No space left"),
+        writing.output_folder(small_disk / "out") as inside,
+    ):
         writing.write_bytes(inside / "big", bytes(200_000))
     assert everything(small_disk) == {"a.txt": b"old"}
 
@@ -161,7 +176,16 @@ def test_what_somebody_added_to_a_folder_stays(tmp_path):
             (inside / "sub" / "ours.txt").write_text(text)
             (inside / f"{text}.csv").write_text(text)
         (out / "sub" / "mine.txt").write_text("mine")
-    assert {p.name: p.read_text() for p in out.rglob("*.*") if p.name != writing.MARKER} == {"ours.txt": "two", "two.csv": "two", "mine.txt": "mine"}
+    assert {p.name: p.read_text() for p in out.rglob("*.*") if p.name != writing.MARKER} == {
+        "ours.txt": "two",
+        "two.csv": "two",
+        "mine.txt": "mine",
+    }
     with writing.output_folder(out, keep=("*.csv",)) as inside:
         (inside / "three.csv").write_text("three")
-    assert {p.name for p in out.rglob("*.*")} == {writing.MARKER, "two.csv", "three.csv", "mine.txt"}
+    assert {p.name for p in out.rglob("*.*")} == {
+        writing.MARKER,
+        "two.csv",
+        "three.csv",
+        "mine.txt",
+    }

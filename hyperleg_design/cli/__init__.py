@@ -45,21 +45,35 @@ VERBS: dict[str, Any] = {
 def _parse(arguments: list[str]) -> Any:
     """The command asked for; what is wrong with the arguments goes into one line."""
     errors = io.StringIO()
-    verbs, prog, about = VERBS, "hyperleg", "Design, size and compare legged robots with cooperative actuation."
+    verbs, prog, about = (
+        VERBS,
+        "hyperleg",
+        "Design, size and compare legged robots with cooperative actuation.",
+    )
     if arguments[:1] == ["gap"]:
-        verbs, prog, about = gap.VERBS, "hyperleg gap", "Diagnose the gap between simulation and robot: where they differ, and why."
+        verbs, prog, about = (
+            gap.VERBS,
+            "hyperleg gap",
+            "Diagnose the gap between simulation and robot: where they differ, and why.",
+        )
         arguments = arguments[1:] or ["--help"]
     try:
         with contextlib.redirect_stderr(errors):
             command = tyro.extras.subcommand_cli_from_dict(
-                verbs, prog=prog, description=about, args=arguments, config=(tyro.conf.FlagCreatePairsOff,)
+                verbs,
+                prog=prog,
+                description=about,
+                args=arguments,
+                config=(tyro.conf.FlagCreatePairsOff,),
             )
     except SystemExit as stop:
         if not stop.code:
             raise
         text = re.sub(r"[╭╮╰╯│─]+|-{3,}", " ", errors.getvalue())
         text = re.sub(r"\s+", " ", text).strip()
-        text = re.sub(r"^(.+?) \1", r"\1", text)  # a box whose title is the first words of what is in it
+        text = re.sub(
+            r"^(.+?) \1", r"\1", text
+        )  # a box whose title is the first words of what is in it
         raise InputError("arguments", "", None, text or "see hyperleg --help") from None
     if (seed := getattr(command, "seed", None)) is not None and seed < 0:
         raise InputError("arguments", "seed", seed, "expects a whole number from 0 on")

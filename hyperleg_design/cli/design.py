@@ -29,7 +29,9 @@ class Chosen:
 
     def load(self) -> Design:
         """The design asked for."""
-        return load_design(self.design, overrides=self.set, overlays=self.overlay, variant=self.variant or None)
+        return load_design(
+            self.design, overrides=self.set, overlays=self.overlay, variant=self.variant or None
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +69,11 @@ class Build(Chosen):
 
         design = self.load()
         folder = build(design, self.out)
-        files = sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file() and not p.name.startswith("."))
+        files = sorted(
+            str(p.relative_to(folder))
+            for p in folder.rglob("*")
+            if p.is_file() and not p.name.startswith(".")
+        )
         if self.json:
             emit({"design": design.name, "folder": str(folder), "files": files})
         else:
@@ -98,7 +104,9 @@ class Check:
 
 @dataclass(frozen=True, kw_only=True)
 class Analyze(Chosen):
-    """Masses, reductions, torques, speeds, reflected inertia, envelope and confound of one design."""
+    """Masses, reductions, torques, speeds, reflected inertia, envelope and confound of one
+    design.
+    """
 
     json: bool = False
     """Print JSON."""
@@ -119,7 +127,12 @@ class Analyze(Chosen):
 class Compare:
     """Several designs beside each other."""
 
-    designs: Annotated[tuple[str, ...], tyro.conf.Positional] = ("toe", "toe_locked", "toe_removed_matched", "toe_removed")
+    designs: Annotated[tuple[str, ...], tyro.conf.Positional] = (
+        "toe",
+        "toe_locked",
+        "toe_removed_matched",
+        "toe_removed",
+    )
     """Shipped names or YAML files."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """PATH=VALUE, applied to all."""
@@ -132,7 +145,9 @@ class Compare:
         """Compare them."""
         from hyperleg_design.report import comparison
 
-        found = comparison.compare([load_design(name, overrides=self.set) for name in self.designs], demand=self.demand)
+        found = comparison.compare(
+            [load_design(name, overrides=self.set) for name in self.designs], demand=self.demand
+        )
         if self.json:
             emit(found)
         else:
@@ -166,7 +181,10 @@ class Sweep:
         if self.json:
             emit(summary)
         else:
-            print(f"{summary['designs']} designs ({summary['rejected']} rejected) -> {', '.join(summary['files'])}")
+            print(
+                f"{summary['designs']} designs ({summary['rejected']} rejected) -> "
+                f"{', '.join(summary['files'])}"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,7 +194,8 @@ class Study:
     out: Path = Path("results/study")
     """Folder to write; its index.html is the page."""
     policies: Path | None = None
-    """Folder of trainings to evaluate, such as results/campaign; the shipped policies by default."""
+    """Folder of trainings to evaluate, such as results/campaign; the shipped policies by
+    default."""
     json: bool = False
     """Print JSON."""
 

@@ -14,10 +14,13 @@ from hyperleg_design.errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class Check:
-    """Say what logs can and cannot show: rates, jitter, dropouts, units, excitation of each effect. Exit code 2 on errors."""
+    """Say what logs can and cannot show: rates, jitter, dropouts, units, excitation of each effect.
+    Exit code 2 on errors.
+    """
 
     logs: Annotated[tuple[str, ...], tyro.conf.Positional]
-    """Files or folders: Parquet, CSV, PACE .pt, BAM JSON, SAGE folder, LeRobot dataset, MCAP or ROS 2 bag."""
+    """Files or folders: Parquet, CSV, PACE .pt, BAM JSON, SAGE folder, LeRobot dataset, MCAP or ROS
+    2 bag."""
     robot: str = ""
     """Shipped design, YAML, MJCF or URDF; compares names and ranges of joints."""
     map: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
@@ -43,7 +46,9 @@ class Check:
 
 @dataclass(frozen=True, kw_only=True)
 class Effects:
-    """The catalogue of effects: where each can sit, its parameters, usual magnitudes and their source."""
+    """The catalogue of effects: where each can sit, its parameters, usual magnitudes and their
+    source.
+    """
 
     json: bool = False
     """Print JSON."""
@@ -62,12 +67,15 @@ class Effects:
 
 @dataclass(frozen=True, kw_only=True)
 class Show:
-    """One effect alone: the trace it leaves on a standard motion, and how a closed loop moves with and without it."""
+    """One effect alone: the trace it leaves on a standard motion, and how a closed loop moves with
+    and without it.
+    """
 
     effect: Annotated[str, tyro.conf.Positional]
     """Identifier; `hyperleg gap effects` lists them."""
     robot: str = ""
-    """Design, MJCF or URDF to show it on; by default what suits the effect: one joint on a servo, or the biped."""
+    """Design, MJCF or URDF to show it on; by default what suits the effect: one joint on a servo,
+    or the biped."""
     location: str = ""
     """Where it sits; the first place that it can by default."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
@@ -82,7 +90,9 @@ class Show:
         from hyperleg_design.gap.show import show
         from hyperleg_design.report.gap_show import show_figure, show_summary, show_text
 
-        shown = show(self.effect, self.robot or None, location=self.location or None, settings=self.set)
+        shown = show(
+            self.effect, self.robot or None, location=self.location or None, settings=self.set
+        )
         path = show_figure(shown, self.out / f"{self.effect}.png")
         summary = {**show_summary(shown), "figure": str(path)}
         if self.json:
@@ -93,12 +103,15 @@ class Show:
 
 @dataclass(frozen=True, kw_only=True)
 class Apply:
-    """Write the causes of a diagnosis as an overlay that simulator, training and evaluation accept; say what it changes."""
+    """Write the causes of a diagnosis as an overlay that simulator, training and evaluation accept;
+    say what it changes.
+    """
 
     diagnosis: Annotated[Path, tyro.conf.Positional]
     """`diagnosis.json` or its folder, or an overlay that was written before."""
     out: Path = Path("overlay.yaml")
-    """File to write; with `--logs` or `--policy`, what they tell goes to a JSON file of the same name."""
+    """File to write; with `--logs` or `--policy`, what they tell goes to a JSON file of the same
+    name."""
     robot: str = ""
     """Design, MJCF or URDF on which to check the places; unchecked by default."""
     logs: tuple[str, ...] = ()
@@ -118,7 +131,11 @@ class Apply:
         from hyperleg_design.writing import write_json
 
         ready = self.diagnosis.suffix in (".yaml", ".yml")
-        overlay = read_overlay(self.diagnosis) if ready else overlay_of_diagnosis(self.diagnosis, self.robot)
+        overlay = (
+            read_overlay(self.diagnosis)
+            if ready
+            else overlay_of_diagnosis(self.diagnosis, self.robot)
+        )
         logs, walk = [], []
         if self.robot:
             from hyperleg_design.gap.subject import load_subject
@@ -179,7 +196,9 @@ class Measure:
 
 @dataclass(frozen=True, kw_only=True)
 class Diagnose:
-    """Say where hardware and simulation differ, which effect is the cause, and how far the gap shrinks once it is added."""
+    """Say where hardware and simulation differ, which effect is the cause, and how far the gap
+    shrinks once it is added.
+    """
 
     robot: str = ""
     """Shipped design, YAML, MJCF or URDF; by default what the logs name."""
@@ -205,7 +224,14 @@ class Diagnose:
 
         show = None if self.json else print
         found, page = diagnose_to_folder(
-            self.robot, self.logs, self.reference, self.out, seed=self.seed, thresholds=self.thresholds or None, threads=self.threads, show=show
+            self.robot,
+            self.logs,
+            self.reference,
+            self.out,
+            seed=self.seed,
+            thresholds=self.thresholds or None,
+            threads=self.threads,
+            show=show,
         )
         if self.json:
             emit(found)
@@ -216,7 +242,9 @@ class Diagnose:
 
 @dataclass(frozen=True, kw_only=True)
 class Excite:
-    """Design the experiments for a rig: targets inside all limits, and which effects each can tell apart."""
+    """Design the experiments for a rig: targets inside all limits, and which effects each can tell
+    apart.
+    """
 
     design: str = ""
     """Shipped design or YAML file."""
@@ -245,15 +273,24 @@ class Excite:
             raise InputError("gap excite", "", None, "expects --design or --robot")
         print(
             excite_to_folder(
-                self.robot or self.design, self.out, base=self.base, rate=self.rate, torque=not self.without_torque, kinds=self.format,
-                seed=self.seed, overrides=self.set, progress=True,
+                self.robot or self.design,
+                self.out,
+                base=self.base,
+                rate=self.rate,
+                torque=not self.without_torque,
+                kinds=self.format,
+                seed=self.seed,
+                overrides=self.set,
+                progress=True,
             )
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Blind:
-    """Make a trial with sealed truth in a process of its own, and diagnose its cases; goes on where it was stopped."""
+    """Make a trial with sealed truth in a process of its own, and diagnose its cases; goes on where
+    it was stopped.
+    """
 
     cases: int = 240
     """How many."""
@@ -272,7 +309,9 @@ class Blind:
         """Make and diagnose."""
         from hyperleg_design.gap.blind.trial import diagnose_trial, make_trial
 
-        seal = make_trial(self.cases, self.seed, self.out, plants=self.plants, workers=self.workers, progress=True)
+        seal = make_trial(
+            self.cases, self.seed, self.out, plants=self.plants, workers=self.workers, progress=True
+        )
         print(f"{seal.cases} cases, key sealed: sha256 {seal.sha256}")
         if not self.only_make:
             diagnose_trial(self.out, workers=self.workers, progress=True)
@@ -281,7 +320,9 @@ class Blind:
 
 @dataclass(frozen=True, kw_only=True)
 class Score:
-    """Open a trial's key, once, and compare its diagnoses with the truth; or score the real logs with withheld truth."""
+    """Open a trial's key, once, and compare its diagnoses with the truth; or score the real logs
+    with withheld truth.
+    """
 
     folder: Annotated[str, tyro.conf.Positional] = ""
     """Of the trial."""
@@ -296,13 +337,24 @@ class Score:
         from hyperleg_design.gap.blind.score import score
 
         if bool(self.folder) == bool(self.real):
-            raise InputError("gap score", "", None, "expects the folder of a trial, or --real with the folder of the real logs")
-        print(score_real(self.real, progress=True).markdown() if self.real else score(self.folder, reread=self.reread).markdown())
+            raise InputError(
+                "gap score",
+                "",
+                None,
+                "expects the folder of a trial, or --real with the folder of the real logs",
+            )
+        print(
+            score_real(self.real, progress=True).markdown()
+            if self.real
+            else score(self.folder, reread=self.reread).markdown()
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Baselines:
-    """Fit PACE's parameter set (CMA-ES), mujoco.sysid and ours to a trial's cases: gap closed, cause named, time, in one table."""
+    """Fit PACE's parameter set (CMA-ES), mujoco.sysid and ours to a trial's cases: gap closed,
+    cause named, time, in one table.
+    """
 
     folder: Annotated[str, tyro.conf.Positional]
     """Of the trial; its key stays sealed until it was scored."""
@@ -319,7 +371,14 @@ class Baselines:
         """Fit them."""
         from hyperleg_design.gap.baselines.table import baselines_table
 
-        table = baselines_table(self.folder, methods=self.methods, cases=self.cases, budget=self.budget, seed=self.seed, progress=True)
+        table = baselines_table(
+            self.folder,
+            methods=self.methods,
+            cases=self.cases,
+            budget=self.budget,
+            seed=self.seed,
+            progress=True,
+        )
         print(table.markdown())
 
 

@@ -18,4 +18,10 @@ def require(*modules: str) -> None:
 
     missing = [m for m in modules if importlib.util.find_spec(m) is None]
     if missing:
-        raise InputError("train", "", None, f"needs {', '.join(missing)}: make .venv/.learning, or install hyperleg-design[learning]")
+        raise InputError(
+            "train",
+            "",
+            None,
+            f"needs {', '.join(missing)}: make .venv/.learning, or install "
+            f"hyperleg-design[learning]",
+        )

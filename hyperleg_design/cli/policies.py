@@ -40,7 +40,14 @@ class Train:
         from hyperleg_design.learning import launch
 
         require("torch", "rsl_rl")
-        given = {"task": self.task, "design": self.design, "seed": self.seed, "preset": self.preset, "out": self.out, "threads": self.threads}
+        given = {
+            "task": self.task,
+            "design": self.design,
+            "seed": self.seed,
+            "preset": self.preset,
+            "out": self.out,
+            "threads": self.threads,
+        }
         given |= {"start": self.start} if self.start else {}
         arguments = [f"--{key}={value}" for key, value in given.items()]
         if not self.overlay:
@@ -48,9 +55,15 @@ class Train:
         from hyperleg_design.gap.overlay import read_overlay
 
         overlay = read_overlay(self.overlay)
-        overlay.alterations(load_design(self.design))  # a wrong place is told before the process is replaced
+        overlay.alterations(
+            load_design(self.design)
+        )  # a wrong place is told before the process is replaced
         if not launch.surrounded():
-            launch.run_here(["train", *arguments, f"--overlay={self.overlay}"], self.threads, "hyperleg_design.cli")
+            launch.run_here(
+                ["train", *arguments, f"--overlay={self.overlay}"],
+                self.threads,
+                "hyperleg_design.cli",
+            )
         from hyperleg_design.learning.__main__ import main as train_here
 
         raise SystemExit(train_here(arguments, overlay.alterations, overlay.mapping()))
@@ -58,7 +71,9 @@ class Train:
 
 @dataclass(frozen=True, kw_only=True)
 class Campaign:
-    """Train whatever a campaign still lacks, side by side, show where it stands, or pack its policies for shipping."""
+    """Train whatever a campaign still lacks, side by side, show where it stands, or pack its
+    policies for shipping.
+    """
 
     action: Annotated[str, tyro.conf.Positional]
     """run, status or pack"""
@@ -74,7 +89,12 @@ class Campaign:
     def run(self) -> None:
         """Run it, print its state, or pack it."""
         from hyperleg_design.evaluation.shipped import pack, pack_text
-        from hyperleg_design.learning.campaign import campaign_status, load_campaign, run_campaign, status_table
+        from hyperleg_design.learning.campaign import (
+            campaign_status,
+            load_campaign,
+            run_campaign,
+            status_table,
+        )
 
         if self.action not in ("run", "status", "pack"):
             raise InputError("campaign", "", self.action, "expects run, status or pack")
@@ -92,7 +112,9 @@ class Campaign:
 
 @dataclass(frozen=True, kw_only=True)
 class Evaluate:
-    """Evaluate policies (ONNX): 20 m walks or Robot T-tests, falls counted, numbers with intervals."""
+    """Evaluate policies (ONNX): 20 m walks or Robot T-tests, falls counted, numbers with
+    intervals.
+    """
 
     policies: Annotated[tuple[str, ...], tyro.conf.Positional]
     """ONNX files."""
@@ -128,7 +150,11 @@ class Evaluate:
             overlay = read_overlay(self.overlay)
         alterations = overlay.alterations if overlay else None
         found = evaluate_many(
-            self.policies, self.protocol or None, workers=self.workers, kept=1 if self.logs is None else sys.maxsize, alterations=alterations
+            self.policies,
+            self.protocol or None,
+            workers=self.workers,
+            kept=1 if self.logs is None else sys.maxsize,
+            alterations=alterations,
         )
         folder = write_results(self.out, found)
         written = []
@@ -143,12 +169,16 @@ class Evaluate:
             emit({"folder": str(folder), "results": rows, "logs": [str(path) for path in written]})
         else:
             print(evaluation_text(rows))
-            print(f"tables in {folder}" + (f"; {len(written)} logs in {self.logs}" if written else ""))
+            print(
+                f"tables in {folder}" + (f"; {len(written)} logs in {self.logs}" if written else "")
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Paper:
-    """Evaluate the shipped policies, and put Tables III and IV and Figs. 4 to 7 beside the paper's on a page."""
+    """Evaluate the shipped policies, and put Tables III and IV and Figs. 4 to 7 beside the paper's
+    on a page.
+    """
 
     policies: Path | None = None
     """Folder of trainings, such as results/campaign; the shipped policies by default."""
@@ -163,7 +193,9 @@ class Paper:
         """Evaluate and write."""
         from hyperleg_design.report.paper_page import read_tables, run_paper, tables_text
 
-        page = run_paper(self.policies, self.out, workers=self.workers or None, progress=not self.json)
+        page = run_paper(
+            self.policies, self.out, workers=self.workers or None, progress=not self.json
+        )
         tables = read_tables(self.out)
         if self.json:
             emit({"page": str(page), "tables": tables})
@@ -196,7 +228,10 @@ class Replay:
         if self.viser:
             replay.check_browser()
         found = replay.replay(self.policy, self.protocol or None, seed=self.seed)
-        print(f"{found.policy}: {found.outcomes[0].replace('_', ' ')} after {found.end_times[0]:.2f} s")
+        print(
+            f"{found.policy}: {found.outcomes[0].replace('_', ' ')} after {found.end_times[0]:.2f} "
+            f"s"
+        )
         if self.gif is not None:
             print(f"written to {replay.replay_gif(found, self.gif)}")
         else:

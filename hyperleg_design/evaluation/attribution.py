@@ -1,8 +1,9 @@
-"""How much of the difference between toe and no toe is the toe, how much the lost torque, how much the mass.
+"""How much of the difference between toe and no toe is the toe, how much the lost torque, how much
+the mass.
 
-Taking the toe's motor away also weakens knee and ankle, and lightens the leg. The ablations lie on a ladder whose steps
-change one thing each, and add up to the whole: active toe, toe locked with its motor kept, toe and motor gone at equal
-mass, toe and motor gone with their mass.
+Taking the toe's motor away also weakens knee and ankle, and lightens the leg. The ablations lie on
+a ladder whose steps change one thing each, and add up to the whole: active toe, toe locked with its
+motor kept, toe and motor gone at equal mass, toe and motor gone with their mass.
 """
 
 from __future__ import annotations
@@ -37,24 +38,29 @@ class Share:
     """Without less with."""
 
 
-def attribute(groups: Mapping[str, Groups], *, level: float = statistics.LEVEL, seed: int = 0) -> list[Share]:
+def attribute(
+    groups: Mapping[str, Groups], *, level: float = statistics.LEVEL, seed: int = 0
+) -> list[Share]:
     """Differences along the ladder, and from its first to its last variant.
 
     Args:
-        groups: values of one measure by variant, one array a training seed; variants of the ladder that are there.
+        groups: values of one measure by variant, one array a training seed; variants of the ladder
+            that are there.
         level: of intervals.
         seed: of the bootstrap.
 
     Returns:
-        One share a step between neighbours that are both there, then the whole; the steps' means add up to the whole's
-        where none is missing.
+        One share a step between neighbours that are both there, then the whole; the steps' means
+        add up to the whole's where none is missing.
 
     Raises:
         InputError: fewer than two variants of the ladder.
     """
     there = [name for name in LADDER if name in groups]
     if len(there) < 2:
-        raise InputError("attribution", "variants", list(groups), f"expects at least two of {', '.join(LADDER)}")
+        raise InputError(
+            "attribution", "variants", list(groups), f"expects at least two of {', '.join(LADDER)}"
+        )
     shares = []
     for cause, kept, removed in zip(CAUSES, LADDER[:-1], LADDER[1:], strict=True):
         if kept in groups and removed in groups:
@@ -62,5 +68,12 @@ def attribute(groups: Mapping[str, Groups], *, level: float = statistics.LEVEL, 
     return [*shares, _share(WHOLE, groups, there[0], there[-1], level, seed)]
 
 
-def _share(cause: str, groups: Mapping[str, Groups], kept: str, removed: str, level: float, seed: int) -> Share:
-    return Share(cause, removed, kept, statistics.difference(groups[removed], groups[kept], level=level, seed=seed))
+def _share(
+    cause: str, groups: Mapping[str, Groups], kept: str, removed: str, level: float, seed: int
+) -> Share:
+    return Share(
+        cause,
+        removed,
+        kept,
+        statistics.difference(groups[removed], groups[kept], level=level, seed=seed),
+    )

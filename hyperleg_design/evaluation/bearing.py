@@ -20,13 +20,17 @@ def headings(orientation: Any) -> np.ndarray:
 
 
 def tilt(orientation: Any) -> np.ndarray:
-    """Angle between the body's and the world's vertical [rad], quaternions w x y z `(..., 4)` -> `(...)`."""
+    """Angle between the body's and the world's vertical [rad], quaternions w x y z `(..., 4)` ->
+    `(...)`.
+    """
     _, x, y, _ = np.moveaxis(np.asarray(orientation, float), -1, 0)
     return np.arccos(np.clip(1 - 2 * (x * x + y * y), -1.0, 1.0))
 
 
 def turned(heading: Any) -> float:
-    """Angle turned between the first and the last heading, counterclockwise, whole turns counted [rad], `(t, 2)`."""
+    """Angle turned between the first and the last heading, counterclockwise, whole turns counted
+    [rad], `(t, 2)`.
+    """
     heading = np.asarray(heading, float)
     angle = np.unwrap(np.arctan2(heading[:, 1], heading[:, 0]))
     return float(angle[-1] - angle[0])
@@ -44,7 +48,9 @@ def stop_share(joint_position: Any, lower: Any, upper: Any) -> np.ndarray:
         `(J,)`
     """
     position = np.asarray(joint_position, float)
-    return np.asarray(np.mean((position < np.asarray(lower) + STOP) | (position > np.asarray(upper) - STOP), 0))
+    return np.asarray(
+        np.mean((position < np.asarray(lower) + STOP) | (position > np.asarray(upper) - STOP), 0)
+    )
 
 
 def vibration(joint_velocity: Any, time_step: float, above: float = VIBRATION) -> np.ndarray:

@@ -37,9 +37,9 @@ DEMANDS = (
 )
 """Cadence, slip, falls and speed are the study's demands; the other bounds are assumed.
 
-Slip is how far a foot has moved, straight, between first and last standing flat. `slip_per_step`, which is reported beside it
-and not asked for, is longer: it adds the skid of the landing and every to and fro of soft contacts, which give a little under
-each braking and push-off and come back.
+Slip is how far a foot has moved, straight, between first and last standing flat. `slip_per_step`,
+which is reported beside it and not asked for, is longer: it adds the skid of the landing and every
+to and fro of soft contacts, which give a little under each braking and push-off and come back.
 """
 SPEED_SHARE = 0.05
 """Largest relative difference of the steady speed from the command."""
@@ -62,7 +62,12 @@ class Finding:
 def walk_findings(evaluations: Sequence[Evaluation]) -> list[Finding]:
     """Each demand against the mean over all walks of some evaluations under one protocol."""
     speed = evaluations[0].protocol.speed
-    near = Demand("steady_speed", speed * (1 - SPEED_SHARE), speed * (1 + SPEED_SHARE), "speed within 5 % of the command [m/s]")
+    near = Demand(
+        "steady_speed",
+        speed * (1 - SPEED_SHARE),
+        speed * (1 + SPEED_SHARE),
+        "speed within 5 % of the command [m/s]",
+    )
     found = []
     for demand in (*DEMANDS, near):
         values = np.concatenate([one.values(demand.measure) for one in evaluations])

@@ -26,13 +26,21 @@ def segment_distances(points: Any, course: Any) -> np.ndarray:
 
 
 def course_deviation(points: Any, course: Any) -> np.ndarray:
-    """Distance of points from the nearest point of any leg of the course [m], `(..., 2)` -> `(...)`."""
+    """Distance of points from the nearest point of any leg of the course [m], `(..., 2)` ->
+    `(...)`.
+    """
     return np.asarray(segment_distances(points, course).min(-1))
 
 
 def leg_deviation(points: Any, course: Any, leg: Any) -> np.ndarray:
-    """Distance of points from the leg that is being run [m], `(t, 2)` and indices `(t,)` -> `(t,)`."""
-    return np.asarray(np.take_along_axis(segment_distances(points, course), np.asarray(leg, int)[:, None], 1)[:, 0])
+    """Distance of points from the leg that is being run [m], `(t, 2)` and indices `(t,)` ->
+    `(t,)`.
+    """
+    return np.asarray(
+        np.take_along_axis(segment_distances(points, course), np.asarray(leg, int)[:, None], 1)[
+            :, 0
+        ]
+    )
 
 
 def course_length(course: Any) -> float:
@@ -46,7 +54,8 @@ def path_length(points: Any) -> float:
 
 
 def arrivals(points: Any, course: Any, radius: float) -> np.ndarray:
-    """First samples within the radius of each waypoint after the start, one after the other; -1 where never.
+    """First samples within the radius of each waypoint after the start, one after the other; -1
+    where never.
 
     A waypoint counts only from the sample after that at which the one before was reached.
 
@@ -71,14 +80,17 @@ def arrivals(points: Any, course: Any, radius: float) -> np.ndarray:
 
 
 def legs_run(reached: Any, samples: int) -> np.ndarray:
-    """Leg being run at each sample, from the samples at which waypoints were reached (-1: never), `(samples,)`."""
+    """Leg being run at each sample, from the samples at which waypoints were reached (-1: never),
+    `(samples,)`.
+    """
     reached = np.asarray(reached, int)
     changes = reached[:-1][reached[:-1] >= 0]
     return np.searchsorted(changes, np.arange(samples), side="right")
 
 
 def crossing_time(distance: Any, length: float, time_step: float) -> float:
-    """Time at which a distance first reaches a length, linear between samples [s]; NaN where it never does.
+    """Time at which a distance first reaches a length, linear between samples [s]; NaN where it
+    never does.
 
     Args:
         distance: of each sample, `(t,)` [m].
@@ -105,4 +117,10 @@ def in_start_frame(position: Any, start: Any, heading: Any) -> np.ndarray:
     """
     offset = np.asarray(position, float) - np.asarray(start, float)
     cosine, sine = np.asarray(heading, float)
-    return np.stack([cosine * offset[..., 0] + sine * offset[..., 1], cosine * offset[..., 1] - sine * offset[..., 0]], -1)
+    return np.stack(
+        [
+            cosine * offset[..., 0] + sine * offset[..., 1],
+            cosine * offset[..., 1] - sine * offset[..., 0],
+        ],
+        -1,
+    )

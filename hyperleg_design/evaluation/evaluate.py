@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import Policy, load_policy
-from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, WalkProtocol, load_protocol, protocol_from_mapping, protocol_mapping
+from hyperleg_design.evaluation.protocol import (
+    Protocol,
+    TTestProtocol,
+    WalkProtocol,
+    load_protocol,
+    protocol_from_mapping,
+    protocol_mapping,
+)
 from hyperleg_design.evaluation.t_test import evaluate_t_test
 from hyperleg_design.evaluation.walk import evaluate_walk
 from hyperleg_design.simulation.commands import WaypointCommands
@@ -33,15 +40,19 @@ def evaluate(
     """Run a protocol on a policy: deterministic, without assist.
 
     Args:
-        policy: a callable from observations `(n, k)` to actions `(n, J)`, a shipped policy's name, or an ONNX file.
-        protocol: a protocol, a shipped name, or a file; by default `t_test` for tasks with waypoints, else `walk`.
+        policy: a callable from observations `(n, k)` to actions `(n, J)`, a shipped policy's name,
+            or an ONNX file.
+        protocol: a protocol, a shipped name, or a file; by default `t_test` for tasks with
+            waypoints, else `walk`.
         design: the robot; an ONNX policy's own by default.
         task: which gives observations, physics and control; an ONNX policy's own by default.
         threads: of the simulation; the result does not depend on it.
-        alterations: of the simulated robot, or what makes them for a design, such as `Overlay.alterations`.
+        alterations: of the simulated robot, or what makes them for a design, such as
+            `Overlay.alterations`.
 
     Raises:
-        InputError: a file that cannot be used, a policy that does not fit robot, task or protocol, or one whose output is not
+        InputError: a file that cannot be used, a policy that does not fit robot, task or protocol,
+        or one whose output is not
             finite.
     """
     chosen = load_policy(policy) if isinstance(policy, str | Path) else policy
@@ -49,14 +60,20 @@ def evaluate(
         protocol = protocol_for(chosen, task)
     run = load_protocol(protocol) if isinstance(protocol, str | Path) else protocol
     if isinstance(run, TTestProtocol):
-        return evaluate_t_test(chosen, run, design=design, task=task, threads=threads, alterations=alterations)
+        return evaluate_t_test(
+            chosen, run, design=design, task=task, threads=threads, alterations=alterations
+        )
     if isinstance(run, WalkProtocol):
-        return evaluate_walk(chosen, run, design=design, task=task, threads=threads, alterations=alterations)
+        return evaluate_walk(
+            chosen, run, design=design, task=task, threads=threads, alterations=alterations
+        )
     raise InputError("evaluate", "protocol", run.name, "expects a WalkProtocol or a TTestProtocol")
 
 
 def protocol_for(policy: Policy, task: Task | None = None) -> Protocol:
-    """The shipped protocol that suits a task, a policy's own by default: `t_test` for waypoints, else `walk`."""
+    """The shipped protocol that suits a task, a policy's own by default: `t_test` for waypoints,
+    else `walk`.
+    """
     commands = getattr(task or getattr(policy, "task", None), "commands", None)
     return load_protocol("t_test" if isinstance(commands, WaypointCommands) else "walk")
 
@@ -114,7 +131,9 @@ def evaluate_many(
         return found
     import multiprocessing
 
-    with ProcessPoolExecutor(min(workers, count), mp_context=multiprocessing.get_context("spawn")) as pool:
+    with ProcessPoolExecutor(
+        min(workers, count), mp_context=multiprocessing.get_context("spawn")
+    ) as pool:
         try:
             for one in pool.map(_evaluated, jobs):
                 found.append(one)
@@ -126,7 +145,9 @@ def evaluate_many(
     return found
 
 
-def _evaluated(job: tuple[str | Path, dict[str, object] | None, int, Mapping[str, Any], Alterations | None]) -> Evaluation:
+def _evaluated(
+    job: tuple[str | Path, dict[str, object] | None, int, Mapping[str, Any], Alterations | None],
+) -> Evaluation:
     name, protocol, kept, overrides, alterations = job
     run = None if protocol is None else protocol_from_mapping(protocol, "protocol")
     policy = load_policy(name)

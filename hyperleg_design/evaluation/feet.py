@@ -11,7 +11,9 @@ if TYPE_CHECKING:
 
 
 def foot_places(trial: Trial, samples: np.ndarray) -> np.ndarray:
-    """Middle of each foot's sole pads on the floor at some samples, `(k,)` -> `(k, 2 feet, 2)` [m]."""
+    """Middle of each foot's sole pads on the floor at some samples, `(k,)` -> `(k, 2 feet, 2)`
+    [m].
+    """
     import mujoco
 
     model = trial.model
@@ -19,7 +21,11 @@ def foot_places(trial: Trial, samples: np.ndarray) -> np.ndarray:
     pads = np.array([model.geom(pad).id for pad in trial.layout.pads])
     found = np.empty((len(samples), 2, 2))
     for i, sample in enumerate(samples):
-        data.qpos[:3], data.qpos[3:7], data.qpos[7:] = trial.base_position[sample], trial.base_orientation[sample], trial.joint_position[sample]
+        data.qpos[:3], data.qpos[3:7], data.qpos[7:] = (
+            trial.base_position[sample],
+            trial.base_orientation[sample],
+            trial.joint_position[sample],
+        )
         mujoco.mj_kinematics(model, data)
         places = data.geom_xpos[pads, :2]
         for foot in (0, 1):

@@ -1,12 +1,15 @@
-"""Which foot pad a contact's settings stand for: stiffness and damping of a soft sole under the heel, against MuJoCo's `solref`.
+"""Which foot pad a contact's settings stand for: stiffness and damping of a soft sole under the
+heel, against MuJoCo's `solref`.
 
-With time constant T and damping ratio zeta, MuJoCo's contact is a spring and damper of the frequency w = 1 / (zeta T) whatever
-it carries (`mujoco/doc/modeling.rst`, deeper than the width of `solimp`). The stiffness it stands for is therefore that of the
-mass behind the contact, K = m w^2, with the damping 2 zeta m w = 2 m / T. At touchdown that mass is the effective one of the
-foot, rotors included.
+With time constant T and damping ratio zeta, MuJoCo's contact is a spring and damper of the
+frequency w = 1 / (zeta T) whatever it carries (`mujoco/doc/modeling.rst`, deeper than the width of
+`solimp`). The stiffness it stands for is therefore that of the mass behind the contact, K = m w^2,
+with the damping 2 zeta m w = 2 m / T. At touchdown that mass is the effective one of the foot,
+rotors included.
 
-The pad: a sole as thick as the radius of the design's sole pads, bearing on the circles of those behind the ankle, K = E A / h.
-Foams for soles have moduli of some 0.1 to 10 MPa, solid rubber 1 to 10 MPa.
+The pad: a sole as thick as the radius of the design's sole pads, bearing on the circles of those
+behind the ankle, K = E A / h. Foams for soles have moduli of some 0.1 to 10 MPa, solid rubber 1 to
+10 MPa.
 """
 
 from __future__ import annotations
@@ -86,7 +89,8 @@ def heel_area(design: Design) -> float:
 
 
 def heel_mass(trial: Trial, samples: Any, feet: Any) -> np.ndarray:
-    """Effective vertical mass of a foot at its heel, joints free but for their inertia, rotors included [kg].
+    """Effective vertical mass of a foot at its heel, joints free but for their inertia, rotors
+    included [kg].
 
     Args:
         trial: a recorded trial.
@@ -102,14 +106,20 @@ def heel_mass(trial: Trial, samples: Any, feet: Any) -> np.ndarray:
     data = mujoco.MjData(model)
     found = []
     for sample, foot in zip(np.asarray(samples, int), np.asarray(feet, int), strict=True):
-        data.qpos[:3], data.qpos[3:7], data.qpos[7:] = trial.base_position[sample], trial.base_orientation[sample], trial.joint_position[sample]
+        data.qpos[:3], data.qpos[3:7], data.qpos[7:] = (
+            trial.base_position[sample],
+            trial.base_orientation[sample],
+            trial.joint_position[sample],
+        )
         mujoco.mj_fwdPosition(model, data)
         pads = np.flatnonzero((layout.pad_foot == foot) & (layout.pad_position[:, 0] < 0))
         jacobian = np.zeros((3, model.nv))
         row = np.zeros(model.nv)
         for pad in pads:
             geom = model.geom(layout.pads[pad]).id
-            mujoco.mj_jac(model, data, jacobian, None, data.geom_xpos[geom], model.geom_bodyid[geom])
+            mujoco.mj_jac(
+                model, data, jacobian, None, data.geom_xpos[geom], model.geom_bodyid[geom]
+            )
             row += jacobian[2] / len(pads)
         solved = np.zeros((1, model.nv))
         mujoco.mj_solveM(model, data, solved, row[None])

@@ -1,8 +1,8 @@
 """Gait events and what follows from them, from the vertical forces on the feet of one walk.
 
-A foot stands from the sample at which its load rises above a first threshold to that at which it falls below a second,
-lower one (hysteresis); contacts and gaps shorter than a least time are not counted. Samples are indices; arrays have time
-first unless stated.
+A foot stands from the sample at which its load rises above a first threshold to that at which it
+falls below a second, lower one (hysteresis); contacts and gaps shorter than a least time are not
+counted. Samples are indices; arrays have time first unless stated.
 """
 
 from __future__ import annotations
@@ -26,12 +26,14 @@ class Steps:
     touchdown: np.ndarray
     """First sample of the contact."""
     heel_off: np.ndarray
-    """First sample without load on the heel for the rest of the contact; `toe_off` where the heel stays loaded, `touchdown` where it never is."""
+    """First sample without load on the heel for the rest of the contact; `toe_off` where the heel
+    stays loaded, `touchdown` where it never is."""
     toe_off: np.ndarray
     """First sample after the contact; -1 where the record ends before."""
     heel_lead: np.ndarray
-    """Time from the first load on the heel to the first on the forefoot [s]: positive for a heel strike, 0 for a flat
-    landing, negative for one on the toes; of one that is never loaded, as if it were at `toe_off`."""
+    """Time from the first load on the heel to the first on the forefoot [s]: positive for a heel
+    strike, 0 for a flat landing, negative for one on the toes; of one that is never loaded, as if
+    it were at `toe_off`."""
 
     def __len__(self) -> int:
         return len(self.touchdown)
@@ -49,7 +51,8 @@ def stance(load: Any, on: float, off: float, shortest: int = 1) -> np.ndarray:
         load: vertical force [N], `(t, ...)`.
         on: force above which a contact begins [N].
         off: force below which it ends [N].
-        shortest: contacts and gaps of fewer samples are not counted, unless cut by an end of the record.
+        shortest: contacts and gaps of fewer samples are not counted, unless cut by an end of the
+            record.
 
     Returns:
         `(t, ...)`; before the first crossing, whether the first load is at least `off`.
@@ -96,7 +99,9 @@ def find_steps(feet: np.ndarray, heel: np.ndarray, forefoot: np.ndarray, time_st
             loaded = np.flatnonzero(heel[down:end, foot])
             ahead = np.flatnonzero(forefoot[down:end, foot])
             heel_off = down + loaded[-1] + 1 if len(loaded) else down
-            lead = (ahead[0] if len(ahead) else end - down) - (loaded[0] if len(loaded) else end - down)
+            lead = (ahead[0] if len(ahead) else end - down) - (
+                loaded[0] if len(loaded) else end - down
+            )
             rows.append((foot, int(down), int(heel_off), up, lead * time_step))
     table = np.array(sorted(rows, key=lambda row: row[1]), float).reshape(-1, 5).T
     which, touchdown, off, toe = table[:4].astype(int)
@@ -104,8 +109,12 @@ def find_steps(feet: np.ndarray, heel: np.ndarray, forefoot: np.ndarray, time_st
 
 
 def whole_strides(steps: Steps, first: int, last: int, foot: int = 0) -> tuple[int, int] | None:
-    """The longest stretch of whole strides of one foot between two samples, as `(first, last)`; None where there is none."""
-    downs = steps.touchdown[(steps.foot == foot) & (steps.touchdown >= first) & (steps.touchdown <= last)]
+    """The longest stretch of whole strides of one foot between two samples, as `(first, last)`;
+    None where there is none.
+    """
+    downs = steps.touchdown[
+        (steps.foot == foot) & (steps.touchdown >= first) & (steps.touchdown <= last)
+    ]
     return (int(downs[0]), int(downs[-1])) if len(downs) > 1 else None
 
 
@@ -116,19 +125,25 @@ def strides(steps: Steps, foot: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cadence(steps: Steps, time_step: float) -> float:
-    """Steps over time, between the first and the last touchdown [1/s]; NaN where there is no time between."""
+    """Steps over time, between the first and the last touchdown [1/s]; NaN where there is no time
+    between.
+    """
     if len(steps) < 2 or steps.touchdown[-1] == steps.touchdown[0]:
         return np.nan
     return float((len(steps) - 1) / ((steps.touchdown[-1] - steps.touchdown[0]) * time_step))
 
 
 def alternation(steps: Steps) -> float:
-    """Share of steps made by the other foot than the one before [-]; 1 for walking, 0 for hopping on one leg."""
+    """Share of steps made by the other foot than the one before [-]; 1 for walking, 0 for hopping
+    on one leg.
+    """
     return float(np.mean(np.diff(steps.foot) != 0)) if len(steps) > 1 else np.nan
 
 
 def event_shares(steps: Steps) -> dict[str, float]:
-    """Means over whole strides of both feet [-]: `duty_factor` (toe-off over stride) and `heel_off` (heel-off over stride)."""
+    """Means over whole strides of both feet [-]: `duty_factor` (toe-off over stride) and `heel_off`
+    (heel-off over stride).
+    """
     duty, heel = [], []
     for foot in (0, 1):
         mine = np.flatnonzero(steps.foot == foot)
@@ -136,27 +151,37 @@ def event_shares(steps: Steps) -> dict[str, float]:
             stride = steps.touchdown[following] - steps.touchdown[i]
             duty.append((steps.toe_off[i] - steps.touchdown[i]) / stride)
             heel.append((steps.heel_off[i] - steps.touchdown[i]) / stride)
-    return {"duty_factor": float(np.mean(duty)) if duty else np.nan, "heel_off": float(np.mean(heel)) if heel else np.nan}
+    return {
+        "duty_factor": float(np.mean(duty)) if duty else np.nan,
+        "heel_off": float(np.mean(heel)) if heel else np.nan,
+    }
 
 
 def support_shares(feet: np.ndarray) -> dict[str, float]:
-    """Shares of time [-] with both feet, one foot and none on the floor, from `(t, 2)`: `double_support`, `single_support`, `flight`."""
+    """Shares of time [-] with both feet, one foot and none on the floor, from `(t, 2)`:
+    `double_support`, `single_support`, `flight`.
+    """
     standing = feet.sum(-1)
     names = ("flight", "single_support", "double_support")
-    return {name: float(np.mean(standing == count)) if len(feet) else np.nan for count, name in enumerate(names)}
+    return {
+        name: float(np.mean(standing == count)) if len(feet) else np.nan
+        for count, name in enumerate(names)
+    }
 
 
 def step_vectors(steps: Steps, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Length and width of steps that follow one of the other foot [m].
 
-    The direction of travel is from the place of the same foot's touchdown before to that after, so a walk may curve.
+    The direction of travel is from the place of the same foot's touchdown before to that after, so
+    a walk may curve.
 
     Args:
         steps: k steps.
         places: of the stepping foot at its touchdown, on the floor, `(k, 2)` [m].
 
     Returns:
-        Length along the direction of travel and width across it, of each step that has both neighbours of the other foot.
+        Length along the direction of travel and width across it, of each step that has both
+        neighbours of the other foot.
     """
     length, width = [], []
     for i in range(1, len(steps) - 1):
@@ -173,12 +198,15 @@ def step_vectors(steps: Steps, places: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return np.array(length), np.array(width)
 
 
-def slip_per_step(steps: Steps, pad_load: np.ndarray, pad_slip: np.ndarray, pad_foot: np.ndarray, time_step: float) -> np.ndarray:
-    """Way that the foot slides over the floor in each whole contact [m], `(k,)`; NaN where the record ends before toe-off.
+def slip_per_step(
+    steps: Steps, pad_load: np.ndarray, pad_slip: np.ndarray, pad_foot: np.ndarray, time_step: float
+) -> np.ndarray:
+    """Way that the foot slides over the floor in each whole contact [m], `(k,)`; NaN where the
+    record ends before toe-off.
 
-    The integral of the pads' sliding speed, their mean weighted by load: the length of the way, to and fro. A step of the
-    simulation moves with the velocity at its end, so the speed with which a foot meets the floor, before any force could
-    brake it, is not slip.
+    The integral of the pads' sliding speed, their mean weighted by load: the length of the way, to
+    and fro. A step of the simulation moves with the velocity at its end, so the speed with which a
+    foot meets the floor, before any force could brake it, is not slip.
 
     Args:
         steps: k steps.

@@ -1,7 +1,8 @@
 """Impact at touchdown: peak of the vertical ground reaction force, loading rate and impulse.
 
-The force is low-pass filtered by a Butterworth filter run forwards and backwards (no delay); cut-off and order are the
-protocol's. Much of the peak is the stiffness of the sole's contact, so designs are compared at equal contact settings.
+The force is low-pass filtered by a Butterworth filter run forwards and backwards (no delay);
+cut-off and order are the protocol's. Much of the peak is the stiffness of the sole's contact, so
+designs are compared at equal contact settings.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ class Impacts:
     raw_peak: np.ndarray
     """The same without filter [N]."""
     loading_rate: np.ndarray
-    """Mean slope from `RATE_FROM` to `RATE_TO` of the peak, on the rise to it [N/s]; NaN where the record begins on that rise."""
+    """Mean slope from `RATE_FROM` to `RATE_TO` of the peak, on the rise to it [N/s]; NaN where the
+    record begins on that rise."""
     impulse: np.ndarray
     """Integral of the filtered force over the window [Ns]."""
 
@@ -37,7 +39,8 @@ def low_pass(force: Any, time_step: float, cutoff: float, order: int) -> np.ndar
     Args:
         force: `(t, ...)` [N].
         time_step: between samples [s].
-        cutoff: frequency at which both passes together leave half the amplitude [Hz]; 0 for no filter.
+        cutoff: frequency at which both passes together leave half the amplitude [Hz]; 0 for no
+            filter.
         order: of both passes together, even.
 
     Raises:
@@ -49,7 +52,13 @@ def low_pass(force: Any, time_step: float, cutoff: float, order: int) -> np.ndar
     if cutoff == 0:
         return force.copy()
     if not 0 < cutoff < 0.5 / time_step:
-        raise InputError("impact", "cutoff", cutoff, f"expects a frequency below half the sampling rate, {0.5 / time_step:g} Hz, or 0 for none")
+        raise InputError(
+            "impact",
+            "cutoff",
+            cutoff,
+            f"expects a frequency below half the sampling rate, {0.5 / time_step:g} Hz, or 0 for "
+            f"none",
+        )
     sections = butter(order // 2, cutoff, fs=1 / time_step, output="sos")
     padding = min(3 * (2 * len(sections) + 1), len(force) - 1)
     return np.asarray(sosfiltfilt(sections, force, axis=0, padlen=padding))
@@ -61,11 +70,16 @@ def impacts(force: Any, filtered: Any, touchdown: Any, time_step: float, window:
     Args:
         force: vertical force on the foot [N], `(t,)`.
         filtered: the same, filtered, `(t,)`.
-        touchdown: samples at which contacts begin, `(k,)`; those whose window the record does not hold are NaN.
+        touchdown: samples at which contacts begin, `(k,)`; those whose window the record does not
+            hold are NaN.
         time_step: between samples [s].
         window: after touchdown [s].
     """
-    force, filtered, downs = np.asarray(force, float), np.asarray(filtered, float), np.asarray(touchdown, int)
+    force, filtered, downs = (
+        np.asarray(force, float),
+        np.asarray(filtered, float),
+        np.asarray(touchdown, int),
+    )
     length = round(window / time_step)
     found = np.full((4, len(downs)), np.nan)
     for i, down in enumerate(downs):
@@ -90,5 +104,7 @@ def _slope(force: np.ndarray, peak: int, time_step: float) -> float:
         if not len(below):
             return np.nan
         low = int(below[-1])
-        times.append((low + (portion * force[peak] - force[low]) / (force[low + 1] - force[low])) * time_step)
+        times.append(
+            (low + (portion * force[peak] - force[low]) / (force[low + 1] - force[low])) * time_step
+        )
     return float((RATE_TO - RATE_FROM) * force[peak] / (times[0] - times[1]))

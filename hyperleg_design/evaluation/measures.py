@@ -34,19 +34,35 @@ OUTCOMES = _table(
 """How a trial ended; of every protocol."""
 
 POWER = _table(
-    Measure("power", "W", "Joule heat plus signed mechanical power of all motors, the paper's total", LESS),
+    Measure(
+        "power",
+        "W",
+        "Joule heat plus signed mechanical power of all motors, the paper's total",
+        LESS,
+    ),
     Measure("joule_power", "W", "Joule heat of all motors", LESS),
     Measure("mechanical_power", "W", "signed mechanical power of all motors", LESS),
     Measure("positive_power", "W", "mechanical power of driving motors", LESS),
     Measure("negative_power", "W", "mechanical power of braking motors, not positive"),
-    Measure("battery_power", "W", "drawn from the battery less returned, driver efficiencies included", LESS),
+    Measure(
+        "battery_power",
+        "W",
+        "drawn from the battery less returned, driver efficiencies included",
+        LESS,
+    ),
     Measure("energy", "J", "integral of power", LESS),
     Measure("cost_of_transport", "", "energy / (m g distance)", LESS),
 )
 """Over the whole trial; of every protocol."""
 
 IMPACT = _table(
-    Measure("grf_peak", "N", "largest filtered vertical force on the foot within the window after touchdown, mean over touchdowns", LESS),
+    Measure(
+        "grf_peak",
+        "N",
+        "largest filtered vertical force on the foot within the window after touchdown, mean over "
+        "touchdowns",
+        LESS,
+    ),
     Measure("grf_peak_body_weights", "", "the same in body weights", LESS),
     Measure("grf_raw_peak", "N", "the same without filter", LESS),
     Measure("grf_loading_rate", "N/s", "mean slope from 20 to 80 % of that peak", LESS),
@@ -61,7 +77,13 @@ STEPS = _table(
     Measure("double_support", "", "share of time with both feet on the floor"),
     Measure("flight", "", "share of time with none"),
     Measure("slip_per_step", "m", "way that a foot slides in a contact, to and fro, mean", LESS),
-    Measure("foot_drift", "m", "how far a foot has moved between first and last standing flat in a contact, straight, mean", LESS),
+    Measure(
+        "foot_drift",
+        "m",
+        "how far a foot has moved between first and last standing flat in a contact, straight, "
+        "mean",
+        LESS,
+    ),
     Measure("largest_slip", "m", "the same, largest", LESS),
 )
 """Of every protocol."""
@@ -70,21 +92,40 @@ BEARING = _table(
     Measure("largest_tilt", "rad", "largest lean of the pelvis over the whole trial", LESS),
     Measure("stop_share", "", "share of time on a stop of the joint that is there most", LESS),
     Measure("vibration", "rad/s", "RMS velocity above 15 Hz of the joint that has most", LESS),
-    Measure("limit_share", "", "share of time on the edge of its envelope of the motor that is there most", LESS),
+    Measure(
+        "limit_share",
+        "",
+        "share of time on the edge of its envelope of the motor that is there most",
+        LESS,
+    ),
     Measure("continuous_use", "", "RMS over rated torque of the motor with most", LESS),
-    Measure("thermal_peak", "", "largest moving average over 3 s of squared torque over rated torque, of the motor with most", LESS),
+    Measure(
+        "thermal_peak",
+        "",
+        "largest moving average over 3 s of squared torque over rated torque, of the motor with "
+        "most",
+        LESS,
+    ),
 )
 """Of every protocol."""
 
-_KINDS = {"": "signed", "_positive": "of joints that are driven", "_absolute": "driving and braking both counted as positive, joint by joint"}
+_KINDS = {
+    "": "signed",
+    "_positive": "of joints that are driven",
+    "_absolute": "driving and braking both counted as positive, joint by joint",
+}
 RIGHT_LEG = _table(
     *(
-        Measure(f"right_{group}{kind}_power", "W", f"mechanical power of the right {group}, {words}")
+        Measure(
+            f"right_{group}{kind}_power", "W", f"mechanical power of the right {group}, {words}"
+        )
         for group in GROUPS
         for kind, words in _KINDS.items()
     ),
     Measure("right_joule_power", "W", "Joule heat of the right leg's motors", LESS),
-    Measure("right_total_power", "W", "Joule heat and signed mechanical power of the right leg", LESS),
+    Measure(
+        "right_total_power", "W", "Joule heat and signed mechanical power of the right leg", LESS
+    ),
 )
 """Means over the right leg's steady strides (Fig. 6); of the walk protocol."""
 
@@ -104,16 +145,29 @@ WALK = {
         Measure("steady_speed", "m/s", "mean speed over the steady strides"),
         Measure("steady_power", "W", "power over the steady strides", LESS),
         Measure("steady_joule_power", "W", "Joule heat over the steady strides", LESS),
-        Measure("steady_mechanical_power", "W", "signed mechanical power over the steady strides", LESS),
-        Measure("steady_positive_power", "W", "power of driving motors over the steady strides", LESS),
+        Measure(
+            "steady_mechanical_power", "W", "signed mechanical power over the steady strides", LESS
+        ),
+        Measure(
+            "steady_positive_power", "W", "power of driving motors over the steady strides", LESS
+        ),
         Measure("steady_negative_power", "W", "power of braking motors over the steady strides"),
         Measure("steady_battery_power", "W", "battery power over the steady strides", LESS),
-        Measure("steady_cost_of_transport", "", "energy / (m g distance) over the steady strides", LESS),
-        Measure("steady_battery_cost_of_transport", "", "battery energy / (m g distance) over the steady strides", LESS),
+        Measure(
+            "steady_cost_of_transport", "", "energy / (m g distance) over the steady strides", LESS
+        ),
+        Measure(
+            "steady_battery_cost_of_transport",
+            "",
+            "battery energy / (m g distance) over the steady strides",
+            LESS,
+        ),
         Measure("step_width", "m", "between touchdowns of both feet, across the way"),
         Measure("heel_off", "", "when the heel leaves the floor, share of the stride"),
         Measure("single_support", "", "share of time with one foot on the floor"),
-        Measure("alternation", "", "share of steps made by the other foot than the one before", MORE),
+        Measure(
+            "alternation", "", "share of steps made by the other foot than the one before", MORE
+        ),
         Measure("heel_lead", "s", "load on the heel before the forefoot at touchdown"),
         Measure("heel_or_flat", "", "share of steps that touch down heel first or flat", MORE),
         Measure("mean_tilt", "rad", "mean lean of the pelvis over the steady strides", LESS),
@@ -123,7 +177,8 @@ WALK = {
     **STEPS,
     **BEARING,
 }
-"""Of the walk protocol; impact, steps and bearing over the steady strides, but for `largest_tilt`."""
+"""Of the walk protocol; impact, steps and bearing over the steady strides, but for
+`largest_tilt`."""
 
 T_TEST = {
     **OUTCOMES,
@@ -134,7 +189,9 @@ T_TEST = {
         Measure("distance", "m", "way of the pelvis"),
         Measure("mean_speed", "m/s", "way over time, of those that arrived", MORE),
         Measure("peak_speed", "m/s", "largest horizontal speed of the pelvis, unfiltered", MORE),
-        Measure("mean_deviation", "m", "from the nearest point of the course, mean over time", LESS),
+        Measure(
+            "mean_deviation", "m", "from the nearest point of the course, mean over time", LESS
+        ),
         Measure("peak_deviation", "m", "from the nearest point of the course, largest", LESS),
         Measure("mean_leg_deviation", "m", "from the leg being run, mean over time", LESS),
         Measure("peak_leg_deviation", "m", "from the leg being run, largest", LESS),
@@ -144,7 +201,8 @@ T_TEST = {
     **STEPS,
     **BEARING,
 }
-"""Of the T-test protocol, over the whole run; besides them `waypoint_1` .. with the times of arrival [s]."""
+"""Of the T-test protocol, over the whole run; besides them `waypoint_1` .. with the times of
+arrival [s]."""
 
 
 def measure_of(name: str) -> Measure:
@@ -154,5 +212,7 @@ def measure_of(name: str) -> Measure:
         KeyError: no such measure.
     """
     if name.startswith("waypoint_"):
-        return Measure(name, "s", f"time of arrival at waypoint {name.removeprefix('waypoint_')}", LESS)
+        return Measure(
+            name, "s", f"time of arrival at waypoint {name.removeprefix('waypoint_')}", LESS
+        )
     return WALK[name] if name in WALK else T_TEST[name]

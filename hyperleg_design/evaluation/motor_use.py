@@ -37,7 +37,8 @@ class MotorUse:
     thermal_peak: np.ndarray
     """Largest moving average over 3 s of the squared relative torque, from cold [-]."""
     thermal_peak_printed: np.ndarray
-    """Largest square of the moving average of the relative torque, as the paper prints it, from cold [-]."""
+    """Largest square of the moving average of the relative torque, as the paper prints it, from
+    cold [-]."""
 
 
 def motor_use(trial: Trial, first: int = 0, last: int | None = None) -> MotorUse:
@@ -54,7 +55,9 @@ def motor_use(trial: Trial, first: int = 0, last: int | None = None) -> MotorUse
         rms_torque=rms,
         peak_torque=np.abs(torque).max(0),
         peak_speed=np.abs(speed).max(0),
-        limit_share=at_limit(envelope, torque.reshape(-1, 2, legs), speed.reshape(-1, 2, legs)).mean(0).reshape(-1),
+        limit_share=at_limit(envelope, torque.reshape(-1, 2, legs), speed.reshape(-1, 2, legs))
+        .mean(0)
+        .reshape(-1),
         continuous_use=rms / rated,
         thermal_peak=heat.peak("ema_of_square"),
         thermal_peak_printed=heat.peak("square_of_ema"),

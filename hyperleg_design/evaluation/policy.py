@@ -1,7 +1,9 @@
-"""Policies: plain callables from observations `(n, size)` to actions `(n, J)`, or ONNX files that say what they are.
+"""Policies: plain callables from observations `(n, size)` to actions `(n, J)`, or ONNX files that
+say what they are.
 
-An ONNX file has the input `observation` `(n, size)` and the output `action` `(n, J)`, single precision, its normaliser
-inside the graph, and metadata (`metadata_props`; JSON where not plain text):
+An ONNX file has the input `observation` `(n, size)` and the output `action` `(n, J)`, single
+precision, its normaliser inside the graph, and metadata (`metadata_props`; JSON where not plain
+text):
 
 | key | holds |
 |---|---|
@@ -9,7 +11,8 @@ inside the graph, and metadata (`metadata_props`; JSON where not plain text):
 | `columns` | names of the numbers of the observation |
 | `joints` | names of the numbers of the action |
 | `task`, `design` | resolved, as `task_from_mapping` and `design_from_mapping` take them |
-| `variant`, `seed`, `steps`, `deviations`, `command`, `commit`, `versions`, `preset` | how it was made; shown, not needed |
+| `variant`, `seed`, `steps`, `deviations`, `command`, `commit`, `versions`, `preset` | how it was
+made; shown, not needed |
 
 A callable with a method `reset(n)` is told before each evaluation that n trials begin.
 """
@@ -47,7 +50,9 @@ Policy = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(eq=False)
 class OnnxPolicy:
-    """A policy from an ONNX file, run by ONNX Runtime on one thread, so that results do not depend on the machine's load."""
+    """A policy from an ONNX file, run by ONNX Runtime on one thread, so that results do not depend
+    on the machine's load.
+    """
 
     name: str
     """Folder and name of the file, without its ending."""
@@ -141,7 +146,9 @@ class Scripted:
 
 def policy_name(policy: Policy) -> str:
     """Name of a policy for messages and tables."""
-    return str(getattr(policy, "name", None) or getattr(policy, "__name__", type(policy).__name__)).replace("<lambda>", "policy")
+    return str(
+        getattr(policy, "name", None) or getattr(policy, "__name__", type(policy).__name__)
+    ).replace("<lambda>", "policy")
 
 
 def check_layout(policy: Policy, environment: Environment) -> None:
@@ -152,14 +159,29 @@ def check_layout(policy: Policy, environment: Environment) -> None:
     """
     if not isinstance(policy, OnnxPolicy):
         return
-    pairs = (("columns", policy.columns, environment.observation_columns["policy"]), ("joints", policy.joints, environment.layout.joints))
+    pairs = (
+        ("columns", policy.columns, environment.observation_columns["policy"]),
+        ("joints", policy.joints, environment.layout.joints),
+    )
     for key, own, needed in pairs:
         difference = _first_difference(own, needed)
         if difference:
-            raise InputError(policy.name, key, None, f"is made for another layout than this robot and task have: {difference}")
+            raise InputError(
+                policy.name,
+                key,
+                None,
+                f"is made for another layout than this robot and task have: {difference}",
+            )
 
 
-def checked_action(policy: Policy, observation: np.ndarray, step: int, duration: float, running: np.ndarray, size: int) -> np.ndarray:
+def checked_action(
+    policy: Policy,
+    observation: np.ndarray,
+    step: int,
+    duration: float,
+    running: np.ndarray,
+    size: int,
+) -> np.ndarray:
     """Actions of a policy for the trials that still run, zero for the others, `(n, size)`.
 
     Args:
@@ -176,11 +198,18 @@ def checked_action(policy: Policy, observation: np.ndarray, step: int, duration:
     action = np.asarray(policy(observation), float)
     if action.shape != (len(observation), size):
         expected = (len(observation), size)
-        raise InputError(policy_name(policy), OUTPUT, action.shape, f"must have the shape {expected}; is the policy made for another robot?")
+        raise InputError(
+            policy_name(policy),
+            OUTPUT,
+            action.shape,
+            f"must have the shape {expected}; is the policy made for another robot?",
+        )
     bad = np.flatnonzero(~np.isfinite(action).all(-1) & running)
     if len(bad):
         place = f"in policy step {step} ({step * duration:.2f} s) of trial {bad[0]}"
-        raise InputError(policy_name(policy), OUTPUT, action[bad[0]].tolist(), f"is not finite {place}")
+        raise InputError(
+            policy_name(policy), OUTPUT, action[bad[0]].tolist(), f"is not finite {place}"
+        )
     return np.where(running[:, None], action, 0.0)
 
 
@@ -194,13 +223,18 @@ def _session(content: bytes, where: str) -> Any:
         return onnxruntime.InferenceSession(content, options, providers=["CPUExecutionProvider"])
     except Exception as error:  # ONNX Runtime's errors share no base of their own
         reason = in_short(error, 120)
-        raise InputError(where, "", None, f"is no whole ONNX file ({reason}); export it again") from None
+        raise InputError(
+            where, "", None, f"is no whole ONNX file ({reason}); export it again"
+        ) from None
 
 
 def _metadata(session: Any, where: str) -> dict[str, Any]:
     raw = dict(session.get_modelmeta().custom_metadata_map)
     if raw.get("format") != FORMAT:
-        remedy = f"expects {FORMAT}; export with `hyperleg train`, or wrap a foreign network in a callable"
+        remedy = (
+            f"expects {FORMAT}; export with `hyperleg train`, or wrap a foreign network in a "
+            f"callable"
+        )
         raise InputError(where, "format", raw.get("format"), remedy)
     found: dict[str, Any] = {}
     for key, text in raw.items():
@@ -210,18 +244,27 @@ def _metadata(session: Any, where: str) -> dict[str, Any]:
             found[key] = text
     for key in NEEDED:
         if key not in found:
-            raise InputError(where, key, None, "is missing in the metadata; export the policy again")
+            raise InputError(
+                where, key, None, "is missing in the metadata; export the policy again"
+            )
     for key in ("task", "design"):
         if not isinstance(found[key], dict):
-            raise InputError(where, key, found[key], "expects a mapping in the metadata; export the policy again")
+            raise InputError(
+                where, key, found[key], "expects a mapping in the metadata; export the policy again"
+            )
     return found
 
 
 def _check_graph(session: Any, where: str, columns: int, joints: int) -> None:
-    places = ((INPUT, session.get_inputs(), columns, "columns"), (OUTPUT, session.get_outputs(), joints, "joints"))
+    places = (
+        (INPUT, session.get_inputs(), columns, "columns"),
+        (OUTPUT, session.get_outputs(), joints, "joints"),
+    )
     for name, found, size, key in places:
         if [f.name for f in found] != [name]:
-            raise InputError(where, name, [f.name for f in found], f"expects one tensor named {name}")
+            raise InputError(
+                where, name, [f.name for f in found], f"expects one tensor named {name}"
+            )
         shape = found[0].shape
         if len(shape) != 2 or (isinstance(shape[1], int) and shape[1] != size):
             raise InputError(where, name, list(shape), f"does not fit the metadata: {size} {key}")
@@ -229,7 +272,9 @@ def _check_graph(session: Any, where: str, columns: int, joints: int) -> None:
 
 def _names(value: Any, where: str, key: str) -> tuple[str, ...]:
     if not isinstance(value, list) or not value or not all(isinstance(v, str) for v in value):
-        raise InputError(where, key, value, "expects a list of names in the metadata; export the policy again")
+        raise InputError(
+            where, key, value, "expects a list of names in the metadata; export the policy again"
+        )
     return tuple(value)
 
 

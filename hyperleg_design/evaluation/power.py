@@ -1,4 +1,6 @@
-"""Power of recorded trials: the whole robot's ledger, joint by joint, motor by motor, and over the gait cycle."""
+"""Power of recorded trials: the whole robot's ledger, joint by joint, motor by motor, and over the
+gait cycle.
+"""
 
 from __future__ import annotations
 
@@ -15,11 +17,28 @@ from hyperleg_design.sizing.energy import EnergyLedger, energy_ledger, joint_pow
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
 
-GROUPS = {"hip": ("hip_yaw", "hip_roll", "hip_pitch"), "knee": ("knee",), "ankle": ("ankle_pitch", "ankle_roll"), "toe": ("toe",)}
+GROUPS = {
+    "hip": ("hip_yaw", "hip_roll", "hip_pitch"),
+    "knee": ("knee",),
+    "ankle": ("ankle_pitch", "ankle_roll"),
+    "toe": ("toe",),
+}
 """Joints of each part of Fig. 6."""
-LEG_MEANS = (*(f"{group}{kind}" for group in GROUPS for kind in ("", "_positive", "_absolute")), "joule", "total")
+LEG_MEANS = (
+    *(f"{group}{kind}" for group in GROUPS for kind in ("", "_positive", "_absolute")),
+    "joule",
+    "total",
+)
 """Keys of `CyclePower.means`."""
-FLOWS = ("motor_side", "joule", "mechanical", "mechanical_positive", "mechanical_negative", "driver_loss", "battery")
+FLOWS = (
+    "motor_side",
+    "joule",
+    "mechanical",
+    "mechanical_positive",
+    "mechanical_negative",
+    "driver_loss",
+    "battery",
+)
 """Of `EnergyLedger`, summed over all motors, in `flows`."""
 
 
@@ -30,7 +49,12 @@ def ledger(trial: Trial, first: int = 0, last: int | None = None) -> EnergyLedge
     constants = np.tile(motor_arrays(trial.design).power_constant[:legs], 2)
     electrical = trial.design.electrical
     return energy_ledger(
-        trial.motor_torque[part], trial.motor_velocity[part], trial.time_step, constants, electrical.efficiency_out, electrical.efficiency_regen
+        trial.motor_torque[part],
+        trial.motor_velocity[part],
+        trial.time_step,
+        constants,
+        electrical.efficiency_out,
+        electrical.efficiency_regen,
     )
 
 
@@ -42,7 +66,9 @@ def flows(entries: EnergyLedger) -> dict[str, float]:
 
 @dataclass(frozen=True, eq=False)
 class CyclePower:
-    """Power of one leg over the normalised gait cycle, one row a stride; q joints, m motors of the leg."""
+    """Power of one leg over the normalised gait cycle, one row a stride; q joints, m motors of the
+    leg.
+    """
 
     joints: tuple[str, ...]
     """Without the side, `(q,)`."""
@@ -53,16 +79,21 @@ class CyclePower:
     joule: np.ndarray
     """Heat of each motor [W], `(strides, points, m)`."""
     means: Mapping[str, float]
-    """Means over the strides' samples [W]: `{group}`, `{group}_positive`, `{group}_absolute` mechanical, taken joint by joint;
-    `joule` of all motors; `total`, to which signed groups and `joule` add up."""
+    """Means over the strides' samples [W]: `{group}`, `{group}_positive`, `{group}_absolute`
+    mechanical, taken joint by joint; `joule` of all motors; `total`, to which signed groups and
+    `joule` add up."""
 
     def of_group(self, group: str) -> np.ndarray:
-        """Mechanical power of a part of `GROUPS` [W], `(strides, points)`; zero for a toe that is not there."""
+        """Mechanical power of a part of `GROUPS` [W], `(strides, points)`; zero for a toe that is
+        not there.
+        """
         kept = [i for i, joint in enumerate(self.joints) if joint in GROUPS[group]]
         return np.asarray(self.mechanical[..., kept].sum(-1))
 
 
-def cycle_power(trial: Trial, steps: Steps, foot: int = 1, points: int = CYCLE_POINTS) -> CyclePower:
+def cycle_power(
+    trial: Trial, steps: Steps, foot: int = 1, points: int = CYCLE_POINTS
+) -> CyclePower:
     """Power of one leg over its strides.
 
     Args:
@@ -72,7 +103,9 @@ def cycle_power(trial: Trial, steps: Steps, foot: int = 1, points: int = CYCLE_P
         points: of the normalised cycle.
     """
     layout = trial.layout
-    joints, motors = (slice(foot * n, (foot + 1) * n) for n in (layout.leg_joints, layout.leg_motors))
+    joints, motors = (
+        slice(foot * n, (foot + 1) * n) for n in (layout.leg_joints, layout.leg_motors)
+    )
     constants = motor_arrays(trial.design).power_constant[: layout.leg_motors]
     mechanical = joint_power(trial.driven_joint_torque[:, joints], trial.joint_velocity[:, joints])
     joule = constants * trial.motor_torque[:, motors] ** 2

@@ -1,4 +1,6 @@
-"""Evaluation protocols: what is run and how it is measured, read from `sim/protocol_*.yaml` or a user's file."""
+"""Evaluation protocols: what is run and how it is measured, read from `sim/protocol_*.yaml` or a
+user's file.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ from hyperleg_design.simulation.settings import Checked, Randomisation, Start
 
 MOST_TRIALS = 4096
 T_TEST_POINTS = {"A": (0.0, 0.0), "B": (9.14, 0.0), "C": (9.14, 4.57), "D": (9.14, -4.57)}
-"""Of the human agility T-test, A where the run starts, x ahead [m]; the paper does not print its course's size."""
+"""Of the human agility T-test, A where the run starts, x ahead [m]; the paper does not print its
+course's size."""
 T_TEST_ORDER = ("A", "B", "C", "D", "B", "A")
 """(paper, Section IV.B)"""
 
@@ -30,7 +33,8 @@ class Events(Checked):
     """How gait events are told; all assumed."""
 
     touchdown_load: Any = number("", 0.001, 1, default=0.05)
-    """Vertical force, in body weights, above which a foot, its heel or its forefoot is loaded [-]."""
+    """Vertical force, in body weights, above which a foot, its heel or its forefoot is loaded
+    [-]."""
     lift_load: Any = number("", 0.0005, 1, default=0.02)
     """Vertical force, in body weights, below which it is unloaded [-]."""
     shortest: Any = number("s", 0, 0.5, default=0.04)
@@ -39,7 +43,12 @@ class Events(Checked):
     def __post_init__(self) -> None:
         Checked.__post_init__(self)
         if self.lift_load > self.touchdown_load:
-            raise InputError("events", "events.lift_load", self.lift_load, f"must not be above touchdown_load, {self.touchdown_load}")
+            raise InputError(
+                "events",
+                "events.lift_load",
+                self.lift_load,
+                f"must not be above touchdown_load, {self.touchdown_load}",
+            )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -123,7 +132,12 @@ class WalkProtocol(Protocol):
         Protocol.__post_init__(self)
         if self.distance > self.speed * self.time_limit:
             least = self.distance / self.speed
-            raise InputError(self.name, "distance", self.distance, f"cannot be reached at {self.speed:g} m/s in time_limit; that takes {least:.1f} s")
+            raise InputError(
+                self.name,
+                "distance",
+                self.distance,
+                f"cannot be reached at {self.speed:g} m/s in time_limit; that takes {least:.1f} s",
+            )
         if not self.steady.begin < self.steady_end <= self.distance:
             remedy = f"expects begin below end, and end within distance, {self.distance:g} m"
             raise InputError(self.name, "steady", [self.steady.begin, self.steady.end], remedy)
@@ -136,7 +150,9 @@ class WalkProtocol(Protocol):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TTestProtocol(Protocol):
-    """Runs over a course of waypoints, given one after the other; the torso may turn as it likes."""
+    """Runs over a course of waypoints, given one after the other; the torso may turn as it
+    likes.
+    """
 
     name: str = "t_test"
     arrival: Any = number("m", 0.01, 5, default=0.5)
@@ -156,15 +172,25 @@ class TTestProtocol(Protocol):
             raise InputError(self.name, "order", list(self.order), "expects at least two points")
         for name in self.order:
             if name not in self.points:
-                raise InputError(self.name, "order", name, f"is not among points: {', '.join(self.points)}")
+                raise InputError(
+                    self.name, "order", name, f"is not among points: {', '.join(self.points)}"
+                )
         for before, after in zip(self.order[:-1], self.order[1:], strict=True):
             length = float(np.hypot(*np.subtract(self.points[after], self.points[before])))
             if length <= self.arrival:
-                remedy = f"is unreachable: its leg of {length:g} m is no longer than arrival, {self.arrival:g} m"
+                remedy = (
+                    f"is unreachable: its leg of {length:g} m is no longer than arrival, "
+                    f"{self.arrival:g} m"
+                )
                 raise InputError(self.name, "order", f"{before} to {after}", remedy)
         least = (course_length(self.course) - self.arrival * (len(self.order) - 1)) / self.speed_cap
         if least > self.time_limit:
-            raise InputError(self.name, "time_limit", self.time_limit, f"is too short to reach all points; {least:.1f} s are needed at speed_cap")
+            raise InputError(
+                self.name,
+                "time_limit",
+                self.time_limit,
+                f"is too short to reach all points; {least:.1f} s are needed at speed_cap",
+            )
 
     @property
     def course(self) -> np.ndarray:
@@ -198,7 +224,8 @@ def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:
     """A protocol from nested mappings as YAML gives them; `kind` is `walk` or `t_test`.
 
     Raises:
-        InputError: unknown or missing field, or a value that makes no sense, such as a waypoint that cannot be reached.
+        InputError: unknown or missing field, or a value that makes no sense, such as a waypoint
+        that cannot be reached.
     """
     rest = dict(data)
     rest.pop("description", None)
@@ -216,11 +243,16 @@ def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:
             given["order"] = _order(rest.pop("order"), where)
     sections = parameters.section_types(cls)
     fields = {f.name: f for f in dataclasses.fields(cls)}
-    known = [*(n for n, f in fields.items() if n in sections or parameters.is_leaf(f)), *(("points", "order") if cls is TTestProtocol else ())]
+    known = [
+        *(n for n, f in fields.items() if n in sections or parameters.is_leaf(f)),
+        *(("points", "order") if cls is TTestProtocol else ()),
+    ]
     try:
         for key, value in rest.items():
             if key not in known:
-                raise InputError(where, str(key), value, parameters.unknown(str(key), sorted(known)))
+                raise InputError(
+                    where, str(key), value, parameters.unknown(str(key), sorted(known))
+                )
             if key in sections:
                 given[key] = parameters.from_mapping(sections[key], value, where, key)
             else:
@@ -242,7 +274,10 @@ def protocol_mapping(protocol: Protocol) -> dict[str, Any]:
         elif dataclasses.is_dataclass(value):
             found[item.name] = parameters.leaves(value)
     if isinstance(protocol, TTestProtocol):
-        found |= {"points": {name: list(place) for name, place in protocol.points.items()}, "order": list(protocol.order)}
+        found |= {
+            "points": {name: list(place) for name, place in protocol.points.items()},
+            "order": list(protocol.order),
+        }
     return found
 
 

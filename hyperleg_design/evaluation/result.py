@@ -49,7 +49,8 @@ class Evaluation:
     steps: int
     """Policy steps of the training; -1 where unknown."""
     origin: Mapping[str, Any]
-    """What an ONNX policy says of its training: command, commit, versions, deviations from the paper; empty for others."""
+    """What an ONNX policy says of its training: command, commit, versions, deviations from the
+    paper; empty for others."""
     protocol: Any
     """The `WalkProtocol` or `TTestProtocol`."""
     outcomes: list[str]
@@ -57,7 +58,8 @@ class Evaluation:
     end_times: list[float]
     """At which each trial ended [s]."""
     paths: list[np.ndarray]
-    """Pelvis over the floor in the frame of the start, x ahead, once a policy step [m], `(t, 2)` of each trial."""
+    """Pelvis over the floor in the frame of the start, x ahead, once a policy step [m], `(t, 2)` of
+    each trial."""
     measures: list[dict[str, float]]
     """Of each trial, the same names in all; NaN where a trial gives no such number."""
     motors: list[MotorUse | None]
@@ -68,8 +70,12 @@ class Evaluation:
     """All signals, of some trials where others were let go by `light`."""
 
     def light(self, kept: int = 1) -> Evaluation:
-        """The same without the signals of all trials but `kept`, those that arrived before others; a trial's fill some 4 MB."""
-        return dataclasses.replace(self, trials=sorted(self.trials, key=lambda trial: trial.outcome != ARRIVED)[:kept])
+        """The same without the signals of all trials but `kept`, those that arrived before others;
+        a trial's fill some 4 MB.
+        """
+        return dataclasses.replace(
+            self, trials=sorted(self.trials, key=lambda trial: trial.outcome != ARRIVED)[:kept]
+        )
 
     def values(self, measure: str) -> np.ndarray:
         """A measure in all trials, `(n,)`.
@@ -78,7 +84,9 @@ class Evaluation:
             InputError: no such measure.
         """
         if measure not in self.measures[0]:
-            raise InputError("evaluation", "measure", measure, f"there are {', '.join(self.measures[0])}")
+            raise InputError(
+                "evaluation", "measure", measure, f"there are {', '.join(self.measures[0])}"
+            )
         return np.array([row[measure] for row in self.measures])
 
 
@@ -99,7 +107,9 @@ def evaluation_of(
         design=design.name,
         seed=known.seed if known else -1,
         steps=known.steps if known else -1,
-        origin={key: known.metadata[key] for key in ORIGIN if key in known.metadata} if known else {},
+        origin={key: known.metadata[key] for key in ORIGIN if key in known.metadata}
+        if known
+        else {},
         protocol=protocol,
         outcomes=[trial.outcome for trial in trials],
         end_times=[trial.end_time for trial in trials],
@@ -112,20 +122,34 @@ def evaluation_of(
 
 
 def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
-    """One row a trial: policy, variant, design, training seed, training steps, protocol, trial, outcome, end time, all measures."""
+    """One row a trial: policy, variant, design, training seed, training steps, protocol, trial,
+    outcome, end time, all measures.
+    """
     import pandas as pd
 
     rows = []
     for one in evaluations:
-        head = {"policy": one.policy, "variant": one.variant, "design": one.design, "seed": one.seed, "steps": one.steps}
+        head = {
+            "policy": one.policy,
+            "variant": one.variant,
+            "design": one.design,
+            "seed": one.seed,
+            "steps": one.steps,
+        }
         for index, measures in enumerate(one.measures):
-            ended = {"trial": index, "outcome": one.outcomes[index], "end_time": one.end_times[index]}
+            ended = {
+                "trial": index,
+                "outcome": one.outcomes[index],
+                "end_time": one.end_times[index],
+            }
             rows.append(head | {"protocol": one.protocol.name} | ended | measures)
     return pd.DataFrame(rows)
 
 
 def motor_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
-    """One row a motor and trial: policy, variant, training seed, trial, motor, and the fields of `MotorUse`."""
+    """One row a motor and trial: policy, variant, training seed, trial, motor, and the fields of
+    `MotorUse`.
+    """
     import pandas as pd
 
     rows = []
@@ -134,16 +158,30 @@ def motor_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
             if use is None:
                 continue
             for k, motor in enumerate(use.motors):
-                head = {"policy": one.policy, "variant": one.variant, "seed": one.seed, "trial": index, "motor": motor}
-                rows.append(head | {name: float(values[k]) for name, values in vars(use).items() if name != "motors"})
+                head = {
+                    "policy": one.policy,
+                    "variant": one.variant,
+                    "seed": one.seed,
+                    "trial": index,
+                    "motor": motor,
+                }
+                rows.append(
+                    head
+                    | {
+                        name: float(values[k])
+                        for name, values in vars(use).items()
+                        if name != "motors"
+                    }
+                )
     return pd.DataFrame(rows)
 
 
 def cycle_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
-    """One row a policy, joint or motor, and point of the gait cycle: mean and standard deviation over all strides [W].
+    """One row a policy, joint or motor, and point of the gait cycle: mean and standard deviation
+    over all strides [W].
 
-    Columns: policy, variant, training seed, kind (`mechanical` of joints, `joule` of motors), part, share of the cycle, mean,
-    deviation, strides.
+    Columns: policy, variant, training seed, kind (`mechanical` of joints, `joule` of motors), part,
+    share of the cycle, mean, deviation, strides.
     """
     import pandas as pd
 
@@ -156,33 +194,72 @@ def cycle_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
             power = np.concatenate([getattr(c, kind) for c in found])
             for k, name in enumerate(names):
                 for point, share in enumerate(np.linspace(0, 1, power.shape[1])):
-                    head = {"policy": one.policy, "variant": one.variant, "seed": one.seed, "kind": kind, "part": name, "share": float(share)}
+                    head = {
+                        "policy": one.policy,
+                        "variant": one.variant,
+                        "seed": one.seed,
+                        "kind": kind,
+                        "part": name,
+                        "share": float(share),
+                    }
                     values = power[:, point, k]
-                    rows.append(head | {"mean": float(values.mean()), "deviation": float(values.std()), "strides": len(values)})
+                    rows.append(
+                        head
+                        | {
+                            "mean": float(values.mean()),
+                            "deviation": float(values.std()),
+                            "strides": len(values),
+                        }
+                    )
     return pd.DataFrame(rows)
 
 
 def write_results(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]) -> Path:
-    """Write evaluations as a folder: `trials.parquet`, `motors.parquet`, `cycles.parquet`, `paths.parquet`, `evaluation.json`.
+    """Write evaluations as a folder: `trials.parquet`, `motors.parquet`, `cycles.parquet`,
+    `paths.parquet`, `evaluation.json`.
 
-    `evaluation.json` holds the protocols, what each policy says of itself, versions and commit; no date.
+    `evaluation.json` holds the protocols, what each policy says of itself, versions and commit; no
+    date.
 
     Raises:
-        OutputError: the folder is somebody else's, or cannot be written; nothing half-written is left.
+        OutputError: the folder is somebody else's, or cannot be written; nothing half-written is
+        left.
     """
     import pandas as pd
 
     paths = [
-        {"policy": one.policy, "variant": one.variant, "seed": one.seed, "trial": i, "step": k, "x": float(x), "y": float(y)}
+        {
+            "policy": one.policy,
+            "variant": one.variant,
+            "seed": one.seed,
+            "trial": i,
+            "step": k,
+            "x": float(x),
+            "y": float(y),
+        }
         for one in evaluations
         for i, path in enumerate(one.paths)
         for k, (x, y) in enumerate(path)
     ]
     tables = {"trials": trial_table, "motors": motor_table, "cycles": cycle_table}
-    made = {name: build(evaluations) for name, build in tables.items()} | {"paths": pd.DataFrame(paths)}
+    made = {name: build(evaluations) for name, build in tables.items()} | {
+        "paths": pd.DataFrame(paths)
+    }
     described = {
-        "protocols": [protocol_mapping(p) for p in {id(one.protocol): one.protocol for one in evaluations}.values()],
-        "policies": [{"policy": one.policy, "variant": one.variant, "seed": one.seed, "steps": one.steps, **one.origin} for one in evaluations],
+        "protocols": [
+            protocol_mapping(p)
+            for p in {id(one.protocol): one.protocol for one in evaluations}.values()
+        ],
+        "policies": [
+            {
+                "policy": one.policy,
+                "variant": one.variant,
+                "seed": one.seed,
+                "steps": one.steps,
+                **one.origin,
+            }
+            for one in evaluations
+        ],
         "versions": versions(("hyperleg-design", "numpy", "scipy", "mujoco", "onnxruntime")),
         "commit": git_commit(),
     }
@@ -203,11 +280,14 @@ def _path(trial: Trial) -> np.ndarray:
     if not trial.samples:
         return np.empty((0, 2))
     heading = headings(trial.base_orientation[0])
-    return in_start_frame(trial.base_position[:: trial.substeps, :2], trial.base_position[0, :2], heading)
+    return in_start_frame(
+        trial.base_position[:: trial.substeps, :2], trial.base_position[0, :2], heading
+    )
 
 
 def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
-    """A measure of the rows of a trial table, one array a training seed; checkpoints of a seed are pooled.
+    """A measure of the rows of a trial table, one array a training seed; checkpoints of a seed are
+    pooled.
 
     Policies that do not say their seed count as a seed each.
 
@@ -218,7 +298,8 @@ def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
 
 
 def by_checkpoint(table: pd.DataFrame, measure: str) -> dict[str, list[np.ndarray]]:
-    """A measure of the rows of a trial table by training seed, one array a checkpoint, as `statistics` takes them.
+    """A measure of the rows of a trial table by training seed, one array a checkpoint, as
+    `statistics` takes them.
 
     Policies that do not say their seed count as a seed each.
 
@@ -226,6 +307,11 @@ def by_checkpoint(table: pd.DataFrame, measure: str) -> dict[str, list[np.ndarra
         InputError: no such column.
     """
     if measure not in table:
-        raise InputError("evaluation", "measure", measure, f"there are {', '.join(map(str, table.columns))}")
+        raise InputError(
+            "evaluation", "measure", measure, f"there are {', '.join(map(str, table.columns))}"
+        )
     key = table["seed"].astype(str).where(table["seed"] >= 0, table["policy"])
-    return {str(seed): [own[measure].to_numpy(float) for _, own in part.groupby("policy", sort=True)] for seed, part in table.groupby(key, sort=True)}
+    return {
+        str(seed): [own[measure].to_numpy(float) for _, own in part.groupby("policy", sort=True)]
+        for seed, part in table.groupby(key, sort=True)
+    }

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, check_layout, checked_action, policy_name
+from hyperleg_design.evaluation.policy import (
+    OnnxPolicy,
+    Policy,
+    check_layout,
+    checked_action,
+    policy_name,
+)
 from hyperleg_design.simulation import terminations
 from hyperleg_design.simulation.layout import GRAVITY
 from hyperleg_design.simulation.told import TOLD
@@ -52,7 +58,8 @@ class Trial:
     outcome: str
     """One of `OUTCOMES`."""
     end_time: float
-    """At which it ended [s]; a fall's or an arrival's policy step is counted, its samples are not kept."""
+    """At which it ended [s]; a fall's or an arrival's policy step is counted, its samples are not
+    kept."""
     base_position: np.ndarray
     """Of the pelvis [m], `(t, 3)`."""
     base_orientation: np.ndarray
@@ -76,11 +83,13 @@ class Trial:
     divergence: Divergence | None = None
     """State from which it diverged, where it did."""
     joint_target: np.ndarray | None = None
-    """Angles that the joint controllers were asked for [rad], `(t, J)`; None where nobody recorded them."""
+    """Angles that the joint controllers were asked for [rad], `(t, J)`; None where nobody recorded
+    them."""
     base_angular_velocity: np.ndarray | None = None
     """In the pelvis's frame [rad/s], `(t, 3)`; None where nobody recorded it."""
     told: Mapping[str, np.ndarray] = field(default_factory=dict)
-    """What drives and sensors told, where alterations make that another thing; see `simulation.told.Told`."""
+    """What drives and sensors told, where alterations make that another thing; see
+    `simulation.told.Told`."""
 
     @property
     def samples(self) -> int:
@@ -100,7 +109,9 @@ class Trial:
     @property
     def foot_load(self) -> np.ndarray:
         """Vertical force on the left and the right foot [N], `(t, 2)`."""
-        return np.stack([self.pad_load[:, self.layout.pad_foot == foot].sum(-1) for foot in (0, 1)], -1)
+        return np.stack(
+            [self.pad_load[:, self.layout.pad_foot == foot].sum(-1) for foot in (0, 1)], -1
+        )
 
 
 SIGNALS = (
@@ -134,14 +145,19 @@ def record(
         policy: from observations of the group `policy` to actions.
         environment: without assist; its episodes must not time out before the limit.
         time_limit: [s]
-        arrived: from first and latest pelvis positions `(n, 3)` to whether each trial is done; a trial may also end by itself.
+        arrived: from first and latest pelvis positions `(n, 3)` to whether each trial is done; a
+            trial may also end by itself.
         before_step: called before each policy step, to set commands.
 
     Raises:
         InputError: a policy for another layout, or whose output has a wrong shape or is not finite.
     """
     check_layout(policy, environment)
-    count, substeps, duration = environment.simulations, int(environment.task.physics.substeps), environment.task.physics.policy_step
+    count, substeps, duration = (
+        environment.simulations,
+        int(environment.task.physics.substeps),
+        environment.task.physics.policy_step,
+    )
     limit = round(time_limit / duration)
     environment.assist = None
     environment.recording = True
@@ -155,7 +171,9 @@ def record(
     store: dict[str, np.ndarray] = {}
     step_index = 0
     for step_index in range(limit):
-        action = checked_action(policy, observation, step_index, duration, running, environment.action_size)
+        action = checked_action(
+            policy, observation, step_index, duration, running, environment.action_size
+        )
         if before_step is not None:
             before_step(environment)
         step = environment.step(action)
@@ -164,7 +182,10 @@ def record(
         if not store:
             # pages of the part that is never reached are never claimed
             told = [n for n in signals if n.startswith(TOLD)]
-            store = {n: np.empty((count, limit * substeps, *signals[n].shape[2:])) for n in (*SIGNALS, *told)}
+            store = {
+                n: np.empty((count, limit * substeps, *signals[n].shape[2:]))
+                for n in (*SIGNALS, *told)
+            }
         now = slice(step_index * substeps, (step_index + 1) * substeps)
         for name, kept in store.items():
             kept[:, now] = signals[name]
@@ -175,7 +196,10 @@ def record(
             length[trial], ended_at[trial] = now.start, (step_index + 1) * duration
         running[ended] = False
         if arrived is not None:
-            done = np.flatnonzero(running & arrived(store["base_position"][:, 0], store["base_position"][:, now.stop - 1]))
+            done = np.flatnonzero(
+                running
+                & arrived(store["base_position"][:, 0], store["base_position"][:, now.stop - 1])
+            )
             for trial in done:
                 outcomes[trial] = ARRIVED
             length[done], ended_at[done] = now.stop, (step_index + 1) * duration
@@ -193,7 +217,11 @@ def record(
             outcome=outcomes[i],
             end_time=float(ended_at[i]),
             divergence=divergences.get(i),
-            told={name: values[i, : length[i]] for name, values in store.items() if name.startswith(TOLD)},
+            told={
+                name: values[i, : length[i]]
+                for name, values in store.items()
+                if name.startswith(TOLD)
+            },
             **{name: store[name][i, : length[i]] for name in SIGNALS},
         )
         for i in range(count)
@@ -210,7 +238,12 @@ def resolved(policy: Policy, design: Design | None, task: Task | None) -> tuple[
     design, task = design or (own.design if own else None), task or (own.task if own else None)
     for name, value in (("design", design), ("task", task)):
         if value is None:
-            raise InputError(policy_name(policy), name, None, "is needed with a policy that is not an ONNX file of this package")
+            raise InputError(
+                policy_name(policy),
+                name,
+                None,
+                "is needed with a policy that is not an ONNX file of this package",
+            )
     assert design is not None
     assert task is not None
     return design, task

@@ -1,13 +1,15 @@
-"""Trained policies as they are shipped: one folder a training, named `group-design-seed`, such as `walk-toe-0`.
+"""Trained policies as they are shipped: one folder a training, named `group-design-seed`, such as
+`walk-toe-0`.
 
 | file | holds |
 |---|---|
-| `policy.onnx` | the last policy, weights in single precision, stored once (0.8 MB with three layers of 512, 256, 128) |
-| `late_*.onnx` | late policies before it, earliest first |
-| `run.json` | what was trained: task, design, preset (all resolved), seed, command, versions, commit |
-| `progress.jsonl` | the learning curve, at most `CURVE_ROWS` rows |
+| `policy.onnx` | the last policy, weights in single precision, stored once (0.8 MB with three
+layers of 512, 256, 128) | | `late_*.onnx` | late policies before it, earliest first | | `run.json`
+| what was trained: task, design, preset (all resolved), seed, command, versions, commit | |
+`progress.jsonl` | the learning curve, at most `CURVE_ROWS` rows |
 
-A folder of finished trainings (`results/campaign`) has the same form and more files; `pack` keeps the four above.
+A folder of finished trainings (`results/campaign`) has the same form and more files; `pack` keeps
+the four above.
 """
 
 from __future__ import annotations
@@ -79,7 +81,8 @@ def shipped_folder() -> Path:
 
 
 def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> list[Shipped]:
-    """Policies of all finished trainings of a folder, by group, design and seed, the last policy of each training first.
+    """Policies of all finished trainings of a folder, by group, design and seed, the last policy of
+    each training first.
 
     Args:
         folder: of trainings; the shipped ones by default.
@@ -92,14 +95,22 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
     if not place.is_dir():
         if folder is None:
             return []
-        raise InputError("policies", "", str(folder), "no such folder; expects one with a folder a training, such as walk-toe-0")
+        raise InputError(
+            "policies",
+            "",
+            str(folder),
+            "no such folder; expects one with a folder a training, such as walk-toe-0",
+        )
     found = []
     for training in place.iterdir():
         name = _NAME.fullmatch(training.name)
         if name is None or not (training / POLICY).is_file():
             continue
         files = [training / POLICY, *(sorted(training.glob(LATE), reverse=True) if late else [])]
-        found += [Shipped(name["group"], name["design"], int(name["seed"]), i, file) for i, file in enumerate(files)]
+        found += [
+            Shipped(name["group"], name["design"], int(name["seed"]), i, file)
+            for i, file in enumerate(files)
+        ]
     return sorted(found, key=lambda one: (one.group, one.design, one.seed, one.late))
 
 
@@ -118,7 +129,12 @@ def find_policy(name: str | Path) -> Path:
     known = shipped_policies(late=False)
     near = difflib.get_close_matches(str(name), [one.training for one in known], 1)
     meant = f"did you mean {near[0]}? " if near else ""
-    raise InputError("policy", "", str(name), f"no such file; {meant}Shipped, with their seeds: {_briefly(known) or 'none'}")
+    raise InputError(
+        "policy",
+        "",
+        str(name),
+        f"no such file; {meant}Shipped, with their seeds: {_briefly(known) or 'none'}",
+    )
 
 
 def _briefly(policies: Sequence[Shipped]) -> str:
@@ -127,16 +143,19 @@ def _briefly(policies: Sequence[Shipped]) -> str:
     for one in policies:
         seeds.setdefault(f"{one.group}-{one.design}", []).append(one.seed)
     return ", ".join(
-        f"{name}-{min(own)}..{max(own)}" if len(own) == max(own) - min(own) + 1 > 1 else ", ".join(f"{name}-{s}" for s in own)
+        f"{name}-{min(own)}..{max(own)}"
+        if len(own) == max(own) - min(own) + 1 > 1
+        else ", ".join(f"{name}-{s}" for s in own)
         for name, own in seeds.items()
     )
 
 
 def learning_curve(training: str | Path, rows: int = CURVE_ROWS) -> list[dict[str, float]]:
-    """Learning curve of a training's folder: rows of `CURVE`, means over stretches of equal length where there are more.
+    """Learning curve of a training's folder: rows of `CURVE`, means over stretches of equal length
+    where there are more.
 
-    Numbers that were not measured (no step, so no speed) are left out of means; a row may lack some. A line cut off by a
-    kill is passed over. Empty where there is none.
+    Numbers that were not measured (no step, so no speed) are left out of means; a row may lack
+    some. A line cut off by a kill is passed over. Empty where there is none.
     """
     lines = []
     path = Path(training) / PROGRESS
@@ -151,7 +170,8 @@ def learning_curve(training: str | Path, rows: int = CURVE_ROWS) -> list[dict[st
 
 
 def pack(source: str | Path, target: str | Path) -> list[Packed]:
-    """Copy all finished trainings of a folder in the form in which they are shipped; each is written whole or not at all.
+    """Copy all finished trainings of a folder in the form in which they are shipped; each is
+    written whole or not at all.
 
     Trainings of the target that the source does not have stay.
 
@@ -171,7 +191,9 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
         raise InputError("pack", "from", str(source), "no such folder")
     trainings = sorted(p for p in place.iterdir() if p.is_dir() and _NAME.fullmatch(p.name))
     if not trainings:
-        raise InputError("pack", "from", str(source), "holds no training; expects folders such as walk-toe-0")
+        raise InputError(
+            "pack", "from", str(source), "holds no training; expects folders such as walk-toe-0"
+        )
     found = []
     for training in trainings:
         if not (training / POLICY).is_file():
@@ -182,19 +204,31 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
             for file in files:
                 if file.is_file():
                     shutil.copyfile(file, folder / file.name)
-            write_text(folder / PROGRESS, "".join(json.dumps(row) + "\n" for row in learning_curve(training)))
+            write_text(
+                folder / PROGRESS,
+                "".join(json.dumps(row) + "\n" for row in learning_curve(training)),
+            )
         made = Path(target) / training.name
-        found.append(Packed(training.name, len(files) - 1, sum(f.stat().st_size for f in made.iterdir())))
+        found.append(
+            Packed(training.name, len(files) - 1, sum(f.stat().st_size for f in made.iterdir()))
+        )
     return found
 
 
 def pack_text(found: Iterable[Packed]) -> str:
     """What was packed, for a terminal: a line a training, and a sum."""
     found = list(found)
-    lines = [f"{p.training:<34} {p.policies} policies, {p.size / 1e6:.1f} MB" if p.policies else f"{p.training:<34} not finished" for p in found]
+    lines = [
+        f"{p.training:<34} {p.policies} policies, {p.size / 1e6:.1f} MB"
+        if p.policies
+        else f"{p.training:<34} not finished"
+        for p in found
+    ]
     done = [p for p in found if p.policies]
     policies, size = sum(p.policies for p in done), sum(p.size for p in done)
-    return "\n".join([*lines, f"{len(done)} of {len(found)} trainings, {policies} policies, {size / 1e6:.1f} MB"])
+    return "\n".join(
+        [*lines, f"{len(done)} of {len(found)} trainings, {policies} policies, {size / 1e6:.1f} MB"]
+    )
 
 
 def _mean(rows: list[dict[str, Any]]) -> dict[str, float]:
@@ -203,5 +237,9 @@ def _mean(rows: list[dict[str, Any]]) -> dict[str, float]:
     for key in CURVE:
         values = [row[key] for row in rows if isinstance(row.get(key), int | float)]
         if values:
-            found[key] = values[-1] if key in ("steps", "stage") else float(f"{sum(values) / len(values):.5g}")
+            found[key] = (
+                values[-1]
+                if key in ("steps", "stage")
+                else float(f"{sum(values) / len(values):.5g}")
+            )
     return found

@@ -1,17 +1,20 @@
-"""What measured numbers say: intervals over seeds and trials, differences, effect sizes and verdicts.
+"""What measured numbers say: intervals over seeds and trials, differences, effect sizes and
+verdicts.
 
-A training seed is one draw of a policy; the trials of its policies are draws of starting states. A design is judged by
-several seeds, so a group of values is a sequence with one entry a seed: an array of its trials, or, where several late
-checkpoints of a training were tried, a list of such arrays, one a checkpoint. Values that could not be measured (no
-arrival, so no time) are NaN: they are left out of means, counted in `missing`, and never silently dropped.
+A training seed is one draw of a policy; the trials of its policies are draws of starting states. A
+design is judged by several seeds, so a group of values is a sequence with one entry a seed: an
+array of its trials, or, where several late checkpoints of a training were tried, a list of such
+arrays, one a checkpoint. Values that could not be measured (no arrival, so no time) are NaN: they
+are left out of means, counted in `missing`, and never silently dropped.
 
-Intervals rest on a hierarchical bootstrap: seeds are drawn with replacement, then checkpoints of each drawn seed, then trials
-of each drawn checkpoint; a seed's mean is that of its checkpoints' means. With few seeds the bootstrap's spread is too small
-by sqrt((k - 1) / k) and percentiles cover too little, so its standard error is multiplied by sqrt(k / (k - 1)) and by
-Student's t with k - 1 degrees of freedom (Hesterberg, 2015, on both corrections).
-Drawing trials anew counts their spread twice, in the seeds' means and within them, so intervals are wider than they need
-be where trials of one seed differ more than seeds do, and never narrower.
-One seed alone gives an interval over its checkpoints, or the trials of its one, that cannot speak about seeds, and says so.
+Intervals rest on a hierarchical bootstrap: seeds are drawn with replacement, then checkpoints of
+each drawn seed, then trials of each drawn checkpoint; a seed's mean is that of its checkpoints'
+means. With few seeds the bootstrap's spread is too small by sqrt((k - 1) / k) and percentiles cover
+too little, so its standard error is multiplied by sqrt(k / (k - 1)) and by Student's t with k - 1
+degrees of freedom (Hesterberg, 2015, on both corrections). Drawing trials anew counts their spread
+twice, in the seeds' means and within them, so intervals are wider than they need be where trials of
+one seed differ more than seeds do, and never narrower. One seed alone gives an interval over its
+checkpoints, or the trials of its one, that cannot speak about seeds, and says so.
 """
 
 from __future__ import annotations
@@ -73,7 +76,9 @@ class Estimate:
         return self.seeds > 1
 
     def against(self, value: float) -> str:
-        """Verdict on a number from elsewhere, such as the paper's: inside the interval it agrees."""
+        """Verdict on a number from elsewhere, such as the paper's: inside the interval it
+        agrees.
+        """
         if not np.isfinite(self.mean):
             return NOTHING_MEASURED
         if self.seeds < FEWEST_SEEDS:
@@ -84,9 +89,15 @@ class Estimate:
         """Mean and interval for a person, with what it rests on."""
         if not np.isfinite(self.mean):
             return f"not measured ({self.missing} trials)"
-        base = f"{self.seeds} seeds, {self.trials} trials" if self.speaks_of_seeds else f"1 seed, {self.trials} trials: says nothing about seeds"
+        base = (
+            f"{self.seeds} seeds, {self.trials} trials"
+            if self.speaks_of_seeds
+            else f"1 seed, {self.trials} trials: says nothing about seeds"
+        )
         lost = f", {self.missing} without a value" if self.missing else ""
-        return f"{self.mean:.{digits}g} [{self.low:.{digits}g}, {self.high:.{digits}g}] ({base}{lost})"
+        return (
+            f"{self.mean:.{digits}g} [{self.low:.{digits}g}, {self.high:.{digits}g}] ({base}{lost})"
+        )
 
 
 @dataclass(frozen=True)
@@ -119,7 +130,9 @@ class Difference:
     """Of the interval."""
 
 
-def estimate(groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES, seed: int = 0) -> Estimate:
+def estimate(
+    groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES, seed: int = 0
+) -> Estimate:
     """Mean over seeds and trials.
 
     Args:
@@ -142,11 +155,13 @@ def estimate(groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES
     return Estimate(mean, low, high, error, len(kept), trials, missing, level)
 
 
-def share(groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES, seed: int = 0) -> Estimate:
+def share(
+    groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES, seed: int = 0
+) -> Estimate:
     """Share of trials in which something happened, such as a fall.
 
-    The interval is that of `estimate`, at least as wide as Clopper and Pearson's of all trials together (which is not
-    empty where it never happened), and inside 0 .. 1.
+    The interval is that of `estimate`, at least as wide as Clopper and Pearson's of all trials
+    together (which is not empty where it never happened), and inside 0 .. 1.
 
     Args:
         groups: one array of true and false a seed.
@@ -165,22 +180,34 @@ def share(groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES, s
     high = 1.0 if happened == count else float(beta.ppf(1 - tail, happened + 1, count - happened))
     if np.isfinite(found.low):
         low, high = min(low, max(found.low, 0.0)), max(high, min(found.high, 1.0))
-    return Estimate(found.mean, low, high, found.standard_error, found.seeds, count, found.missing, level)
+    return Estimate(
+        found.mean, low, high, found.standard_error, found.seeds, count, found.missing, level
+    )
 
 
-def difference(first: Groups, second: Groups, *, paired: bool = False, level: float = LEVEL, resamples: int = RESAMPLES, seed: int = 0) -> Difference:
+def difference(
+    first: Groups,
+    second: Groups,
+    *,
+    paired: bool = False,
+    level: float = LEVEL,
+    resamples: int = RESAMPLES,
+    seed: int = 0,
+) -> Difference:
     """First less second.
 
     Args:
         first: one array a seed.
         second: one array a seed.
-        paired: compare seeds one to one, in order (seeds that share their random numbers); else as two independent sets.
+        paired: compare seeds one to one, in order (seeds that share their random numbers); else as
+            two independent sets.
         level: of the interval.
         resamples: of the bootstrap.
         seed: of its random numbers.
 
     Raises:
-        InputError: no group, unequal numbers of seeds when paired, or a level or number of resamples that makes no sense.
+        InputError: no group, unequal numbers of seeds when paired, or a level or number of
+        resamples that makes no sense.
     """
     _check(level, resamples)
     if paired:
@@ -188,28 +215,46 @@ def difference(first: Groups, second: Groups, *, paired: bool = False, level: fl
     (a, _), (b, _) = _measured(first), _measured(second)
     if not a or not b:
         nan = np.nan
-        return Difference(nan, nan, nan, nan, nan, nan, nan, nan, "", paired, NOTHING_MEASURED, level)
+        return Difference(
+            nan, nan, nan, nan, nan, nan, nan, nan, "", paired, NOTHING_MEASURED, level
+        )
     base = float(np.mean([_mean(g) for g in b]))
     mean = float(np.mean([_mean(g) for g in a])) - base
     rng = np.random.default_rng(seed)
     if paired:
         error, freedom = _paired_error(a, b, resamples, rng)
     else:
-        (error_a, freedom_a), (error_b, freedom_b) = (_standard_error(g, _means(g, resamples, rng)) for g in (a, b))
+        (error_a, freedom_a), (error_b, freedom_b) = (
+            _standard_error(g, _means(g, resamples, rng)) for g in (a, b)
+        )
         error = float(np.hypot(error_a, error_b))
         freedom = _welch(error_a, freedom_a, error_b, freedom_b)
     low, high = _interval(mean, error, freedom, level)
     by_seed = len(a) > 1 and len(b) > 1
-    x, y = (np.array([_mean(g) for g in s]) if by_seed else np.concatenate([_flat(g) for g in s]) for s in (a, b))
+    x, y = (
+        np.array([_mean(g) for g in s]) if by_seed else np.concatenate([_flat(g) for g in s])
+        for s in (a, b)
+    )
     scale = abs(base) if base else np.nan
     return Difference(
-        mean, low, high, mean / scale, low / scale, high / scale, hedges_g(x, y), cliffs_delta(x, y),
-        "seeds" if by_seed else "trials", paired, _verdict(low, high, min(len(a), len(b))), level,
-    )  # fmt: skip
+        mean,
+        low,
+        high,
+        mean / scale,
+        low / scale,
+        high / scale,
+        hedges_g(x, y),
+        cliffs_delta(x, y),
+        "seeds" if by_seed else "trials",
+        paired,
+        _verdict(low, high, min(len(a), len(b))),
+        level,
+    )
 
 
 def hedges_g(first: Any, second: Any) -> float:
-    """Difference of means over the pooled standard deviation, times 1 - 3 / (4 (n + m) - 9); NaN without spread or with too few.
+    """Difference of means over the pooled standard deviation, times 1 - 3 / (4 (n + m) - 9); NaN
+    without spread or with too few.
 
     Args:
         first: `(n,)`
@@ -226,22 +271,34 @@ def hedges_g(first: Any, second: Any) -> float:
 
 
 def cliffs_delta(first: Any, second: Any) -> float:
-    """Share of pairs with first > second less that with first < second, `(n,)`, `(m,)` -> -1 .. 1."""
+    """Share of pairs with first > second less that with first < second, `(n,)`, `(m,)` -> -1 ..
+    1.
+    """
     x, y = np.asarray(first, float), np.asarray(second, float)
     return float(np.mean(np.sign(x[:, None] - y[None, :])))
 
 
 def _check(level: float, resamples: int) -> None:
     if not 0 < level < 1:
-        raise InputError("statistics", "level", level, "expects a number between 0 and 1, such as 0.95")
+        raise InputError(
+            "statistics", "level", level, "expects a number between 0 and 1, such as 0.95"
+        )
     if resamples < 100:
         raise InputError("statistics", "resamples", resamples, "expects at least 100")
 
 
 def _checkpoints(group: Any) -> _Seed:
     """A seed's values, an array a checkpoint."""
-    nested = isinstance(group, list | tuple) and len(group) > 0 and all(np.ndim(part) == 1 for part in group)
-    return [np.asarray(part, float) for part in group] if nested else [np.atleast_1d(np.asarray(group, float))]
+    nested = (
+        isinstance(group, list | tuple)
+        and len(group) > 0
+        and all(np.ndim(part) == 1 for part in group)
+    )
+    return (
+        [np.asarray(part, float) for part in group]
+        if nested
+        else [np.atleast_1d(np.asarray(group, float))]
+    )
 
 
 def _flat(seed: _Seed) -> np.ndarray:
@@ -255,32 +312,56 @@ def _mean(seed: _Seed) -> float:
 
 
 def _measured(groups: Groups) -> tuple[list[_Seed], int]:
-    """Values of each seed that has any, without empty checkpoints, and how many values are missing."""
+    """Values of each seed that has any, without empty checkpoints, and how many values are
+    missing.
+    """
     seeds = [_checkpoints(g) for g in groups]
     if not seeds or any(a.ndim != 1 for seed in seeds for a in seed):
-        raise InputError("statistics", "groups", [[list(a.shape) for a in s] for s in seeds], "expects one array of values a seed, or a list of them")
+        raise InputError(
+            "statistics",
+            "groups",
+            [[list(a.shape) for a in s] for s in seeds],
+            "expects one array of values a seed, or a list of them",
+        )
     if any(np.isinf(a).any() for seed in seeds for a in seed):
-        raise InputError("statistics", "groups", "infinite", "expects finite values, or NaN where nothing could be measured")
+        raise InputError(
+            "statistics",
+            "groups",
+            "infinite",
+            "expects finite values, or NaN where nothing could be measured",
+        )
     kept = [[a[~np.isnan(a)] for a in seed] for seed in seeds]
-    missing = sum(len(a) for seed in seeds for a in seed) - sum(len(a) for seed in kept for a in seed)
+    missing = sum(len(a) for seed in seeds for a in seed) - sum(
+        len(a) for seed in kept for a in seed
+    )
     return [found for found in ([a for a in seed if len(a)] for seed in kept) if found], missing
 
 
 def _pairs(first: Groups, second: Groups) -> tuple[list[Any], list[Any]]:
     if len(first) != len(second):
-        raise InputError("statistics", "paired", [len(first), len(second)], "needs as many seeds on both sides")
-    both = [(x, y) for x, y in zip(first, second, strict=True) if all(np.isfinite(_flat(_checkpoints(g))).any() for g in (x, y))]
+        raise InputError(
+            "statistics", "paired", [len(first), len(second)], "needs as many seeds on both sides"
+        )
+    both = [
+        (x, y)
+        for x, y in zip(first, second, strict=True)
+        if all(np.isfinite(_flat(_checkpoints(g))).any() for g in (x, y))
+    ]
     return [x for x, _ in both] or [[np.nan]], [y for _, y in both] or [[np.nan]]
 
 
 def _means(groups: Groups, resamples: int, rng: np.random.Generator) -> np.ndarray:
-    """Means of hierarchical resamples, `(resamples,)`: seeds with replacement, then checkpoints of each, then trials of each."""
+    """Means of hierarchical resamples, `(resamples,)`: seeds with replacement, then checkpoints of
+    each, then trials of each.
+    """
     seeds = [_checkpoints(g) for g in groups]
     return _drawn_means(seeds, rng.integers(len(seeds), size=(resamples, len(seeds))), rng)
 
 
 def _drawn_means(groups: list[_Seed], chosen: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Means over chosen seeds `(resamples, places)` of their checkpoints and trials drawn with replacement, `(resamples,)`."""
+    """Means over chosen seeds `(resamples, places)` of their checkpoints and trials drawn with
+    replacement, `(resamples,)`.
+    """
     counts = np.array([len(seed) for seed in groups])
     lengths = np.zeros((len(groups), counts.max()), int)
     for row, seed in zip(lengths, groups, strict=True):
@@ -299,7 +380,9 @@ def _drawn_means(groups: list[_Seed], chosen: np.ndarray, rng: np.random.Generat
         length = lengths[seeds[..., None], checkpoint][..., None]
         trial = (rng.random((*checkpoint.shape, table.shape[2])) * length).astype(int)
         drawn = table[seeds[..., None, None], checkpoint[..., None], trial]
-        drawn[np.arange(table.shape[2]) >= length] = 0.0  # of shorter checkpoints, drawn for nothing
+        drawn[np.arange(table.shape[2]) >= length] = (
+            0.0  # of shorter checkpoints, drawn for nothing
+        )
         means = drawn.sum(-1) / length[..., 0]
         means[np.arange(table.shape[1]) >= count] = 0.0  # likewise of seeds with fewer checkpoints
         found[begin : begin + at_once] = (means.sum(-1) / count[..., 0]).mean(-1)
@@ -307,13 +390,25 @@ def _drawn_means(groups: list[_Seed], chosen: np.ndarray, rng: np.random.Generat
 
 
 def _standard_error(groups: list[_Seed], means: np.ndarray) -> tuple[float, int]:
-    """Corrected for few seeds (few checkpoints or trials where there is one seed), and degrees of freedom."""
-    units = next(n for n in (len(groups), len(groups[0]), len(groups[0][0])) if n > 1 or n == len(groups[0][0]))
-    return (float(means.std() * np.sqrt(units / (units - 1))), units - 1) if units > 1 else (np.nan, 0)
+    """Corrected for few seeds (few checkpoints or trials where there is one seed), and degrees of
+    freedom.
+    """
+    units = next(
+        n
+        for n in (len(groups), len(groups[0]), len(groups[0][0]))
+        if n > 1 or n == len(groups[0][0])
+    )
+    return (
+        (float(means.std() * np.sqrt(units / (units - 1))), units - 1) if units > 1 else (np.nan, 0)
+    )
 
 
-def _paired_error(a: list[_Seed], b: list[_Seed], resamples: int, rng: np.random.Generator) -> tuple[float, int]:
-    """Of the mean of the seeds' differences: seeds are drawn together, trials of each side apart."""
+def _paired_error(
+    a: list[_Seed], b: list[_Seed], resamples: int, rng: np.random.Generator
+) -> tuple[float, int]:
+    """Of the mean of the seeds' differences: seeds are drawn together, trials of each side
+    apart.
+    """
     seeds = len(a)
     if seeds == 1:
         error_a, error_b = (_standard_error(g, _means(g, resamples, rng)) for g in (a, b))
@@ -329,7 +424,9 @@ def _welch(error_a: float, freedom_a: int, error_b: float, freedom_b: int) -> in
         return 0
     if error_a == 0 and error_b == 0:
         return freedom_a + freedom_b
-    return max(1, int((error_a**2 + error_b**2) ** 2 / (error_a**4 / freedom_a + error_b**4 / freedom_b)))
+    return max(
+        1, int((error_a**2 + error_b**2) ** 2 / (error_a**4 / freedom_a + error_b**4 / freedom_b))
+    )
 
 
 def _interval(mean: float, error: float, freedom: int, level: float) -> tuple[float, float]:

@@ -29,13 +29,21 @@ class Contacts:
 
 
 def foot_contacts(trial: Trial, events: Events) -> Contacts:
-    """Contacts by the thresholds of a protocol, in body weights; gaps and short contacts are filled for whole feet only."""
+    """Contacts by the thresholds of a protocol, in body weights; gaps and short contacts are filled
+    for whole feet only.
+    """
     on, off = events.touchdown_load * trial.layout.weight, events.lift_load * trial.layout.weight
     behind = trial.layout.pad_position[:, 0] < 0
     shortest = max(1, round(events.shortest / trial.time_step))
 
     def loads(chosen: np.ndarray) -> np.ndarray:
-        return np.stack([trial.pad_load[:, chosen & (trial.layout.pad_foot == foot)].sum(-1) for foot in (0, 1)], -1)
+        return np.stack(
+            [
+                trial.pad_load[:, chosen & (trial.layout.pad_foot == foot)].sum(-1)
+                for foot in (0, 1)
+            ],
+            -1,
+        )
 
     return Contacts(
         feet=gait.stance(trial.foot_load, on, off, shortest),
@@ -53,8 +61,20 @@ def measured_steps(trial: Trial, events: Events) -> gait.Steps:
 def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[str, float]:
     """Means over the touchdowns of both feet: `grf_peak` and the others of `Impacts`."""
     filtered = low_pass(trial.foot_load, trial.time_step, settings.cutoff, int(settings.order))
-    each = [impacts(trial.foot_load[:, f], filtered[:, f], steps.touchdown[steps.foot == f], trial.time_step, settings.window) for f in (0, 1)]
-    mean = {name: mean_of(np.concatenate([getattr(e, name) for e in each])) for name in ("peak", "raw_peak", "loading_rate", "impulse")}
+    each = [
+        impacts(
+            trial.foot_load[:, f],
+            filtered[:, f],
+            steps.touchdown[steps.foot == f],
+            trial.time_step,
+            settings.window,
+        )
+        for f in (0, 1)
+    ]
+    mean = {
+        name: mean_of(np.concatenate([getattr(e, name) for e in each]))
+        for name in ("peak", "raw_peak", "loading_rate", "impulse")
+    }
     return {
         "grf_peak": mean["peak"],
         "grf_peak_body_weights": mean["peak"] / trial.layout.weight,
@@ -64,10 +84,14 @@ def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[s
     }
 
 
-def step_measures(trial: Trial, steps: gait.Steps, window: tuple[int, int], events: Events) -> dict[str, float]:
+def step_measures(
+    trial: Trial, steps: gait.Steps, window: tuple[int, int], events: Events
+) -> dict[str, float]:
     """Gait measures of some steps and the stretch of samples that they lie in."""
     contacts = foot_contacts(trial, events)
-    slip = gait.slip_per_step(steps, trial.pad_load, trial.pad_slip, trial.layout.pad_foot, trial.time_step)
+    slip = gait.slip_per_step(
+        steps, trial.pad_load, trial.pad_slip, trial.layout.pad_foot, trial.time_step
+    )
     places = foot_places(trial, steps.touchdown)[np.arange(len(steps)), steps.foot]
     length, width = gait.step_vectors(steps, places)
     return {
@@ -86,13 +110,17 @@ def step_measures(trial: Trial, steps: gait.Steps, window: tuple[int, int], even
 
 
 def flat_drift(trial: Trial, steps: gait.Steps, contacts: Contacts) -> np.ndarray:
-    """How far each foot has moved over the floor between first and last standing flat in a contact [m], `(k,)`; NaN where it never is.
+    """How far each foot has moved over the floor between first and last standing flat in a contact
+    [m], `(k,)`; NaN where it never is.
 
-    Straight and without landing and push-off, where the foot turns about its edges; what one would see of sliding.
+    Straight and without landing and push-off, where the foot turns about its edges; what one would
+    see of sliding.
     """
     found = np.full(len(steps), np.nan)
     flat = contacts.heel & contacts.forefoot
-    for i, (foot, down, up) in enumerate(zip(steps.foot, steps.touchdown, steps.toe_off, strict=True)):
+    for i, (foot, down, up) in enumerate(
+        zip(steps.foot, steps.touchdown, steps.toe_off, strict=True)
+    ):
         standing = down + np.flatnonzero(flat[down : up if up > 0 else len(flat), foot])
         if len(standing) > 1:
             begin, end = foot_places(trial, standing[[0, -1]])[:, foot]

@@ -43,24 +43,33 @@ def evaluate_t_test(
         design: the robot; an ONNX policy's own by default.
         task: which gives observations, physics and control; an ONNX policy's own by default.
         threads: of the simulation; the result does not depend on it.
-        alterations: of the simulated robot, or what makes them for a design, such as `Overlay.alterations`.
+        alterations: of the simulated robot, or what makes them for a design, such as
+            `Overlay.alterations`.
 
     Raises:
-        InputError: another kind of protocol or task, a policy for another layout, or one whose output is not finite.
+        InputError: another kind of protocol or task, a policy for another layout, or one whose
+        output is not finite.
     """
     chosen = load_protocol(protocol) if isinstance(protocol, str) else protocol
     if not isinstance(chosen, TTestProtocol):
         raise InputError("t_test", "protocol", chosen.name, "expects a protocol of kind t_test")
     robot, task = rollout.resolved(policy, design, task)
     environment = Environment(
-        robot, t_test_task(task, chosen), simulations=int(chosen.trials), seed=int(chosen.seed), threads=threads, alterations=alterations
+        robot,
+        t_test_task(task, chosen),
+        simulations=int(chosen.trials),
+        seed=int(chosen.seed),
+        threads=threads,
+        alterations=alterations,
     )
     try:
         trials = rollout.record(policy, environment, chosen.time_limit)
     finally:
         environment.close()
     found = [measure_t_test(trial, chosen) for trial in trials]
-    return evaluation_of(policy, robot, chosen, trials, [f[0] for f in found], [f[1] for f in found])
+    return evaluation_of(
+        policy, robot, chosen, trials, [f[0] for f in found], [f[1] for f in found]
+    )
 
 
 def t_test_task(task: Task, protocol: TTestProtocol) -> Task:
@@ -70,7 +79,12 @@ def t_test_task(task: Task, protocol: TTestProtocol) -> Task:
         InputError: a task without waypoints.
     """
     if not isinstance(task.commands, WaypointCommands):
-        raise InputError(task.name, "commands.kind", "velocity", "expects waypoints; this policy walks at a speed")
+        raise InputError(
+            task.name,
+            "commands.kind",
+            "velocity",
+            "expects waypoints; this policy walks at a speed",
+        )
     commands = dataclasses.replace(
         task.commands,
         arrival=protocol.arrival,
@@ -79,24 +93,34 @@ def t_test_task(task: Task, protocol: TTestProtocol) -> Task:
         course_share=1.0,
     )
     made = rollout.under_protocol(task, protocol)
-    return made.changed(commands=commands, limits=dataclasses.replace(made.limits, deviation=protocol.lost))
+    return made.changed(
+        commands=commands, limits=dataclasses.replace(made.limits, deviation=protocol.lost)
+    )
 
 
-def measure_t_test(trial: Trial, protocol: TTestProtocol) -> tuple[dict[str, float], MotorUse | None]:
-    """Measures of one run and the use of its motors; NaN where a trial cannot give one, all of a diverged trial.
+def measure_t_test(
+    trial: Trial, protocol: TTestProtocol
+) -> tuple[dict[str, float], MotorUse | None]:
+    """Measures of one run and the use of its motors; NaN where a trial cannot give one, all of a
+    diverged trial.
 
-    `time`, `mean_speed` and `waypoint_*` come from arrivals; deviations, peak speed and power from all that was run, so a
-    run that ends in a fall has them up to the fall.
+    `time`, `mean_speed` and `waypoint_*` come from arrivals; deviations, peak speed and power from
+    all that was run, so a run that ends in a fall has them up to the fall.
     """
     waypoints = tuple(f"waypoint_{i}" for i in range(1, len(protocol.order)))
     found = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(trial)
     if trial.outcome == rollout.DIVERGED or trial.samples < 2:
         return found | dict.fromkeys((*_MEASURES, *waypoints), np.nan), None
     heading = bearing.headings(trial.base_orientation)
-    place = course.in_start_frame(trial.base_position[:, :2], trial.base_position[0, :2], heading[0])
+    place = course.in_start_frame(
+        trial.base_position[:, :2], trial.base_position[0, :2], heading[0]
+    )
     reached = reached_samples(trial, place, protocol)
     leg = course.legs_run(reached, trial.samples)
-    beside, aside = course.course_deviation(place, protocol.course), course.leg_deviation(place, protocol.course, leg)
+    beside, aside = (
+        course.course_deviation(place, protocol.course),
+        course.leg_deviation(place, protocol.course, leg),
+    )
     speed = np.linalg.norm(trial.base_velocity[:, :2], axis=-1)
     arrived = trial.outcome == rollout.ARRIVED
     way = course.path_length(place)
@@ -126,11 +150,17 @@ def measure_t_test(trial: Trial, protocol: TTestProtocol) -> tuple[dict[str, flo
         "negative_power": power["mechanical_negative"],
         "battery_power": power["battery"],
         "energy": power["motor_side"] * duration,
-        "cost_of_transport": float(cost_of_transport(power["motor_side"] * duration, trial.mass, way)) if way > 1.0 else np.nan,
+        "cost_of_transport": float(
+            cost_of_transport(power["motor_side"] * duration, trial.mass, way)
+        )
+        if way > 1.0
+        else np.nan,
         **impact_measures(trial, steps, protocol.impact),
         **{name: stepped[name] for name in _OF_STEPS},
         "largest_tilt": float(bearing.tilt(trial.base_orientation).max()),
-        "stop_share": float(bearing.stop_share(trial.joint_position, trial.layout.lower, trial.layout.upper).max()),
+        "stop_share": float(
+            bearing.stop_share(trial.joint_position, trial.layout.lower, trial.layout.upper).max()
+        ),
         "vibration": float(bearing.vibration(trial.joint_velocity, trial.time_step).max()),
         "limit_share": float(use.limit_share.max()),
         "continuous_use": float(use.continuous_use.max()),
@@ -141,7 +171,8 @@ def measure_t_test(trial: Trial, protocol: TTestProtocol) -> tuple[dict[str, flo
 
 
 def reached_samples(trial: Trial, place: np.ndarray, protocol: TTestProtocol) -> np.ndarray:
-    """Samples at which the waypoints were reached, as the simulation judges it: at the ends of policy steps; -1 where never.
+    """Samples at which the waypoints were reached, as the simulation judges it: at the ends of
+    policy steps; -1 where never.
 
     Args:
         trial: the run.
@@ -158,10 +189,45 @@ def reached_samples(trial: Trial, place: np.ndarray, protocol: TTestProtocol) ->
     return found
 
 
-_OF_STEPS = ("cadence", "step_length", "duty_factor", "double_support", "flight", "slip_per_step", "foot_drift", "largest_slip")
+_OF_STEPS = (
+    "cadence",
+    "step_length",
+    "duty_factor",
+    "double_support",
+    "flight",
+    "slip_per_step",
+    "foot_drift",
+    "largest_slip",
+)
 _MEASURES = (
-    "time", "waypoints_reached", "distance", "mean_speed", "peak_speed", "mean_deviation", "peak_deviation", "mean_leg_deviation",
-    "peak_leg_deviation", "turned", "power", "joule_power", "mechanical_power", "positive_power", "negative_power", "battery_power", "energy",
-    "cost_of_transport", "grf_peak", "grf_peak_body_weights", "grf_raw_peak", "grf_loading_rate", "grf_impulse", *_OF_STEPS, "largest_tilt",
-    "stop_share", "vibration", "limit_share", "continuous_use", "thermal_peak",
-)  # fmt: skip
+    "time",
+    "waypoints_reached",
+    "distance",
+    "mean_speed",
+    "peak_speed",
+    "mean_deviation",
+    "peak_deviation",
+    "mean_leg_deviation",
+    "peak_leg_deviation",
+    "turned",
+    "power",
+    "joule_power",
+    "mechanical_power",
+    "positive_power",
+    "negative_power",
+    "battery_power",
+    "energy",
+    "cost_of_transport",
+    "grf_peak",
+    "grf_peak_body_weights",
+    "grf_raw_peak",
+    "grf_loading_rate",
+    "grf_impulse",
+    *_OF_STEPS,
+    "largest_tilt",
+    "stop_share",
+    "vibration",
+    "limit_share",
+    "continuous_use",
+    "thermal_peak",
+)

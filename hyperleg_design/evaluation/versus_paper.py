@@ -10,7 +10,13 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.paper import Printed
 from hyperleg_design.evaluation.result import by_checkpoint
-from hyperleg_design.evaluation.statistics import AGREES, DIFFERS, TOO_FEW_SEEDS, Difference, Estimate
+from hyperleg_design.evaluation.statistics import (
+    AGREES,
+    DIFFERS,
+    TOO_FEW_SEEDS,
+    Difference,
+    Estimate,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -32,7 +38,8 @@ class PaperRow:
     difference: Difference
     """Ours, toe less ablation."""
     toe_verdict: str
-    """`AGREES` where the printed number lies in our interval, `DIFFERS`, `TOO_FEW_SEEDS`, or `NOT_REPRODUCED`."""
+    """`AGREES` where the printed number lies in our interval, `DIFFERS`, `TOO_FEW_SEEDS`, or
+    `NOT_REPRODUCED`."""
     ablation_verdict: str
     """The same without the toe."""
     change_verdict: str
@@ -41,7 +48,13 @@ class PaperRow:
     """Why it differs or cannot be reproduced, where that is known."""
 
 
-def paper_rows(table: pd.DataFrame, printed: Sequence[Printed], variants: tuple[str, str] = VARIANTS, *, seed: int = 0) -> list[PaperRow]:
+def paper_rows(
+    table: pd.DataFrame,
+    printed: Sequence[Printed],
+    variants: tuple[str, str] = VARIANTS,
+    *,
+    seed: int = 0,
+) -> list[PaperRow]:
     """Printed numbers beside ours.
 
     Args:
@@ -57,22 +70,46 @@ def paper_rows(table: pd.DataFrame, printed: Sequence[Printed], variants: tuple[
     for variant in variants:
         part = table[table["variant"] == variant]
         if part.empty:
-            raise InputError("comparison", "variant", variant, f"has no trials; there are {', '.join(sorted(set(table['variant'])))}")
+            raise InputError(
+                "comparison",
+                "variant",
+                variant,
+                f"has no trials; there are {', '.join(sorted(set(table['variant'])))}",
+            )
         parts[variant] = part
-    return [_row(item, {v: list(by_checkpoint(part, item.measure).values()) for v, part in parts.items()}, variants, seed) for item in printed]
+    return [
+        _row(
+            item,
+            {v: list(by_checkpoint(part, item.measure).values()) for v, part in parts.items()},
+            variants,
+            seed,
+        )
+        for item in printed
+    ]
 
 
-def _row(item: Printed, groups: Mapping[str, statistics.Groups], variants: tuple[str, str], seed: int) -> PaperRow:
+def _row(
+    item: Printed, groups: Mapping[str, statistics.Groups], variants: tuple[str, str], seed: int
+) -> PaperRow:
     toe, ablation = (statistics.estimate(groups[v], seed=seed) for v in variants)
     difference = statistics.difference(groups[variants[0]], groups[variants[1]], seed=seed)
-    verdicts = [_plain(toe.against(item.toe)), _plain(ablation.against(item.ablation)), change_verdict(difference, item.change)]
-    lost = [f"{e.missing} of {e.missing + e.trials} trials of {v} gave no value" for e, v in zip((toe, ablation), variants, strict=True) if e.missing]
+    verdicts = [
+        _plain(toe.against(item.toe)),
+        _plain(ablation.against(item.ablation)),
+        change_verdict(difference, item.change),
+    ]
+    lost = [
+        f"{e.missing} of {e.missing + e.trials} trials of {v} gave no value"
+        for e, v in zip((toe, ablation), variants, strict=True)
+        if e.missing
+    ]
     why = "; ".join([*lost, *([item.caveat] if item.caveat and set(verdicts) != {AGREES} else [])])
     return PaperRow(item, toe, ablation, difference, verdicts[0], verdicts[1], verdicts[2], why)
 
 
 def change_verdict(difference: Difference, change: float) -> str:
-    """Verdict on a printed relative change: it agrees inside an interval of ours that leaves zero out.
+    """Verdict on a printed relative change: it agrees inside an interval of ours that leaves zero
+    out.
 
     With zero inside too, ours can be told neither from the printed change nor from none.
     """
@@ -80,7 +117,11 @@ def change_verdict(difference: Difference, change: float) -> str:
         return _plain(difference.verdict)
     if not difference.relative_low <= change <= difference.relative_high:
         return DIFFERS
-    return statistics.NOT_TOLD_APART if difference.relative_low <= 0 <= difference.relative_high else AGREES
+    return (
+        statistics.NOT_TOLD_APART
+        if difference.relative_low <= 0 <= difference.relative_high
+        else AGREES
+    )
 
 
 def _plain(verdict: str) -> str:

@@ -49,56 +49,92 @@ def evaluate_walk(
         design: the robot; an ONNX policy's own by default.
         task: which gives observations, physics and control; an ONNX policy's own by default.
         threads: of the simulation; the result does not depend on it.
-        alterations: of the simulated robot, or what makes them for a design, such as `Overlay.alterations`.
+        alterations: of the simulated robot, or what makes them for a design, such as
+            `Overlay.alterations`.
 
     Raises:
-        InputError: another kind of protocol or task, a policy for another layout, or one whose output is not finite.
+        InputError: another kind of protocol or task, a policy for another layout, or one whose
+        output is not finite.
     """
     chosen = load_protocol(protocol) if isinstance(protocol, str) else protocol
     if not isinstance(chosen, WalkProtocol):
         raise InputError("walk", "protocol", chosen.name, "expects a protocol of kind walk")
     robot, task = rollout.resolved(policy, design, task)
     environment = Environment(
-        robot, walk_task(task, chosen), simulations=int(chosen.trials), seed=int(chosen.seed), threads=threads, alterations=alterations
+        robot,
+        walk_task(task, chosen),
+        simulations=int(chosen.trials),
+        seed=int(chosen.seed),
+        threads=threads,
+        alterations=alterations,
     )
     try:
         trials = rollout.record(
             policy,
             environment,
             chosen.time_limit,
-            arrived=lambda first, now: np.linalg.norm(now[:, :2] - first[:, :2], axis=-1) >= chosen.distance,
+            arrived=lambda first, now: (
+                np.linalg.norm(now[:, :2] - first[:, :2], axis=-1) >= chosen.distance
+            ),
             before_step=_heading_keeper(chosen.heading_gain) if chosen.heading_gain else None,
         )
     finally:
         environment.close()
     found = [measure_walk(trial, chosen) for trial in trials]
-    return evaluation_of(policy, robot, chosen, trials, [f[0] for f in found], [f[1] for f in found], [f[2] for f in found])
+    return evaluation_of(
+        policy,
+        robot,
+        chosen,
+        trials,
+        [f[0] for f in found],
+        [f[1] for f in found],
+        [f[2] for f in found],
+    )
 
 
 def walk_task(task: Task, protocol: WalkProtocol) -> Task:
     """A policy's task under the protocol's command, starting states and time.
 
     Raises:
-        InputError: a task without velocity commands, or `heading_gain` for a policy that never had to turn.
+        InputError: a task without velocity commands, or `heading_gain` for a policy that never had
+        to turn.
     """
     if not isinstance(task.commands, VelocityCommands):
-        raise InputError(task.name, "commands.kind", "waypoints", "expects velocity commands; this policy runs the T-test")
+        raise InputError(
+            task.name,
+            "commands.kind",
+            "waypoints",
+            "expects velocity commands; this policy runs the T-test",
+        )
     if protocol.heading_gain and not task.commands.turning:
-        raise InputError(protocol.name, "heading_gain", protocol.heading_gain, f"must be 0: the task {task.name} was trained without turning")
+        raise InputError(
+            protocol.name,
+            "heading_gain",
+            protocol.heading_gain,
+            f"must be 0: the task {task.name} was trained without turning",
+        )
     commands = dataclasses.replace(
-        task.commands, test_share=1.0, standing_share=0.0, test_speed=protocol.speed, interval=NO_NEW_COMMAND,
-    )  # fmt: skip
+        task.commands,
+        test_share=1.0,
+        standing_share=0.0,
+        test_speed=protocol.speed,
+        interval=NO_NEW_COMMAND,
+    )
     return rollout.under_protocol(task, protocol).changed(commands=commands)
 
 
-def measure_walk(trial: Trial, protocol: WalkProtocol) -> tuple[dict[str, float], MotorUse | None, CyclePower | None]:
-    """Measures of one walk, the use of its motors in steady state, and its right-leg power over the gait cycle.
+def measure_walk(
+    trial: Trial, protocol: WalkProtocol
+) -> tuple[dict[str, float], MotorUse | None, CyclePower | None]:
+    """Measures of one walk, the use of its motors in steady state, and its right-leg power over the
+    gait cycle.
 
-    A measure that a trial cannot give is NaN: all of a diverged trial; those of the steady state where it fell or has
-    fewer than `STRIDES` whole strides.
+    A measure that a trial cannot give is NaN: all of a diverged trial; those of the steady state
+    where it fell or has fewer than `STRIDES` whole strides.
 
     Returns:
-        Measures by name, see `measures.WALK`; use of the motors and right-leg power, None without a steady state.
+        Measures by name, see `measures.WALK`; use of the motors and right-leg power, None without a
+        steady state.
     """
     found = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(trial)
     if trial.outcome == rollout.DIVERGED or not trial.samples:
@@ -115,7 +151,8 @@ def measure_walk(trial: Trial, protocol: WalkProtocol) -> tuple[dict[str, float]
 
 
 def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tuple[int, int] | None:
-    """First and last sample of the whole strides of the left foot in the steady part; None for a fall or too few strides.
+    """First and last sample of the whole strides of the left foot in the steady part; None for a
+    fall or too few strides.
 
     Args:
         trial: the walk.
@@ -134,13 +171,20 @@ def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tup
 
 
 def impact_band(
-    policy: Policy, time_constants: Sequence[float], protocol: WalkProtocol | str = "walk", *, design: Design | None = None, task: Task | None = None
+    policy: Policy,
+    time_constants: Sequence[float],
+    protocol: WalkProtocol | str = "walk",
+    *,
+    design: Design | None = None,
+    task: Task | None = None,
 ) -> dict[float, Evaluation]:
-    """The walk protocol over a band of contact stiffness, because much of an impact is the stiffness of the sole's contact.
+    """The walk protocol over a band of contact stiffness, because much of an impact is the
+    stiffness of the sole's contact.
 
     Args:
         policy: as in `evaluate_walk`.
-        time_constants: of the contact's spring and damper [s]; stiffness goes with their inverse square.
+        time_constants: of the contact's spring and damper [s]; stiffness goes with their inverse
+            square.
         protocol: as in `evaluate_walk`.
         design: as in `evaluate_walk`.
         task: as in `evaluate_walk`.
@@ -150,37 +194,98 @@ def impact_band(
     """
     robot, task = rollout.resolved(policy, design, task)
     return {
-        value: evaluate_walk(policy, protocol, design=robot.with_values({"contact.time_constant": value}, "impact band"), task=task)
+        value: evaluate_walk(
+            policy,
+            protocol,
+            design=robot.with_values({"contact.time_constant": value}, "impact band"),
+            task=task,
+        )
         for value in time_constants
     }
 
 
 _RUN = (
-    "time", "distance", "path", "mean_speed", "sideways", "turned", "power", "joule_power", "mechanical_power", "positive_power",
-    "negative_power", "driver_loss", "battery_power", "energy", "battery_energy", "cost_of_transport", "battery_cost_of_transport",
+    "time",
+    "distance",
+    "path",
+    "mean_speed",
+    "sideways",
+    "turned",
+    "power",
+    "joule_power",
+    "mechanical_power",
+    "positive_power",
+    "negative_power",
+    "driver_loss",
+    "battery_power",
+    "energy",
+    "battery_energy",
+    "cost_of_transport",
+    "battery_cost_of_transport",
     "largest_tilt",
-)  # fmt: skip
+)
 _STEADY = (
-    "steady_speed", "steady_power", "steady_joule_power", "steady_mechanical_power", "steady_positive_power", "steady_negative_power",
-    "steady_battery_power", "steady_cost_of_transport", "steady_battery_cost_of_transport", "grf_peak", "grf_peak_body_weights",
-    "grf_raw_peak", "grf_loading_rate", "grf_impulse", "cadence", "step_length", "step_width", "duty_factor", "heel_off", "double_support",
-    "single_support", "flight", "alternation", "heel_lead", "heel_or_flat", "slip_per_step", "foot_drift", "largest_slip", "mean_tilt", "stop_share",
-    "vibration", "limit_share", "continuous_use", "thermal_peak", *(f"right_{name}_power" for name in LEG_MEANS),
-)  # fmt: skip
+    "steady_speed",
+    "steady_power",
+    "steady_joule_power",
+    "steady_mechanical_power",
+    "steady_positive_power",
+    "steady_negative_power",
+    "steady_battery_power",
+    "steady_cost_of_transport",
+    "steady_battery_cost_of_transport",
+    "grf_peak",
+    "grf_peak_body_weights",
+    "grf_raw_peak",
+    "grf_loading_rate",
+    "grf_impulse",
+    "cadence",
+    "step_length",
+    "step_width",
+    "duty_factor",
+    "heel_off",
+    "double_support",
+    "single_support",
+    "flight",
+    "alternation",
+    "heel_lead",
+    "heel_or_flat",
+    "slip_per_step",
+    "foot_drift",
+    "largest_slip",
+    "mean_tilt",
+    "stop_share",
+    "vibration",
+    "limit_share",
+    "continuous_use",
+    "thermal_peak",
+    *(f"right_{name}_power" for name in LEG_MEANS),
+)
 
 
 def _run_measures(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> dict[str, float]:
     """From the start to the arrival, the fall or the time limit."""
-    time = course.crossing_time(away, protocol.distance, trial.time_step) if trial.outcome == rollout.ARRIVED else np.nan
+    time = (
+        course.crossing_time(away, protocol.distance, trial.time_step)
+        if trial.outcome == rollout.ARRIVED
+        else np.nan
+    )
     duration = trial.samples * trial.time_step
     power = flows(ledger(trial))
     heading = bearing.headings(trial.base_orientation)
     end = course.in_start_frame(trial.base_position[-1, :2], trial.base_position[0, :2], heading[0])
     way = float(away[-1])
     transport = {}
-    for name, flow in (("cost_of_transport", "motor_side"), ("battery_cost_of_transport", "battery")):
+    for name, flow in (
+        ("cost_of_transport", "motor_side"),
+        ("battery_cost_of_transport", "battery"),
+    ):
         # falling on the spot transports nothing, so it has no cost of transport
-        transport[name] = float(cost_of_transport(power[flow] * duration, trial.mass, way)) if way > 1.0 else np.nan
+        transport[name] = (
+            float(cost_of_transport(power[flow] * duration, trial.mass, way))
+            if way > 1.0
+            else np.nan
+        )
     return {
         "time": time,
         "distance": way,
@@ -202,13 +307,18 @@ def _run_measures(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> dic
     }
 
 
-def _steady_measures(trial: Trial, window: tuple[int, int], protocol: WalkProtocol) -> tuple[dict[str, float], gait.Steps]:
+def _steady_measures(
+    trial: Trial, window: tuple[int, int], protocol: WalkProtocol
+) -> tuple[dict[str, float], gait.Steps]:
     first, last = window
     part = slice(first, last)
     duration = (last - first) * trial.time_step
     power = flows(ledger(trial, first, last))
     way = float(np.linalg.norm(trial.base_position[last, :2] - trial.base_position[first, :2]))
-    transport = {flow: float(cost_of_transport(power[flow] * duration, trial.mass, way)) for flow in ("motor_side", "battery")}
+    transport = {
+        flow: float(cost_of_transport(power[flow] * duration, trial.mass, way))
+        for flow in ("motor_side", "battery")
+    }
     steps = measured_steps(trial, protocol.events).within(first, last + 1)
     use = motor_use(trial, first, last)
     layout = trial.layout
@@ -225,7 +335,9 @@ def _steady_measures(trial: Trial, window: tuple[int, int], protocol: WalkProtoc
         **impact_measures(trial, steps, protocol.impact),
         **step_measures(trial, steps, window, protocol.events),
         "mean_tilt": float(bearing.tilt(trial.base_orientation[part]).mean()),
-        "stop_share": float(bearing.stop_share(trial.joint_position[part], layout.lower, layout.upper).max()),
+        "stop_share": float(
+            bearing.stop_share(trial.joint_position[part], layout.lower, layout.upper).max()
+        ),
         "vibration": float(bearing.vibration(trial.joint_velocity[part], trial.time_step).max()),
         "limit_share": float(use.limit_share.max()),
         "continuous_use": float(use.continuous_use.max()),
@@ -243,7 +355,9 @@ def _heading_keeper(gain: float) -> Any:
             start.append(heading)
         cross = heading[:, 0] * start[0][:, 1] - heading[:, 1] * start[0][:, 0]
         turning = environment.task.commands.turning  # type: ignore[union-attr]
-        wanted = np.clip(gain * np.arctan2(cross, np.einsum("ni,ni->n", heading, start[0])), -turning, turning)
+        wanted = np.clip(
+            gain * np.arctan2(cross, np.einsum("ni,ni->n", heading, start[0])), -turning, turning
+        )
         for chunk in environment.chunks:
             chunk.commander.values[:, 2] = wanted[chunk.first : chunk.first + chunk.count]  # type: ignore[union-attr]
 

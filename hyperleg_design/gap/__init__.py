@@ -1,1 +1,3 @@
-"""Where hardware and simulation differ, which unmodelled effect is the cause, and how far the gap shrinks once it is added."""
+"""Where hardware and simulation differ, which unmodelled effect is the cause, and how far the gap
+shrinks once it is added.
+"""

@@ -1,4 +1,6 @@
-"""What an added effect changes: how well the simulation replays logs, and what it says of a policy's walk."""
+"""What an added effect changes: how well the simulation replays logs, and what it says of a
+policy's walk.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +23,28 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
 
 COMPARED = (
-    "fell", "mean_speed", "cost_of_transport", "battery_cost_of_transport", "power", "grf_peak", "grf_loading_rate", "cadence", "step_length",
-    "double_support", "time", "mean_deviation", "peak_deviation",
-)  # fmt: skip
+    "fell",
+    "mean_speed",
+    "cost_of_transport",
+    "battery_cost_of_transport",
+    "power",
+    "grf_peak",
+    "grf_loading_rate",
+    "cadence",
+    "step_length",
+    "double_support",
+    "time",
+    "mean_deviation",
+    "peak_deviation",
+)
 """Measures of a walk or a T-test that are set side by side, those that its protocol has."""
 
 
 @dataclass(frozen=True)
 class Replayed:
-    """Error of the predicted position of one joint over short windows of all logs, root mean square [rad]."""
+    """Error of the predicted position of one joint over short windows of all logs, root mean square
+    [rad].
+    """
 
     joint: str
     before: float
@@ -52,12 +67,14 @@ class Changed:
     difference: float
     low: float
     high: float
-    """Of after less before, trial by trial, with its 95 % interval; NaN where fewer than two trials have both."""
+    """Of after less before, trial by trial, with its 95 % interval; NaN where fewer than two trials
+    have both."""
     trials: int
 
 
 def replayed(signals: Sequence[Signals], overlay: Overlay, *, threads: int = 1) -> list[Replayed]:
-    """Replay logs without and with an overlay, over short windows that start from the logged states.
+    """Replay logs without and with an overlay, over short windows that start from the logged
+    states.
 
     Args:
         signals: conditioned logs of one robot; held-out ones, if the overlay came of logs.
@@ -71,15 +88,28 @@ def replayed(signals: Sequence[Signals], overlay: Overlay, *, threads: int = 1) 
     for one in signals:
         changes: Sequence[Any] = [(), overlay.alterations(one.subject)]
         position, _ = replay(one, changes, short_windows(one), threads=threads).errors(one)
-        squares.append(np.nanmean(position**2, axis=2) if position.size else np.zeros((2, 0, len(one.subject.joints))))
+        squares.append(
+            np.nanmean(position**2, axis=2)
+            if position.size
+            else np.zeros((2, 0, len(one.subject.joints)))
+        )
     together = np.concatenate(squares, 1)
     kept = np.isfinite(together).all((0, 2))
     root = np.sqrt(together[:, kept].mean(1))
     subject, follows = signals[0].subject, best_input(signals[0])
-    return [Replayed(joint, float(root[0, j]), float(root[1, j]), int(kept.sum()), follows) for j, joint in enumerate(subject.joints)]
+    return [
+        Replayed(joint, float(root[0, j]), float(root[1, j]), int(kept.sum()), follows)
+        for j, joint in enumerate(subject.joints)
+    ]
 
 
-def walked(policy: str | Path, overlay: Overlay, protocol: Protocol | str | Path | None = None, *, workers: int = 2) -> list[Changed]:
+def walked(
+    policy: str | Path,
+    overlay: Overlay,
+    protocol: Protocol | str | Path | None = None,
+    *,
+    workers: int = 2,
+) -> list[Changed]:
     """Evaluate a policy without and with an overlay, from the same starting states.
 
     Args:
@@ -102,7 +132,18 @@ def walked(policy: str | Path, overlay: Overlay, protocol: Protocol | str | Path
         nan = float("nan")
         one = statistics.estimate([second[both] - first[both]]) if both.sum() > 1 else None
         mean, low, high = (one.mean, one.low, one.high) if one else (nan, nan, nan)
-        found.append(Changed(name, measure_of(name).unit, _mean(first), _mean(second), mean, low, high, int(both.sum())))
+        found.append(
+            Changed(
+                name,
+                measure_of(name).unit,
+                _mean(first),
+                _mean(second),
+                mean,
+                low,
+                high,
+                int(both.sum()),
+            )
+        )
     return found
 
 
@@ -114,6 +155,12 @@ def mapping(logs: Sequence[Replayed], walk: Sequence[Changed]) -> dict[str, Any]
     """Plain values for a file."""
 
     def plain(row: dict[str, Any]) -> dict[str, Any]:
-        return {key: None if isinstance(value, float) and not np.isfinite(value) else value for key, value in row.items()}
+        return {
+            key: None if isinstance(value, float) and not np.isfinite(value) else value
+            for key, value in row.items()
+        }
 
-    return {"replayed": [plain(asdict(one)) for one in logs], "walked": [plain(asdict(one)) for one in walk]}
+    return {
+        "replayed": [plain(asdict(one)) for one in logs],
+        "walked": [plain(asdict(one)) for one in walk],
+    }

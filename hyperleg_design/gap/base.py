@@ -1,4 +1,6 @@
-"""What causes are fitted beside: residual and calibration errors of all samples, priors of the errors, and the sums of their products."""
+"""What causes are fitted beside: residual and calibration errors of all samples, priors of the
+errors, and the sums of their products.
+"""
 
 from __future__ import annotations
 
@@ -76,10 +78,20 @@ class Base:
     def sums(self) -> list[list[list[Sums]]]:
         """Products of `stacked` by way of holding out, fold and session."""
         samples = self.samples
-        found = [[[self.layout.empty() for _ in range(samples.sessions)] for _ in range(samples.folds(way))] for way in range(len(samples.fold))]
+        found = [
+            [
+                [self.layout.empty() for _ in range(samples.sessions)]
+                for _ in range(samples.folds(way))
+            ]
+            for way in range(len(samples.fold))
+        ]
         for piece in samples.pieces:
             session = samples.session[piece.part]
-            self.layout.add([found[way][fold][session] for way, fold in enumerate(samples.fold[:, piece.part])], self.stacked, piece)
+            self.layout.add(
+                [found[way][fold][session] for way, fold in enumerate(samples.fold[:, piece.part])],
+                self.stacked,
+                piece,
+            )
         return found
 
     @cached_property
@@ -104,7 +116,9 @@ class Base:
 
     @cached_property
     def raw(self) -> np.ndarray:
-        """Mean square of the residual by group `(G,)`, over the floor, the floor's own weight included."""
+        """Mean square of the residual by group `(G,)`, over the floor, the floor's own weight
+        included.
+        """
         samples = self.samples
         square = np.bincount(samples.group, self.value**2, samples.groups)
         return np.maximum((self.freedom + square) / (self.freedom + self.number.sum(0)), 1.0)
@@ -113,8 +127,12 @@ class Base:
     def _kept(self) -> dict[bytes, tuple[np.ndarray, tuple[np.ndarray, bool], float]]:
         return {}
 
-    def normal(self, of_base: Sums, weight: np.ndarray, key: bytes | None) -> tuple[np.ndarray, tuple[np.ndarray, bool], float]:
-        """Weighted products of the base, the factor of the errors' normal equations, and its log determinant; kept under a key."""
+    def normal(
+        self, of_base: Sums, weight: np.ndarray, key: bytes | None
+    ) -> tuple[np.ndarray, tuple[np.ndarray, bool], float]:
+        """Weighted products of the base, the factor of the errors' normal equations, and its log
+        determinant; kept under a key.
+        """
         from scipy.linalg import cho_factor
 
         if key is not None and key in self._kept:
@@ -134,7 +152,9 @@ class Base:
 
 
 def number_of(base: Base, way: int, fold: int | None, inside: bool) -> np.ndarray:
-    """Independent numbers by group `(G,)`: of a fold, of all but it (`inside` False), or of everything (no fold)."""
+    """Independent numbers by group `(G,)`: of a fold, of all but it (`inside` False), or of
+    everything (no fold).
+    """
     if fold is None:
         return np.asarray(base.number.sum(0))
     return np.asarray(base.number[(base.samples.fold[way] == fold) == inside].sum(0))

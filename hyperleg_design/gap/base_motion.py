@@ -1,4 +1,5 @@
-"""How a floating base moves, from whatever sensors a log has: gyro, accelerometer, orientation, velocity, position.
+"""How a floating base moves, from whatever sensors a log has: gyro, accelerometer, orientation,
+velocity, position.
 
 All is smoothed without delay but the accelerometer, which needs no derivative.
 """
@@ -19,27 +20,43 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 LEVELLING = 0.5
-"""Rate at which an orientation integrated from the gyro is drawn to what the accelerometer calls down [1/s]; assumed."""
+"""Rate at which an orientation integrated from the gyro is drawn to what the accelerometer calls
+down [1/s]; assumed."""
 QUIET = 0.1
-"""Largest difference of the specific force from gravity, over gravity, at which the accelerometer is asked for down; assumed."""
+"""Largest difference of the specific force from gravity, over gravity, at which the accelerometer
+is asked for down; assumed."""
 
 
-def base_motion(log: Log, subject: Subject, ticks: np.ndarray) -> tuple[BaseMotion, tuple[str, ...]]:
+def base_motion(
+    log: Log, subject: Subject, ticks: np.ndarray
+) -> tuple[BaseMotion, tuple[str, ...]]:
     """Motion of the base on the ticks; what was derived, as notes.
 
-    Specific force comes from the accelerometer, else from base velocity, else from base position; angular velocity from the
-    gyro, else from orientation; orientation is logged, else integrated from gyro and accelerometer (heading then drifts).
+    Specific force comes from the accelerometer, else from base velocity, else from base position;
+    angular velocity from the gyro, else from orientation; orientation is logged, else integrated
+    from gyro and accelerometer (heading then drifts).
 
     Raises:
-        InputError: neither accelerometer nor base velocity nor position, or neither gyro nor orientation.
+        InputError: neither accelerometer nor base velocity nor position, or neither gyro nor
+        orientation.
     """
     notes: list[str] = []
-    quaternion, gyro, felt = (known(log, kind) for kind in ("base_orientation", "gyro", "accelerometer"))
+    quaternion, gyro, felt = (
+        known(log, kind) for kind in ("base_orientation", "gyro", "accelerometer")
+    )
     velocity, place = known(log, "base_velocity"), known(log, "base_position")
     if gyro is None and quaternion is None:
-        raise InputError(log.name, "gyro", None, "neither it nor base_orientation is logged: declare base fixed, or log one of them")
+        raise InputError(
+            log.name,
+            "gyro",
+            None,
+            "neither it nor base_orientation is logged: declare base fixed, or log one of them",
+        )
     if felt is None and (quaternion is None or (velocity is None and place is None)):
-        remedy = "neither it nor base_velocity or base_position with base_orientation is logged: declare base fixed, or log one of them"
+        remedy = (
+            "neither it nor base_velocity or base_position with base_orientation is logged: "
+            "declare base fixed, or log one of them"
+        )
         raise InputError(log.name, "accelerometer", None, remedy)
     turning = orientation(log, quaternion, ticks) if quaternion is not None else None
     if gyro is not None:
@@ -53,20 +70,32 @@ def base_motion(log: Log, subject: Subject, ticks: np.ndarray) -> tuple[BaseMoti
     if felt is not None:
         arm = subject.imu_position
         # as it was felt: jerks are no noise, and who balances forces filters both sides alike
-        force = on_ticks(log, felt, ticks) @ subject.imu_rotation.T - np.cross(angular_acceleration, arm) - np.cross(angular, np.cross(angular, arm))
+        force = (
+            on_ticks(log, felt, ticks) @ subject.imu_rotation.T
+            - np.cross(angular_acceleration, arm)
+            - np.cross(angular, np.cross(angular, arm))
+        )
     if turning is not None:
         rotation = quaternion_rotation(turning.value)
     else:
         assert force is not None
-        notes.append("orientation of the base is integrated from gyro and accelerometer; its heading is unknown")
+        notes.append(
+            "orientation of the base is integrated from gyro and accelerometer; its heading is "
+            "unknown"
+        )
         rotation = _integrated(angular, force, ticks, subject.gravity)
     moving = smooth(log.time, velocity, ticks) if velocity is not None else None
     placed = smooth(log.time, place, ticks) if place is not None else None
     unknown = np.full((len(ticks), 3), np.nan)
     world = moving.value if moving is not None else placed.first if placed is not None else unknown
     if force is None:
-        notes.append(f"acceleration of the base is the derivative of its {'velocity' if moving is not None else 'position, twice'}")
-        acceleration = moving.first if moving is not None else placed.second if placed is not None else unknown
+        notes.append(
+            f"acceleration of the base is the derivative of its "
+            f"{'velocity' if moving is not None else 'position, twice'}"
+        )
+        acceleration = (
+            moving.first if moving is not None else placed.second if placed is not None else unknown
+        )
         force = np.einsum("tji,tj->ti", rotation, acceleration - subject.gravity)
     motion = BaseMotion(
         position=placed.value if placed is not None else unknown,
@@ -96,7 +125,12 @@ def orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
     q = quaternion[told]
     length = np.linalg.norm(q, axis=1)
     if not np.all(np.abs(length - 1) < 0.1):
-        raise InputError(log.name, "base_orientation", float(length[np.argmax(np.abs(length - 1))]), "is no unit quaternion: expects w, x, y, z")
+        raise InputError(
+            log.name,
+            "base_orientation",
+            float(length[np.argmax(np.abs(length - 1))]),
+            "is no unit quaternion: expects w, x, y, z",
+        )
     flips = np.concatenate([[1.0], np.where(np.sum(q[1:] * q[:-1], 1) < 0, -1.0, 1.0)])
     return smooth(log.time[told], q * np.cumprod(flips)[:, None] / length[:, None], ticks)
 
@@ -105,16 +139,24 @@ def spin(turning: Smooth) -> tuple[np.ndarray, np.ndarray]:
     """Angular velocity and acceleration in the base's frame, 2 q* q' and its derivative."""
     conjugate = turning.value * np.array([1, -1, -1, -1])
     norm = np.sum(turning.value**2, 1, keepdims=True)
-    return 2 * _product(conjugate, turning.first)[:, 1:] / norm, 2 * _product(conjugate, turning.second)[:, 1:] / norm
+    return 2 * _product(conjugate, turning.first)[:, 1:] / norm, 2 * _product(
+        conjugate, turning.second
+    )[:, 1:] / norm
 
 
 def _product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     w = p[:, 0] * q[:, 0] - np.sum(p[:, 1:] * q[:, 1:], 1)
-    return np.concatenate([w[:, None], p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:])], 1)
+    return np.concatenate(
+        [w[:, None], p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:])], 1
+    )
 
 
-def _integrated(angular: np.ndarray, force: np.ndarray, ticks: np.ndarray, gravity: np.ndarray) -> np.ndarray:
-    """Orientation from angular velocity, drawn to the accelerometer's vertical while that feels little but gravity."""
+def _integrated(
+    angular: np.ndarray, force: np.ndarray, ticks: np.ndarray, gravity: np.ndarray
+) -> np.ndarray:
+    """Orientation from angular velocity, drawn to the accelerometer's vertical while that feels
+    little but gravity.
+    """
     strength = float(np.linalg.norm(gravity)) or 1.0
     up = -np.asarray(gravity) / strength
     start = np.nanmean(force[: max(len(force) // 200, 5)], 0)
@@ -126,7 +168,9 @@ def _integrated(angular: np.ndarray, force: np.ndarray, ticks: np.ndarray, gravi
         out[tick] = rotation
         turn = angular[tick] * steps[tick]
         if abs(size[tick] - strength) < QUIET * strength:
-            turn = turn + LEVELLING * steps[tick] * np.cross(force[tick] / size[tick], rotation.T @ up)
+            turn = turn + LEVELLING * steps[tick] * np.cross(
+                force[tick] / size[tick], rotation.T @ up
+            )
         rotation = rotation @ _rotation_vector(turn)
     return out
 
@@ -146,4 +190,6 @@ def _rotation_vector(turn: np.ndarray) -> np.ndarray:
     skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     if angle < 1e-9:
         return np.eye(3) + skew
-    return np.asarray(np.eye(3) + np.sin(angle) / angle * skew + (1 - np.cos(angle)) / angle**2 * skew @ skew)
+    return np.asarray(
+        np.eye(3) + np.sin(angle) / angle * skew + (1 - np.cos(angle)) / angle**2 * skew @ skew
+    )

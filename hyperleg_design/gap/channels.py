@@ -1,4 +1,6 @@
-"""Channels of a log: onto even ticks, of motors under any of their names, and through matrices that keep what is unknown unknown."""
+"""Channels of a log: onto even ticks, of motors under any of their names, and through matrices that
+keep what is unknown unknown.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ GAP = 2.5
 
 
 def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Rows `(t, k)` through a matrix `(l, k)`, `(t, l)`; NaN only where something unknown is really needed."""
+    """Rows `(t, k)` through a matrix `(l, k)`, `(t, l)`; NaN only where something unknown is really
+    needed.
+    """
     unknown = ~np.isfinite(values)
     if not unknown.any():
         return np.asarray(values @ matrix.T)
@@ -25,7 +29,9 @@ def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
-    """A signal of the motors, under their names or those of their actuators, on the subject's side of gears `(s, m)`."""
+    """A signal of the motors, under their names or those of their actuators, on the subject's side
+    of gears `(s, m)`.
+    """
     own = log.stack(kind, subject.motors)
     if subject.motor_aliases != subject.motors:
         own = np.where(np.isfinite(own), own, log.stack(kind, subject.motor_aliases))
@@ -33,7 +39,9 @@ def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
 
 
 def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Channels `(s, k)` interpolated onto ticks `(t, k)`; NaN where a channel is unknown for more than `GAP` of its own steps."""
+    """Channels `(s, k)` interpolated onto ticks `(t, k)`; NaN where a channel is unknown for more
+    than `GAP` of its own steps.
+    """
     out = np.full((len(ticks), values.shape[1]), np.nan)
     for column in range(values.shape[1]):
         known = np.isfinite(values[:, column])

@@ -1,8 +1,11 @@
-"""Joints that chatter: a line in the motion above all that was commanded, as of a control loop on the edge of its stability.
+"""Joints that chatter: a line in the motion above all that was commanded, as of a control loop on
+the edge of its stability.
 
-A smoother takes it for noise, and rightly leaves it out of accelerations. But friction sees it: a joint that swings to and fro
-with the speed a sin(phi) while it moves at v is held back by the mean of sign(v + a sin(phi)), 2/pi asin(v / a) where |v| < a, and
-hardly at all at rest (Armstrong-Helouvry, Dupont and Canudas de Wit 1994, on dither). And it is a sign: healthy loops are damped.
+A smoother takes it for noise, and rightly leaves it out of accelerations. But friction sees it: a
+joint that swings to and fro with the speed a sin(phi) while it moves at v is held back by the mean
+of sign(v + a sin(phi)), 2/pi asin(v / a) where |v| < a, and hardly at all at rest
+(Armstrong-Helouvry, Dupont and Canudas de Wit 1994, on dither). And it is a sign: healthy loops are
+damped.
 """
 
 from __future__ import annotations
@@ -21,7 +24,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.smoothing import Smooth
 
 PRESLIDING = 3e-4
-"""Half the way over which friction turns over [rad]; assumed: bristles of gears bend by 0.1-1 mrad before they slide."""
+"""Half the way over which friction turns over [rad]; assumed: bristles of gears bend by 0.1-1 mrad
+before they slide."""
 LEAST_LINE = 0.5
 """Share of what smoothing leaves that a line must have; white noise has a tenth."""
 HALF_WIDTH = 6
@@ -40,7 +44,13 @@ UNSETTLED = 0.2
 """Share of a log in which a joint must chatter to count as unsettled."""
 MOVED = 0.3
 """Share of the largest joint's swing from which a joint's own loop and motors may be to blame."""
-UNSETTLING = ("command_delay", "actuator_bandwidth", "controller_gain", "transmission_elasticity", "backlash")
+UNSETTLING = (
+    "command_delay",
+    "actuator_bandwidth",
+    "controller_gain",
+    "transmission_elasticity",
+    "backlash",
+)
 """Effects that can bring a control loop to the edge of its stability."""
 
 
@@ -49,7 +59,8 @@ class Chatter:
     """Of `n` joints on `t` ticks."""
 
     speed: np.ndarray
-    """Amplitude of the joints' speed beyond what bends friction's bristles `(t, n)` [rad/s]; 0 where a joint does not chatter."""
+    """Amplitude of the joints' speed beyond what bends friction's bristles `(t, n)` [rad/s]; 0
+    where a joint does not chatter."""
     frequency: np.ndarray
     """`(n,)` [Hz], as sampled; NaN where a joint does not chatter."""
     share: np.ndarray
@@ -58,17 +69,22 @@ class Chatter:
     """Which joints are unsettled by it `(n,)` of bool."""
 
 
-def chatter(position: np.ndarray, velocity: np.ndarray, motion: Smooth, step: float) -> Chatter | None:
+def chatter(
+    position: np.ndarray, velocity: np.ndarray, motion: Smooth, step: float
+) -> Chatter | None:
     """Chatter of joints; None where there is none.
 
     Args:
         position: logged, on the ticks `(t, n)` [rad].
-        velocity: logged, on the ticks `(t, n)` [rad/s]; a channel without any is derived from the positions.
+        velocity: logged, on the ticks `(t, n)` [rad/s]; a channel without any is derived from the
+            positions.
         motion: smoothed.
         step: of the ticks [s].
     """
     ticks, count = position.shape
-    found = Chatter(np.zeros((ticks, count)), np.full(count, np.nan), np.zeros(count), np.zeros(count, bool))
+    found = Chatter(
+        np.zeros((ticks, count)), np.full(count, np.nan), np.zeros(count), np.zeros(count, bool)
+    )
     for joint in range(count):
         apart = _filled(position[:, joint] - motion.value[:, joint])
         if apart is None:
@@ -89,33 +105,54 @@ def chatter(position: np.ndarray, velocity: np.ndarray, motion: Smooth, step: fl
 
 
 def sliding_share(velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray) -> np.ndarray:
-    """Mean of tanh((v + a sin(phi)) / width) over a swing; arguments of one shape, or broadcast [rad/s]."""
+    """Mean of tanh((v + a sin(phi)) / width) over a swing; arguments of one shape, or broadcast
+    [rad/s].
+    """
     phases = (np.arange(PHASES) + 0.5) * 2 * np.pi / PHASES
-    return np.asarray(sum(np.tanh((velocity + swing * np.sin(phase)) / width) for phase in phases) / PHASES)
+    return np.asarray(
+        sum(np.tanh((velocity + swing * np.sin(phase)) / width) for phase in phases) / PHASES
+    )
 
 
 def chattering(signals: Sequence[Signals]) -> np.ndarray:
-    """Which joints are unsettled in any of some logs `(n,)` of bool; `()`, False, where none is in any."""
+    """Which joints are unsettled in any of some logs `(n,)` of bool; `()`, False, where none is in
+    any.
+    """
     return np.asarray(np.any([s.chatter.joints for s in signals if s.chatter is not None], 0))
 
 
 def newly(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Signals]:
-    """Logs in which only those joints count as unsettled that were settled in all reference logs."""
+    """Logs in which only those joints count as unsettled that were settled in all reference
+    logs.
+    """
     known = chattering(references)
-    return [s if s.chatter is None else replace(s, chatter=replace(s.chatter, joints=s.chatter.joints & ~known)) for s in signals]
+    return [
+        s
+        if s.chatter is None
+        else replace(s, chatter=replace(s.chatter, joints=s.chatter.joints & ~known))
+        for s in signals
+    ]
 
 
 def unsettled(samples: Samples) -> tuple[str, ...]:
     """Joints that chatter in any log, and did not in reference logs."""
     signals = [s.signals for s in samples.sieves]
     joints = signals[0].subject.joints
-    return tuple(joints[j] for j in np.flatnonzero(np.broadcast_to(chattering(signals), len(joints))))
+    return tuple(
+        joints[j] for j in np.flatnonzero(np.broadcast_to(chattering(signals), len(joints)))
+    )
 
 
 def shaking(samples: Samples) -> tuple[str, ...]:
-    """Those of the unsettled joints whose own loops or belts may be to blame, in any log: the others are shaken along."""
+    """Those of the unsettled joints whose own loops or belts may be to blame, in any log: the
+    others are shaken along.
+    """
     names = unsettled(samples)
-    signals = [s.signals for s in samples.sieves if s.signals.chatter is not None and s.signals.chatter.joints.any()]
+    signals = [
+        s.signals
+        for s in samples.sieves
+        if s.signals.chatter is not None and s.signals.chatter.joints.any()
+    ]
     found: set[str] = set()
     for one in signals:
         assert one.chatter is not None
@@ -127,10 +164,17 @@ def shaking(samples: Samples) -> tuple[str, ...]:
 def swings(signals: Sequence[Signals], joint: str) -> str:
     """How a joint chatters, in the log where it does most; for people."""
     place = signals[0].subject.joints.index(joint)
-    shaken = [s.chatter for s in signals if s.chatter is not None and np.isfinite(s.chatter.frequency[place])]
-    size, frequency = max((float(np.sqrt(np.mean(c.speed[:, place] ** 2))), float(c.frequency[place])) for c in shaken)
+    shaken = [
+        s.chatter
+        for s in signals
+        if s.chatter is not None and np.isfinite(s.chatter.frequency[place])
+    ]
+    size, frequency = max(
+        (float(np.sqrt(np.mean(c.speed[:, place] ** 2))), float(c.frequency[place])) for c in shaken
+    )
     return (
-        f"swings to and fro by {size:.2g} rad/s at {frequency:.0f} Hz (or a frequency that this log's rate folds there), which nothing commands: "
+        f"swings to and fro by {size:.2g} rad/s at {frequency:.0f} Hz (or a frequency that this "
+        f"log's rate folds there), which nothing commands: "
         f"its control loop is on the edge of stability, as of {', '.join(UNSETTLING)}"
     )
 

@@ -29,7 +29,16 @@ SLOWEST, FASTEST = 2.0, 50_000.0
 """Rates beyond which the time is in another unit [Hz]."""
 SLOW = 40.0
 """Rate below which friction and delay blur [Hz]."""
-BOUNDED = ("joint_torque", "motor_torque", "motor_torque_command", "motor_current", "motor_velocity", "velocity", "gyro", "accelerometer")
+BOUNDED = (
+    "joint_torque",
+    "motor_torque",
+    "motor_torque_command",
+    "motor_current",
+    "motor_velocity",
+    "velocity",
+    "gyro",
+    "accelerometer",
+)
 """Signals in which a bound that clips is looked for; positions and targets may well rest at one."""
 
 
@@ -75,7 +84,12 @@ class Check:
 
     def mapping(self) -> dict[str, Any]:
         """As plain values, for JSON; what is not finite as None."""
-        return {"name": self.name, "usable": self.usable, "rate": self.sampling.rate, **_plain(dataclasses.asdict(self))}
+        return {
+            "name": self.name,
+            "usable": self.usable,
+            "rate": self.sampling.rate,
+            **_plain(dataclasses.asdict(self)),
+        }
 
 
 def check_log(log: Log, subject: Subject | None = None) -> Check:
@@ -83,7 +97,8 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
 
     Args:
         log: what was read.
-        subject: the robot it is said to be of; without it names and ranges of joints are not compared.
+        subject: the robot it is said to be of; without it names and ranges of joints are not
+            compared.
     """
     sampling, columns = sampling_of(log.time), columns_of(log)
     found = [
@@ -107,7 +122,11 @@ def _merged(findings: list[Finding]) -> list[Finding]:
     merged = []
     for one, *others in alike.values():
         if others:
-            one = dataclasses.replace(one, signal=one.signal.partition("/")[0], what=f"{one.what} ({1 + len(others)} columns)")
+            one = dataclasses.replace(
+                one,
+                signal=one.signal.partition("/")[0],
+                what=f"{one.what} ({1 + len(others)} columns)",
+            )
         merged.append(one)
     return merged
 
@@ -120,33 +139,73 @@ def _required(log: Log, subject: Subject | None) -> list[Finding]:
     )
     currents = any(log.has("motor_current", m) for m in log.motors)
     gains = log.metadata.gains or (subject is not None and np.isfinite(subject.gains).any())
-    constants = log.metadata.torque_constant or (subject is not None and np.isfinite(subject.torque_constant).any())
+    constants = log.metadata.torque_constant or (
+        subject is not None and np.isfinite(subject.torque_constant).any()
+    )
     if targets and not gains:
         severity = WARNING if torques or currents else ERROR
-        found.append(Finding(severity, "position_target", "targets without gains say nothing of torques", "declare `gains` in the metadata"))
+        found.append(
+            Finding(
+                severity,
+                "position_target",
+                "targets without gains say nothing of torques",
+                "declare `gains` in the metadata",
+            )
+        )
     if currents and not constants:
         severity = WARNING if torques or targets else ERROR
-        found.append(Finding(severity, "motor_current", "currents without torque constants say nothing of torques", "declare `torque_constant`"))
+        found.append(
+            Finding(
+                severity,
+                "motor_current",
+                "currents without torque constants say nothing of torques",
+                "declare `torque_constant`",
+            )
+        )
     if not targets and not torques and not currents:
-        found.append(Finding(ERROR, "", "neither targets nor torques nor currents", "log position_target with gains, motor_torque or motor_current"))
+        found.append(
+            Finding(
+                ERROR,
+                "",
+                "neither targets nor torques nor currents",
+                "log position_target with gains, motor_torque or motor_current",
+            )
+        )
     return found
 
 
 def _clock(sampling: Sampling) -> list[Finding]:
     found = []
     if not SLOWEST < sampling.rate < FASTEST:
-        text = f"rows come every {sampling.step:.3g} s: the time looks like {'milliseconds' if sampling.rate < 1 else 'another unit'}"
+        text = (
+            f"rows come every {sampling.step:.3g} s: the time looks like "
+            f"{'milliseconds' if sampling.rate < 1 else 'another unit'}"
+        )
         return [Finding(ERROR, "t", text, "give it in seconds")]
     if sampling.duration < SHORT or sampling.ticks < FEW:
         text = f"is short: {sampling.duration:.2g} s, {sampling.ticks} ticks"
-        found.append(Finding(WARNING, "t", text, f"record {SHORT:.0f} s or more; 20 s leave enough to hold out"))
+        found.append(
+            Finding(
+                WARNING, "t", text, f"record {SHORT:.0f} s or more; 20 s leave enough to hold out"
+            )
+        )
     if sampling.rate < SLOW:
         text = f"{sampling.rate:.3g} Hz: friction at reversals and delays blur"
         found.append(Finding(WARNING, "t", text, "log at 100 Hz or more"))
     if sampling.jitter > JITTER:
-        found.append(Finding(NOTE, "t", f"the clock jitters by {100 * sampling.jitter:.0f} % of a step", "stamps are used as they are"))
+        found.append(
+            Finding(
+                NOTE,
+                "t",
+                f"the clock jitters by {100 * sampling.jitter:.0f} % of a step",
+                "stamps are used as they are",
+            )
+        )
     if sampling.dropouts > DROPOUTS or sampling.longest > 10 * sampling.step:
-        text = f"{100 * sampling.dropouts:.1f} % of the time is lost in dropouts, the longest {sampling.longest:.3g} s"
+        text = (
+            f"{100 * sampling.dropouts:.1f} % of the time is lost in dropouts, the longest "
+            f"{sampling.longest:.3g} s"
+        )
         found.append(Finding(WARNING, "t", text, "the ticks beside them are left out"))
     return found
 
@@ -159,17 +218,58 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
             found.append(Finding(WARNING, one.column, "holds no values", "it counts as missing"))
             continue
         if one.missing > MISSING:
-            found.append(Finding(WARNING, one.column, f"{100 * one.missing:.1f} % of its values are missing", "the ticks beside them are left out"))
+            found.append(
+                Finding(
+                    WARNING,
+                    one.column,
+                    f"{100 * one.missing:.1f} % of its values are missing",
+                    "the ticks beside them are left out",
+                )
+            )
         if one.rate < 0.75 * sampling.rate and not one.constant:
             how = "held" if one.held > 1 else "given"
             text = f"is {how} at {one.rate:.3g} Hz in a log of {sampling.rate:.3g} Hz"
-            severity = NOTE if kind in ("position_target", "motor_temperature", "battery_voltage", "motor_torque_command") else WARNING
+            severity = (
+                NOTE
+                if kind
+                in (
+                    "position_target",
+                    "motor_temperature",
+                    "battery_voltage",
+                    "motor_torque_command",
+                )
+                else WARNING
+            )
             found.append(Finding(severity, one.column, text, "it counts at its own rate"))
         if kind in BOUNDED and one.saturated > SATURATED:
-            text = f"sits at a bound, {one.low:.4g} or {one.high:.4g}, for {100 * one.saturated:.1f} % of the log"
-            found.append(Finding(WARNING, one.column, text, "a sensor's range or a drive's limit: effects beyond it do not show"))
-        if one.constant and kind in ("joint_torque", "motor_torque", "motor_current", "gyro", "accelerometer", "motor_velocity"):
-            found.append(Finding(WARNING, one.column, f"never changes from {one.low:.4g}", "is the sensor connected?"))
+            text = (
+                f"sits at a bound, {one.low:.4g} or {one.high:.4g}, for "
+                f"{100 * one.saturated:.1f} % of the log"
+            )
+            found.append(
+                Finding(
+                    WARNING,
+                    one.column,
+                    text,
+                    "a sensor's range or a drive's limit: effects beyond it do not show",
+                )
+            )
+        if one.constant and kind in (
+            "joint_torque",
+            "motor_torque",
+            "motor_current",
+            "gyro",
+            "accelerometer",
+            "motor_velocity",
+        ):
+            found.append(
+                Finding(
+                    WARNING,
+                    one.column,
+                    f"never changes from {one.low:.4g}",
+                    "is the sensor connected?",
+                )
+            )
     return found
 
 

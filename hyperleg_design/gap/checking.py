@@ -18,7 +18,11 @@ if TYPE_CHECKING:
 
 
 def check_sources(
-    sources: Sequence[str | os.PathLike[str]], *, robot: str = "", mapping: Sequence[str] = (), out: str | os.PathLike[str] | None = None
+    sources: Sequence[str | os.PathLike[str]],
+    *,
+    robot: str = "",
+    mapping: Sequence[str] = (),
+    out: str | os.PathLike[str] | None = None,
 ) -> list[Check]:
     """Open and check logs.
 
@@ -26,7 +30,8 @@ def check_sources(
         sources: files or folders of any known format.
         robot: design, MJCF or URDF to compare with; by default the one that each log names, if any.
         mapping: `THEIRS=OURS` each, columns of CSV files.
-        out: folder for `check.json` and every log as Parquet, beside those written before; nothing is written by default.
+        out: folder for `check.json` and every log as Parquet, beside those written before; nothing
+            is written by default.
 
     Raises:
         InputError: no source, one that cannot be opened, or a robot that cannot be read.
@@ -56,7 +61,9 @@ def _pair(text: str) -> tuple[str, str]:
 
 
 def _subject(log: Log, robot: str, known: dict[str, Subject]) -> Subject | None:
-    """The robot as it is described, whatever the log says of it, so that a log of another robot is told and not refused."""
+    """The robot as it is described, whatever the log says of it, so that a log of another robot is
+    told and not refused.
+    """
     from hyperleg_design.gap.subject import load_subject
 
     name = robot or log.metadata.robot

@@ -1,8 +1,10 @@
-"""From a log to `Signals`: an even time base, motion smoothed without delay, torques believed, and the residuals of the balances.
+"""From a log to `Signals`: an even time base, motion smoothed without delay, torques believed, and
+the residuals of the balances.
 
-Motion comes from `smoothing` (a fixed-interval smoother whose noise the log itself tells). Everything else is interpolated onto
-the same ticks and not smoothed: whoever compares torques filters both sides alike. Gaps in the clock or in a joint's positions
-are bridged, and marked as not valid.
+Motion comes from `smoothing` (a fixed-interval smoother whose noise the log itself tells).
+Everything else is interpolated onto the same ticks and not smoothed: whoever compares torques
+filters both sides alike. Gaps in the clock or in a joint's positions are bridged, and marked as not
+valid.
 """
 
 from __future__ import annotations
@@ -30,11 +32,14 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 EDGE = 4.0
-"""Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a log."""
+"""Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a
+log."""
 STOP = 0.003
-"""Distance from the end of a joint's range within which its stop may push [rad]; assumed, a few steps of a sensor."""
+"""Distance from the end of a joint's range within which its stop may push [rad]; assumed, a few
+steps of a sensor."""
 NO_STOP = 0.1
-"""Distance beyond its range that shows that a joint has no stop there [rad]; assumed, more than any stop gives way."""
+"""Distance beyond its range that shows that a joint has no stop there [rad]; assumed, more than any
+stop gives way."""
 LONGEST_EDGE = 0.25
 """[s] However slow the smoother."""
 
@@ -44,10 +49,12 @@ def condition(log: Log, subject: Subject) -> Signals:
 
     Args:
         log: with positions, and with targets, torque commands, torques or currents.
-        subject: the robot; what the log declares of it (gains, torque constants, payload) is applied here.
+        subject: the robot; what the log declares of it (gains, torque constants, payload) is
+            applied here.
 
     Raises:
-        InputError: none of the robot's joints moves in this log, or nothing tells the torque of any motor.
+        InputError: none of the robot's joints moves in this log, or nothing tells the torque of any
+        motor.
     """
     subject = subject.declare(log.metadata)
     step = log.step
@@ -59,14 +66,25 @@ def condition(log: Log, subject: Subject) -> Signals:
     for column, joint in enumerate(subject.joints):
         if (stuck := frozen(log, joint)) is not None:
             position[stuck, column] = np.nan
-            notes.append(f"{joint}: position frozen from {log.time[stuck.start]:.4g} s, left out until it moves again")
+            notes.append(
+                f"{joint}: position frozen from {log.time[stuck.start]:.4g} s, left out until it "
+                f"moves again"
+            )
     velocity = log.stack("velocity", subject.joints)
     motion = smooth(log.time, position, ticks, velocity)
     lacking = ~np.isfinite(motion.value).any(0)
     if lacking.all():
-        raise InputError(log.name, "position", sorted(log.joints)[:8], f"knows no joint of this robot, {', '.join(subject.joints)}")
+        raise InputError(
+            log.name,
+            "position",
+            sorted(log.joints)[:8],
+            f"knows no joint of this robot, {', '.join(subject.joints)}",
+        )
     if lacking.any():
-        notes.append(f"joints without positions in this log, taken to stand still: {_names(subject.joints, lacking)}")
+        notes.append(
+            f"joints without positions in this log, taken to stand still: "
+            f"{_names(subject.joints, lacking)}"
+        )
         motion.value[:, lacking] = subject.default[lacking]
         motion.first[:, lacking] = motion.second[:, lacking] = 0.0
     base = None
@@ -79,40 +97,89 @@ def condition(log: Log, subject: Subject) -> Signals:
     limited = None if command is None else limited_torque(subject, command, motion.first, voltage)
     believed, more = _believed(log, subject, measured, limited)
     notes += more
-    own = None if base is None else rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
-    ground = contact.contacts(log, subject, ticks, motion.value, base, None if own is None else own[:, :3])
+    own = (
+        None
+        if base is None
+        else rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
+    )
+    ground = contact.contacts(
+        log, subject, ticks, motion.value, base, None if own is None else own[:, :3]
+    )
     needed = rigid.inverse_dynamics(subject, motion.value, motion.first, motion.second, base)
-    shaken = chatter(resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step)
-    needed = needed + rigid.friction_torque(subject, motion.value, motion.first, None if shaken is None else shaken.speed)
+    shaken = chatter(
+        resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
+    )
+    needed = needed + rigid.friction_torque(
+        subject, motion.value, motion.first, None if shaken is None else shaken.speed
+    )
     residual: dict[str, np.ndarray] = {}
     if ground.pad_force is not None:
-        pushed, wrench = rigid.contact_torque(subject, motion.value, None if base is None else base.rotation, np.nan_to_num(ground.pad_force))
+        pushed, wrench = rigid.contact_torque(
+            subject,
+            motion.value,
+            None if base is None else base.rotation,
+            np.nan_to_num(ground.pad_force),
+        )
         needed = needed - pushed
         if own is not None:
-            residual["base"] = np.where(np.isfinite(ground.pad_force).all((1, 2))[:, None], wrench - own, np.nan)
-    unknown = contact.unknown_rows(subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step)))
+            residual["base"] = np.where(
+                np.isfinite(ground.pad_force).all((1, 2))[:, None], wrench - own, np.nan
+            )
+    unknown = contact.unknown_rows(
+        subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step))
+    )
     unknown = unknown | at_stop(subject, motion.value)
-    residual["motion"] = np.where(unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed)
+    residual["motion"] = np.where(
+        unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed
+    )
     if measured is not None and limited is not None:
         residual["drive"] = measured - limited
     if control is not None:
         residual["control"] = control
-    if (spin := resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)) is not None:
+    if (
+        spin := resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)
+    ) is not None:
         spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
         if np.isfinite(spin).any():
-            residual["transmission"], refused = transmission.balance(subject, spin, motion.first, step)
+            residual["transmission"], refused = transmission.balance(
+                subject, spin, motion.first, step
+            )
             notes += refused
     if others:
-        notes.append(f"motors whose logged commands are not those of a controller with stiffness and damping: {', '.join(others)}")
+        notes.append(
+            f"motors whose logged commands are not those of a controller with stiffness and "
+            f"damping: {', '.join(others)}"
+        )
     valid = _valid(log, ticks, position[:, ~lacking], _edge(motion, lacking))
     signals = Signals(
-        log=log, subject=subject, step=step, time=ticks, position=motion.value, velocity=motion.first, acceleration=motion.second, base=base,
-        sensed=sensed_velocity(resampled(log.time, velocity, ticks), motion, step), target=target, command=command, measured=measured,
-        believed=believed, rigid=needed,
-        temperature=resampled_or_none(log.time, of_motors(log, "motor_temperature", subject), ticks),
-        voltage=voltage, contact=ground.foot_force, valid=valid, residual=residual, pad_force=ground.pad_force,
-        touching=ground.touching, bandwidth=motion.crossover / (2 * np.pi), noise=motion.level, chatter=shaken, notes=tuple(notes),
-    )  # fmt: skip
+        log=log,
+        subject=subject,
+        step=step,
+        time=ticks,
+        position=motion.value,
+        velocity=motion.first,
+        acceleration=motion.second,
+        base=base,
+        sensed=sensed_velocity(resampled(log.time, velocity, ticks), motion, step),
+        target=target,
+        command=command,
+        measured=measured,
+        believed=believed,
+        rigid=needed,
+        temperature=resampled_or_none(
+            log.time, of_motors(log, "motor_temperature", subject), ticks
+        ),
+        voltage=voltage,
+        contact=ground.foot_force,
+        valid=valid,
+        residual=residual,
+        pad_force=ground.pad_force,
+        touching=ground.touching,
+        bandwidth=motion.crossover / (2 * np.pi),
+        noise=motion.level,
+        chatter=shaken,
+        notes=tuple(notes),
+    )
     ground_residual = ground_balance(signals)
     if ground_residual is not None:
         residual["ground"] = ground_residual
@@ -120,17 +187,28 @@ def condition(log: Log, subject: Subject) -> Signals:
 
 
 def wrong_limits(subject: Subject, position: np.ndarray) -> np.ndarray:
-    """Joints whose log goes so far beyond the nominal range that there is no stop `(n,)`; positions `(t, n)` [rad]."""
-    return np.asarray(((position < subject.position_low - NO_STOP) | (position > subject.position_high + NO_STOP)).any(0))
+    """Joints whose log goes so far beyond the nominal range that there is no stop `(n,)`; positions
+    `(t, n)` [rad].
+    """
+    return np.asarray(
+        (
+            (position < subject.position_low - NO_STOP)
+            | (position > subject.position_high + NO_STOP)
+        ).any(0)
+    )
 
 
 def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
-    """Ticks at which a stop may push on a joint, with a force that nobody knows `(t, n)`; positions `(t, n)` [rad]."""
+    """Ticks at which a stop may push on a joint, with a force that nobody knows `(t, n)`; positions
+    `(t, n)` [rad].
+    """
     beyond = (position < subject.position_low + STOP) | (position > subject.position_high - STOP)
     return np.asarray(beyond & ~wrong_limits(subject, position))
 
 
-def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray, voltage: np.ndarray | None = None) -> np.ndarray:
+def limited_torque(
+    subject: Subject, torque: np.ndarray, velocity: np.ndarray, voltage: np.ndarray | None = None
+) -> np.ndarray:
     """Motor torques within peak torque and DC-motor line of the nominal motors `(t, m)` [Nm].
 
     Args:
@@ -147,14 +225,18 @@ def limited_torque(subject: Subject, torque: np.ndarray, velocity: np.ndarray, v
         droop = stall / subject.no_load_speed[line] * speed
         stall = stall * over_nominal(subject, voltage)[:, line]
         peak = subject.torque_limit[line]
-        torque[:, line] = np.clip(np.maximum(np.minimum(torque[:, line], stall - droop), -stall - droop), -peak, peak)
+        torque[:, line] = np.clip(
+            np.maximum(np.minimum(torque[:, line], stall - droop), -stall - droop), -peak, peak
+        )
     return torque
 
 
 def _command(
     log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth
 ) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
-    """Motor torque that the controller asks for, position targets, the balance of the control, and motors that it cannot speak of."""
+    """Motor torque that the controller asks for, position targets, the balance of the control, and
+    motors that it cannot speak of.
+    """
     raw_target = log.stack("position_target", subject.joints)
     logged = of_motors(log, "motor_torque_command", subject)
     command = resampled(log.time, logged, ticks)
@@ -166,18 +248,28 @@ def _command(
         derived = np.stack([np.interp(log.time, ticks, v) for v in motion.first.T], -1)
         speed = np.where(np.isfinite(speed), speed, derived)
         stiffness, damping = subject.gains.T
-        spring, damper = stiffness * (raw_target - log.stack("position", subject.joints)), -damping * speed
+        spring, damper = (
+            stiffness * (raw_target - log.stack("position", subject.joints)),
+            -damping * speed,
+        )
         spring[:, subject.passive] = damper[:, subject.passive] = 0.0
         if np.isfinite(logged).any():
             residual, others = control_residual(subject, logged, spring, damper)
             control = resampled_or_none(log.time, residual, ticks)
         supplied = over_nominal(subject, log.column("battery_voltage"))
-        asked = supplied * applied(subject.motor_from_joint, spring) + applied(subject.motor_from_joint, damper)
+        asked = supplied * applied(subject.motor_from_joint, spring) + applied(
+            subject.motor_from_joint, damper
+        )
         torque = resampled(log.time, asked, ticks)
         command = np.where(np.isfinite(command), command, torque)
     if subject.one_to_one and subject.passive.any():
         command[:, subject.passive] = 0.0
-    return (command if np.isfinite(command[:, _driven(subject)]).any() else None), target, control, others
+    return (
+        (command if np.isfinite(command[:, _driven(subject)]).any() else None),
+        target,
+        control,
+        others,
+    )
 
 
 def _driven(subject: Subject) -> np.ndarray:
@@ -185,7 +277,9 @@ def _driven(subject: Subject) -> np.ndarray:
 
 
 def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | None:
-    """Motor torque, else current times constant, else what joint torques tell; None where nothing was measured."""
+    """Motor torque, else current times constant, else what joint torques tell; None where nothing
+    was measured.
+    """
     torque = of_motors(log, "motor_torque", subject)
     current = of_motors(log, "motor_current", subject) * subject.torque_constant
     torque = np.where(np.isfinite(torque), torque, current)
@@ -198,13 +292,22 @@ def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | Non
     return found
 
 
-def _believed(log: Log, subject: Subject, measured: np.ndarray | None, limited: np.ndarray | None) -> tuple[np.ndarray, list[str]]:
+def _believed(
+    log: Log, subject: Subject, measured: np.ndarray | None, limited: np.ndarray | None
+) -> tuple[np.ndarray, list[str]]:
     if measured is None and limited is None:
-        lacks = "gains (in the metadata, or in the robot's file) for its targets" if log.names("position_target") else "targets"
+        lacks = (
+            "gains (in the metadata, or in the robot's file) for its targets"
+            if log.names("position_target")
+            else "targets"
+        )
         currents = log.names("motor_current")
         if currents and not np.isfinite(subject.torque_constant).any():
             lacks = f"torque_constant in the metadata for its currents, or {lacks}"
-        remedy = f"tells the torque of no motor: it has neither torques nor currents that can be read, and lacks {lacks}"
+        remedy = (
+            f"tells the torque of no motor: it has neither torques nor currents that can be "
+            f"read, and lacks {lacks}"
+        )
         raise InputError(log.name, "motor_torque", None, remedy)
     if measured is None or limited is None:
         believed = measured if measured is not None else limited
@@ -212,7 +315,11 @@ def _believed(log: Log, subject: Subject, measured: np.ndarray | None, limited: 
     else:
         believed = np.where(np.isfinite(measured).any(0), measured, limited)
     blind = ~np.isfinite(believed).any(0)
-    notes = [f"motors whose torque nothing tells: {_names(subject.motors, blind)}"] if blind.any() else []
+    notes = (
+        [f"motors whose torque nothing tells: {_names(subject.motors, blind)}"]
+        if blind.any()
+        else []
+    )
     return believed.copy(), notes
 
 

@@ -1,4 +1,6 @@
-"""Where and how a robot meets the ground in a log: forces of its pads, and which feet touch, or may."""
+"""Where and how a robot meets the ground in a log: forces of its pads, and which feet touch, or
+may.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +20,12 @@ if TYPE_CHECKING:
 TOUCHING_FORCE = 2.0
 """Force from which a foot touches [N]; assumed, above the noise of foot sensors."""
 TOUCHING_HEIGHT = 0.03
-"""Height over the lowest foot up to which a foot may touch, where no force is logged [m]; assumed, a low swing."""
+"""Height over the lowest foot up to which a foot may touch, where no force is logged [m]; assumed,
+a low swing."""
 
 FLIGHT = 0.1
-"""Force that the motion needs from outside, over the weight, below which no foot touches; assumed."""
+"""Force that the motion needs from outside, over the weight, below which no foot touches;
+assumed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,15 +35,22 @@ class Ground:
     foot_force: np.ndarray | None
     """World frame `(t, f, 3)` [N]."""
     pad_force: np.ndarray | None
-    """World frame `(t, P, 3)` [N]; NaN on the pads of a foot while it touches and the place of its force is unknown."""
+    """World frame `(t, P, 3)` [N]; NaN on the pads of a foot while it touches and the place of its
+    force is unknown."""
     touching: np.ndarray | None
     """Feet that touch, or may `(t, f)`; None of a fixed base without contact forces."""
 
 
 def contacts(
-    log: Log, subject: Subject, ticks: np.ndarray, position: np.ndarray, base: BaseMotion | None, needed: np.ndarray | None = None
+    log: Log,
+    subject: Subject,
+    ticks: np.ndarray,
+    position: np.ndarray,
+    base: BaseMotion | None,
+    needed: np.ndarray | None = None,
 ) -> Ground:
-    """Contact of one log. Forces are logged by pad, or by foot, which is as good where a foot has one pad.
+    """Contact of one log. Forces are logged by pad, or by foot, which is as good where a foot has
+    one pad.
 
     Args:
         log: of this subject.
@@ -47,7 +58,8 @@ def contacts(
         ticks: `(t,)` [s].
         position: of the joints `(t, n)` [rad].
         base: of a floating base.
-        needed: force that the motion of a floating base needs from outside `(t, 3)` [N]; in flight none.
+        needed: force that the motion of a floating base needs from outside `(t, 3)` [N]; in flight
+            none.
 
     Raises:
         InputError: a force on a foot that the robot does not have.
@@ -59,7 +71,12 @@ def contacts(
     foot_of_pad = np.array([p.foot for p in pads], int)
     for name in log.feet:
         if name not in feet and name not in pad_names:
-            raise InputError(log.name, "contact_force", name, f"is no foot of this robot; there are {', '.join((*feet, *pad_names)) or 'none'}")
+            raise InputError(
+                log.name,
+                "contact_force",
+                name,
+                f"is no foot of this robot; there are {', '.join((*feet, *pad_names)) or 'none'}",
+            )
     if not feet:
         return Ground(None, None, None)
     if not log.feet:
@@ -70,23 +87,31 @@ def contacts(
 
     def force(names: list[str] | tuple[str, ...]) -> np.ndarray:
         columns = [f"{name}_{axis}" for name in names for axis in "xyz"]
-        return resampled(log.time, log.stack("contact_force", columns), ticks).reshape(len(ticks), -1, 3)
+        return resampled(log.time, log.stack("contact_force", columns), ticks).reshape(
+            len(ticks), -1, 3
+        )
 
     on_pads, on_feet = force(pad_names), force(feet)
-    total = np.stack([np.where(foot_of_pad[:, None] == f, on_pads, 0.0).sum(1) for f in range(len(feet))], 1)
+    total = np.stack(
+        [np.where(foot_of_pad[:, None] == f, on_pads, 0.0).sum(1) for f in range(len(feet))], 1
+    )
     total = np.where(np.isfinite(total), total, on_feet)
     touching = np.linalg.norm(total, axis=-1) > TOUCHING_FORCE
     touching |= ~np.isfinite(total).all(-1)
     for foot in range(len(feet)):
         own = np.flatnonzero(foot_of_pad == foot)
         missing = ~np.isfinite(on_pads[:, own]).all((1, 2))
-        shared = on_feet[:, foot] if len(own) == 1 else np.where(touching[:, foot, None], np.nan, 0.0)
+        shared = (
+            on_feet[:, foot] if len(own) == 1 else np.where(touching[:, foot, None], np.nan, 0.0)
+        )
         on_pads[:, own] = np.where(missing[:, None, None], shared[:, None], on_pads[:, own])
     return Ground(total, on_pads, touching)
 
 
 def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
-    """Joint rows `(t, n)` that an unknown force of the ground reaches, widened by a margin of ticks; `(1, n)` where none is."""
+    """Joint rows `(t, n)` that an unknown force of the ground reaches, widened by a margin of
+    ticks; `(1, n)` where none is.
+    """
     chains = [_foot_chain(subject, foot) for foot in range(len(subject.feet))]
     if ground.touching is None:
         return np.zeros((1, len(subject.joints)), bool)

@@ -1,7 +1,9 @@
-"""Balance of the control: motor commands as logged against what the declared gains make of the logged targets and state.
+"""Balance of the control: motor commands as logged against what the declared gains make of the
+logged targets and state.
 
-It is drawn up for controllers of the declared form alone. Others (feed-forward, integral terms, gravity compensation) ask for
-torques that no gains explain; of them nothing is known, and nothing said.
+It is drawn up for controllers of the declared form alone. Others (feed-forward, integral terms,
+gravity compensation) ask for torques that no gains explain; of them nothing is known, and nothing
+said.
 """
 
 from __future__ import annotations
@@ -14,13 +16,17 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 OTHERWISE = 0.1
-"""Largest share of a command's variance that the declared form, with gains of any size, may leave (assumed)."""
+"""Largest share of a command's variance that the declared form, with gains of any size, may leave
+(assumed)."""
 FEWEST = 100
 """Samples that it takes to tell."""
 
 
-def control_residual(subject: Subject, logged: np.ndarray, spring: np.ndarray, damper: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Logged command minus the one that the declared gains make `(s, m)` [Nm], NaN where nothing is said.
+def control_residual(
+    subject: Subject, logged: np.ndarray, spring: np.ndarray, damper: np.ndarray
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Logged command minus the one that the declared gains make `(s, m)` [Nm], NaN where nothing is
+    said.
 
     Args:
         subject: the robot, with the declared gains; m motors, n joints.
@@ -35,7 +41,9 @@ def control_residual(subject: Subject, logged: np.ndarray, spring: np.ndarray, d
     for motor, name in enumerate(subject.motors):
         share = subject.motor_from_joint[motor]
         joints = np.flatnonzero(share)
-        terms = np.concatenate([spring[:, joints], damper[:, joints]], 1) * np.tile(share[joints], 2)
+        terms = np.concatenate([spring[:, joints], damper[:, joints]], 1) * np.tile(
+            share[joints], 2
+        )
         known = np.isfinite(logged[:, motor]) & np.isfinite(terms).all(1)
         if known.sum() < FEWEST or not terms[known].any():
             continue

@@ -1,4 +1,6 @@
-"""Diagnose the gap between logs and a robot's model: where it lies, which effects cause it, how far it shrinks with them."""
+"""Diagnose the gap between logs and a robot's model: where it lies, which effects cause it, how far
+it shrinks with them.
+"""
 
 from __future__ import annotations
 
@@ -52,23 +54,34 @@ def diagnose(
         show: takes lines of progress.
 
     Raises:
-        InputError: no log to diagnose, a log that is not fit for it, or one that does not go with the robot.
+        InputError: no log to diagnose, a log that is not fit for it, or one that does not go with
+        the robot.
     """
     say = show or (lambda _: None)
     tests = [log for log in logs if log.metadata.role != "reference"]
     well = [*(log for log in logs if log.metadata.role == "reference"), *reference]
     healthy = [log.changed(metadata=replace(log.metadata, role="reference")) for log in well]
     if not tests:
-        raise InputError("diagnose", "logs", len(logs), "name no log to be diagnosed: give at least one that is not a reference")
+        raise InputError(
+            "diagnose",
+            "logs",
+            len(logs),
+            "name no log to be diagnosed: give at least one that is not a reference",
+        )
     subject = load_subject(robot, [*tests, *healthy])
     checks = [check_log(log, subject) for log in [*tests, *healthy]]
     for check in checks:
         check.refuse()
     say(f"conditioning {len(checks)} logs of {subject.name}")
     return diagnose_signals(
-        [condition(log, subject) for log in tests], [condition(log, subject) for log in healthy],
-        seed=seed, thresholds=thresholds, threads=threads, show=show, checks=checks,
-    )  # fmt: skip
+        [condition(log, subject) for log in tests],
+        [condition(log, subject) for log in healthy],
+        seed=seed,
+        thresholds=thresholds,
+        threads=threads,
+        show=show,
+        checks=checks,
+    )
 
 
 def diagnose_signals(
@@ -104,12 +117,18 @@ def diagnose_signals(
     say("calibration errors and floor")
     ready = prepare(signals, references, rules, threads)
     samples = ready.base.samples
-    say(f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue")
+    say(
+        f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue"
+    )
     places = screen.places(samples.sieves[0].signals.subject, effects)
     judge, found = decide(ready.base, rules, places, threads, references)
     say("intervals, rivals, the next experiment and what these logs can show")
-    told = Answer(ready, judge, found, seed, list(signals), list(references), list(checks)).diagnosis()
-    judged = [name for name in places if name not in {(n.effect, n.location) for n in found.not_judged}]
+    told = Answer(
+        ready, judge, found, seed, list(signals), list(references), list(checks)
+    ).diagnosis()
+    judged = [
+        name for name in places if name not in {(n.effect, n.location) for n in found.not_judged}
+    ]
     told = replace(told, sensitivity=tuple(one.mapping() for one in smallest(judge, judged)))
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
         if effects is None or effect in effects:

@@ -1,4 +1,6 @@
-"""A diagnosis as `diagnosis.json` holds it (`diagnosis_schema.json`): verdict, gap, where, causes, rivals, what to do next."""
+"""A diagnosis as `diagnosis.json` holds it (`diagnosis_schema.json`): verdict, gap, where, causes,
+rivals, what to do next.
+"""
 
 from __future__ import annotations
 
@@ -43,13 +45,23 @@ class Named:
     location: str
     probability: float
     closed: float
-    """Share of the excess gap that it closes on held-out data; of several causes, what it adds to those before."""
+    """Share of the excess gap that it closes on held-out data; of several causes, what it adds to
+    those before."""
     parameters: Mapping[str, Value]
 
     def mapping(self) -> dict[str, Any]:
         """As the file holds it."""
-        values = {n: {"value": p.value, "low": p.low, "high": p.high, "unit": p.unit} for n, p in self.parameters.items()}
-        return {"effect": self.effect, "location": self.location, "probability": self.probability, "closed": self.closed, "parameters": values}
+        values = {
+            n: {"value": p.value, "low": p.low, "high": p.high, "unit": p.unit}
+            for n, p in self.parameters.items()
+        }
+        return {
+            "effect": self.effect,
+            "location": self.location,
+            "probability": self.probability,
+            "closed": self.closed,
+            "parameters": values,
+        }
 
 
 @dataclass(frozen=True)
@@ -94,9 +106,11 @@ class Diagnosis:
     residual_shape: tuple[Mapping[str, Any], ...] = ()
     checks: tuple[str, ...] = ()
     at_rest: tuple[Mapping[str, Any], ...] = ()
-    """Joints that hold more than all known friction while they stand: `location`, `torque` beyond it [Nm], and `says`."""
+    """Joints that hold more than all known friction while they stand: `location`, `torque` beyond
+    it [Nm], and `says`."""
     sensitivity: tuple[Mapping[str, Any], ...] = ()
-    """Smallest change of each effect's parameters that these logs would have shown, see `sensitivity`."""
+    """Smallest change of each effect's parameters that these logs would have shown, see
+    `sensitivity`."""
     nuisance: tuple[Mapping[str, Any], ...] = ()
     """Calibration errors that were fitted along, the largest first, in usual sizes."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
@@ -104,18 +118,29 @@ class Diagnosis:
     def mapping(self) -> dict[str, Any]:
         """As `diagnosis.json` holds it, numbers rounded to `DIGITS`."""
         gap = {
-            "before": self.gap.before, "after": self.gap.after, "floor": self.gap.floor, "closed": self.gap.closed,
-            "closed_interval": list(self.gap.closed_interval), "unit": self.gap.unit,
-        }  # fmt: skip
+            "before": self.gap.before,
+            "after": self.gap.after,
+            "floor": self.gap.floor,
+            "closed": self.gap.closed,
+            "closed_interval": list(self.gap.closed_interval),
+            "unit": self.gap.unit,
+        }
         found = {
             "schema": SCHEMA,
             "verdict": self.verdict,
             "gap": gap,
-            "where": [{"location": w.location, "kind": w.kind, "regime": w.regime, "share": w.share} for w in self.where],
+            "where": [
+                {"location": w.location, "kind": w.kind, "regime": w.regime, "share": w.share}
+                for w in self.where
+            ],
             "causes": [c.mapping() for c in self.causes],
             "rivals": [r.mapping() for r in self.rivals],
-            "equivalent": [[{"effect": e, "location": p} for e, p in group] for group in self.equivalent],
-            "separating_experiment": None if self.separating_experiment is None else dict(self.separating_experiment),
+            "equivalent": [
+                [{"effect": e, "location": p} for e, p in group] for group in self.equivalent
+            ],
+            "separating_experiment": None
+            if self.separating_experiment is None
+            else dict(self.separating_experiment),
             "not_judged": [dict(one) for one in self.not_judged],
             "residual_shape": [dict(one) for one in self.residual_shape],
             "checks": list(self.checks),
@@ -148,20 +173,35 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
     content = read_json(path)
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         found = content.get("schema") if isinstance(content, dict) else None
-        raise InputError(where, "schema", found, f"expects {SCHEMA}: this is no diagnosis, or one of another version")
+        raise InputError(
+            where,
+            "schema",
+            found,
+            f"expects {SCHEMA}: this is no diagnosis, or one of another version",
+        )
     if content.get("verdict") not in VERDICTS:
-        raise InputError(where, "verdict", content.get("verdict"), f"expects one of {', '.join(VERDICTS)}")
+        raise InputError(
+            where, "verdict", content.get("verdict"), f"expects one of {', '.join(VERDICTS)}"
+        )
     try:
         gap = content["gap"]
         low, high = gap["closed_interval"]
         numbers = {name: float(gap[name]) for name in ("before", "after", "floor", "closed")}
         return Diagnosis(
             verdict=content["verdict"],
-            gap=Shrinkage(**numbers, closed_interval=(float(low), float(high)), unit=str(gap["unit"])),
-            where=tuple(Place(str(w["location"]), str(w["kind"]), str(w["regime"]), float(w["share"])) for w in content["where"]),
+            gap=Shrinkage(
+                **numbers, closed_interval=(float(low), float(high)), unit=str(gap["unit"])
+            ),
+            where=tuple(
+                Place(str(w["location"]), str(w["kind"]), str(w["regime"]), float(w["share"]))
+                for w in content["where"]
+            ),
             causes=_named(content["causes"]),
             rivals=_named(content["rivals"]),
-            equivalent=tuple(tuple((str(m["effect"]), str(m["location"])) for m in group) for group in content["equivalent"]),
+            equivalent=tuple(
+                tuple((str(m["effect"]), str(m["location"])) for m in group)
+                for group in content["equivalent"]
+            ),
             separating_experiment=content["separating_experiment"],
             not_judged=tuple(content.get("not_judged", ())),
             residual_shape=tuple(content.get("residual_shape", ())),
@@ -172,17 +212,25 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
             provenance=dict(content.get("provenance", {})),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(where, "", None, f"is not a whole diagnosis ({type(error).__name__}: {error})") from None
+        raise InputError(
+            where, "", None, f"is not a whole diagnosis ({type(error).__name__}: {error})"
+        ) from None
 
 
 def _named(entries: Sequence[Mapping[str, Any]]) -> tuple[Named, ...]:
     return tuple(
         Named(
-            str(one["effect"]), str(one["location"]), float(one["probability"]), float(one["closed"]),
-            {str(n): Value(float(p["value"]), float(p["low"]), float(p["high"]), str(p["unit"])) for n, p in one["parameters"].items()},
+            str(one["effect"]),
+            str(one["location"]),
+            float(one["probability"]),
+            float(one["closed"]),
+            {
+                str(n): Value(float(p["value"]), float(p["low"]), float(p["high"]), str(p["unit"]))
+                for n, p in one["parameters"].items()
+            },
         )
         for one in entries
-    )  # fmt: skip
+    )
 
 
 def _rounded(value: Any) -> Any:

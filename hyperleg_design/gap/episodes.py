@@ -1,4 +1,6 @@
-"""Rare episodes of residuals much larger than the rest of their row: drives at their limits, collisions, a cable that snags."""
+"""Rare episodes of residuals much larger than the rest of their row: drives at their limits,
+collisions, a cable that snags.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,8 @@ MOST_EPISODES = 0.3
 def episodes(base: Base) -> np.ndarray:
     """Samples in rare episodes of residuals much larger than the rest of their row `(S,)` of bool.
 
-    They are found after a fit of the calibration errors with Student weights, which such episodes do not bend.
+    They are found after a fit of the calibration errors with Student weights, which such episodes
+    do not bend.
     """
     from scipy.linalg import cho_factor, cho_solve
 
@@ -35,9 +38,15 @@ def episodes(base: Base) -> np.ndarray:
     plain = np.abs(base.value) / np.sqrt(samples.share)
     scale = np.ones(samples.groups)
     size = len(base.errors)
-    own = [[np.flatnonzero((samples.row == row) & (session == s)) for row in range(len(samples.rows))] for s in range(samples.sessions)]
+    own = [
+        [np.flatnonzero((samples.row == row) & (session == s)) for row in range(len(samples.rows))]
+        for s in range(samples.sessions)
+    ]
     shown = [one[:-1] for one in base.layout.shown]
-    errors = [[base.errors[np.ix_(columns, mine)] for columns, mine in zip(shown, of, strict=True)] for of in own]
+    errors = [
+        [base.errors[np.ix_(columns, mine)] for columns, mine in zip(shown, of, strict=True)]
+        for of in own
+    ]
     for _ in range(ROUNDS):
         for s in range(samples.sessions):
             normal, right = base.prior.precision.copy(), np.zeros(size)
@@ -53,14 +62,19 @@ def episodes(base: Base) -> np.ndarray:
             scale[group] = _spread(plain[samples.group == group]) ** 2
         weight = (ROBUST_FREEDOM + 1) / (ROBUST_FREEDOM + plain**2 / scale[samples.group])
     found = np.zeros(len(left), bool)
-    large = (plain > EPISODE * np.sqrt(scale[samples.group])) & (samples.group_band[samples.group] > 0)
+    large = (plain > EPISODE * np.sqrt(scale[samples.group])) & (
+        samples.group_band[samples.group] > 0
+    )
     log = samples.log[samples.part]
     for key in np.unique(samples.row[large] * (log.max() + 1) + log[large]).tolist():
         row, number = divmod(key, int(log.max()) + 1)
         mine = (samples.row == row) & (log == number)
         times = np.sort(samples.time[mine & large])
         after = np.clip(np.searchsorted(times, samples.time[mine]), 0, len(times) - 1)
-        near = np.minimum(np.abs(times[after] - samples.time[mine]), np.abs(times[np.maximum(after - 1, 0)] - samples.time[mine]))
+        near = np.minimum(
+            np.abs(times[after] - samples.time[mine]),
+            np.abs(times[np.maximum(after - 1, 0)] - samples.time[mine]),
+        )
         found[mine] = near <= NEAR_EPISODE
     for row in range(len(samples.rows)):
         mine = samples.row == row
@@ -79,14 +93,16 @@ BIN = 0.05
 
 
 def together(samples: Samples, left: np.ndarray, balance: str = "drive") -> float:
-    """Share of the time in which at least two, and half of all drives do not do what they were told, all at once.
+    """Share of the time in which at least two, and half of all drives do not do what they were
+    told, all at once.
 
     Limits and gear teeth belong to one drive; commands that get lost on their way belong to all.
 
     Args:
         samples: of all logs.
         left: what a model leaves of every sample, weighted `(S,)`.
-        balance: whose rows tell; of `motion`, what joints do where nobody measured what their drives give.
+        balance: whose rows tell; of `motion`, what joints do where nobody measured what their
+            drives give.
     """
     drives = [i for i, row in enumerate(samples.rows) if row.balance == balance]
     if len(drives) < 2:
@@ -108,4 +124,7 @@ def together(samples: Samples, left: np.ndarray, balance: str = "drive") -> floa
 def of_time(samples: Samples, row: int) -> float:
     """Share of a row that is in episodes."""
     own = samples.row == row
-    return float(samples.share[own & samples.episodic[samples.group]].sum() / max(samples.share[own].sum(), 1e-300))
+    return float(
+        samples.share[own & samples.episodic[samples.group]].sum()
+        / max(samples.share[own].sum(), 1e-300)
+    )

@@ -32,6 +32,8 @@ def alike(judge: Judge, slot: Sequence[Model], chosen: Model, rows: np.ndarray) 
         short = best - judge.closed(model.held, rows, chosen.held)
         difference = chosen.held.likelihood - model.held.likelihood
         doubtful = behind < 1.5 * float(np.sqrt(len(difference)) * difference.std())
-        if (behind < rules.alike or (doubtful and behind < 3 * rules.alike)) and short < rules.alike_closed:
+        if (
+            behind < rules.alike or (doubtful and behind < 3 * rules.alike)
+        ) and short < rules.alike_closed:
             found.append(model)
     return sorted(found, key=lambda m: (-rank(m), m.names))

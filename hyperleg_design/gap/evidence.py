@@ -1,4 +1,6 @@
-"""What a diagnosis looks like on one log: the residual as it is, what the named causes explain of it, and what is left."""
+"""What a diagnosis looks like on one log: the residual as it is, what the named causes explain of
+it, and what is left.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,8 @@ class Evidence:
     time: np.ndarray
     """`(t,)` [s]."""
     before: np.ndarray
-    """Residual of the nominal model `(t, r)` [Nm]; NaN where it cannot be told, and where a joint may stick."""
+    """Residual of the nominal model `(t, r)` [Nm]; NaN where it cannot be told, and where a joint
+    may stick."""
     explained: np.ndarray
     """What the causes leave there `(t, r)` [Nm]."""
     speed: np.ndarray
@@ -42,17 +45,22 @@ class Evidence:
 
     @property
     def worst(self) -> int:
-        """Row of which causes explain most; where they explain nothing, the one with the largest residual."""
+        """Row of which causes explain most; where they explain nothing, the one with the largest
+        residual.
+        """
         made = np.nan_to_num(rms(self.explained))
         return int(np.argmax(made)) if made.any() else int(np.nanargmax(rms(self.before)))
 
 
-def evidence(signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str = "motion") -> Evidence:
+def evidence(
+    signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str = "motion"
+) -> Evidence:
     """Residual and explanation on one log.
 
     Args:
         signals: of the log.
-        causes: as `diagnosis.json` lists them: `effect`, `location`, and `parameters` with their `value`.
+        causes: as `diagnosis.json` lists them: `effect`, `location`, and `parameters` with their
+            `value`.
         balance: one that the log allows.
     """
     from hyperleg_design.gap.effects import effect
@@ -62,7 +70,9 @@ def evidence(signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str
     for cause in causes:
         kind = effect(str(cause["effect"]))
         told = cause["parameters"]
-        values = np.array([[float(told[p.name]["value"]) if p.name in told else p.null for p in kind.parameters]])
+        values = np.array(
+            [[float(told[p.name]["value"]) if p.name in told else p.null for p in kind.parameters]]
+        )
         trace = kind.trace(signals, str(cause["location"]), values).get(balance)
         if trace is not None:
             explained = explained + trace[0]
@@ -79,19 +89,28 @@ def evidence(signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str
     elif balance in OF_MOTORS:
         rows, speed = subject.motors, signals.velocity @ subject.joint_from_motor
     elif balance == "base":
-        rows = tuple(f"base {part}" for part in ("force x", "force y", "force z", "torque x", "torque y", "torque z"))
+        rows = tuple(
+            f"base {part}"
+            for part in ("force x", "force y", "force z", "torque x", "torque y", "torque z")
+        )
     else:
         rows = tuple(f"{foot} {axis}" for foot in subject.feet for axis in "xyz")
     empty = np.where(known, 0.0, np.nan)
-    return Evidence(signals.log.name, balance, tuple(rows), signals.time, before + empty, made + empty, speed)
+    return Evidence(
+        signals.log.name, balance, tuple(rows), signals.time, before + empty, made + empty, speed
+    )
 
 
 def rms(values: np.ndarray) -> np.ndarray:
-    """Root of the mean square of each row, unknown ticks left out, `(t, r)` to `(r,)`; NaN where nothing is known."""
+    """Root of the mean square of each row, unknown ticks left out, `(t, r)` to `(r,)`; NaN where
+    nothing is known.
+    """
     known = np.isfinite(values)
     count = known.sum(0)
     total = np.where(known, values, 0.0) ** 2
-    return np.sqrt(np.divide(total.sum(0), count, out=np.full(values.shape[1], np.nan), where=count > 0))
+    return np.sqrt(
+        np.divide(total.sum(0), count, out=np.full(values.shape[1], np.nan), where=count > 0)
+    )
 
 
 def _smooth(values: np.ndarray, step: float) -> np.ndarray:
@@ -100,4 +119,11 @@ def _smooth(values: np.ndarray, step: float) -> np.ndarray:
 
     if 0.45 / step <= BAND or len(values) < 20:
         return values
-    return np.asarray(sosfiltfilt(butter(2, BAND, fs=1 / step, output="sos"), values, axis=0, padlen=min(len(values) - 1, 60)))
+    return np.asarray(
+        sosfiltfilt(
+            butter(2, BAND, fs=1 / step, output="sos"),
+            values,
+            axis=0,
+            padlen=min(len(values) - 1, 60),
+        )
+    )

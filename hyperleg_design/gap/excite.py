@@ -1,10 +1,12 @@
-"""Recommended experiments for a rig: motions inside the robot's limits, which effects each can tell apart, and the shortest set.
+"""Recommended experiments for a rig: motions inside the robot's limits, which effects each can tell
+apart, and the shortest set.
 
 DIR/plan.json       the plan and what it tells, in numbers; report/gap_excite.py says the same for people
 DIR/NAME.csv        targets of one motion: t, position_target/JOINT, drives_on; NAME.parquet is the same as a log
 
-What a motion tells is judged on its rehearsal, the nominal model's own log of it; `information` says how.
-"""
+What a motion tells is judged on its rehearsal, the nominal model's own log of it; `information`
+says how.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -32,7 +34,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 CLEAR = 3.0
-"""Standard deviations from which an effect of usual size shows, and from which two are told apart."""
+"""Standard deviations from which an effect of usual size shows, and from which two are told
+apart."""
 RATE = 200.0
 """Of the targets [Hz]."""
 RATES = (50.0, 2000.0)
@@ -80,7 +83,8 @@ class Experiment:
     """Fisher information by motion `(c, c)`."""
     pairs: tuple[Pair, ...]
     chosen: tuple[str, ...]
-    """Shortest set of motions that tells what all of them can, in the order in which they add most."""
+    """Shortest set of motions that tells what all of them can, in the order in which they add
+    most."""
     notes: tuple[str, ...]
 
     def motion(self, name: str) -> Motion:
@@ -89,10 +93,14 @@ class Experiment:
 
     def gram(self, names: Sequence[str] | None = None) -> np.ndarray:
         """Information of some motions, all by default."""
-        return info.summed(self.grams, names if names is not None else [m.name for m in self.motions])
+        return info.summed(
+            self.grams, names if names is not None else [m.name for m in self.motions]
+        )
 
     def apart(self, pair: Pair, names: Sequence[str] | None = None) -> float:
-        """How far a pair is told apart by some motions: the less clear of the two [standard deviations]."""
+        """How far a pair is told apart by some motions: the less clear of the two [standard
+        deviations].
+        """
         return apart(self.gram(names), self.blocks, pair)
 
     def shown(self, place: Place, names: Sequence[str] | None = None) -> float:
@@ -101,12 +109,23 @@ class Experiment:
 
 
 def apart(gram: np.ndarray, blocks: Blocks, pair: Pair) -> float:
-    """Standard deviations that are left of each of a pair after the other explained what it can; the lesser."""
-    return min(info.distinction(gram, blocks, pair.first, [pair.second]), info.distinction(gram, blocks, pair.second, [pair.first]))
+    """Standard deviations that are left of each of a pair after the other explained what it can;
+    the lesser.
+    """
+    return min(
+        info.distinction(gram, blocks, pair.first, [pair.second]),
+        info.distinction(gram, blocks, pair.second, [pair.first]),
+    )
 
 
 def design_experiment(
-    subject: Subject, *, rate: float = RATE, noise: float = info.NOISE, torque: bool = True, seed: int = 0, progress: bool = False
+    subject: Subject,
+    *,
+    rate: float = RATE,
+    noise: float = info.NOISE,
+    torque: bool = True,
+    seed: int = 0,
+    progress: bool = False,
 ) -> Experiment:
     """Plan motions for a robot on a rig and judge them.
 
@@ -125,26 +144,46 @@ def design_experiment(
     from tqdm import tqdm
 
     if subject.floating:
-        raise InputError(subject.name, "base", subject.base, "expects a rig that holds the base: --base fixed")
+        raise InputError(
+            subject.name, "base", subject.base, "expects a rig that holds the base: --base fixed"
+        )
     if not RATES[0] <= rate <= RATES[1]:
         raise InputError("excite", "rate", rate, f"expects {RATES[0]:g} to {RATES[1]:g} Hz")
     if not 0 < noise < 1:
-        raise InputError("excite", "noise", noise, "expects a share of the joints' strength between 0 and 1")
+        raise InputError(
+            "excite", "noise", noise, "expects a share of the joints' strength between 0 and 1"
+        )
     room = room_of(subject)
     motions, left_out = recommended(subject, room, rate, np.random.default_rng(seed))
     if not motions:
-        raise InfeasibleError(f"{subject.name}: no motion fits: {'; '.join(f'{one.name}: {one.why}' for one in left_out)}")
+        raise InfeasibleError(
+            f"{subject.name}: no motion fits: "
+            f"{'; '.join(f'{one.name}: {one.why}' for one in left_out)}"
+        )
     blocks = info.blocks_of(subject)
     grams = {}
     for motion in tqdm(motions, desc="information", disable=not progress):
-        log = rehearsed(subject, motion.name, motion.time, motion.target, motion.position, torque=torque)
+        log = rehearsed(
+            subject, motion.name, motion.time, motion.target, motion.position, torque=torque
+        )
         grams[motion.name] = info.information(condition(log, subject), blocks, noise=noise)
     pairs = pairs_of(subject, blocks)
     lengths = {m.name: m.duration for m in motions}
     chosen = shortest_set(grams, lengths, blocks, pairs)
     return Experiment(
-        subject, room, rate, noise, torque, tuple(motions), tuple(left_out), blocks, grams, pairs, chosen, _notes(subject, torque)
-    )  # fmt: skip
+        subject,
+        room,
+        rate,
+        noise,
+        torque,
+        tuple(motions),
+        tuple(left_out),
+        blocks,
+        grams,
+        pairs,
+        chosen,
+        _notes(subject, torque),
+    )
 
 
 def pairs_of(subject: Subject, blocks: Blocks) -> tuple[Pair, ...]:
@@ -153,16 +192,26 @@ def pairs_of(subject: Subject, blocks: Blocks) -> tuple[Pair, ...]:
     for first, second, by in LOOK_ALIKE:
         for index, joint in enumerate(subject.joints):
             places = [place_at(name, index, subject, blocks) for name in (first, second)]
-            if places[0] is not None and places[1] is not None and not any((p.first, p.second) == (places[0], places[1]) for p in found):
+            if (
+                places[0] is not None
+                and places[1] is not None
+                and not any((p.first, p.second) == (places[0], places[1]) for p in found)
+            ):
                 found.append(Pair(joint, places[0], places[1], by))
     return tuple(found)
 
 
 def place_at(effect: str, joint: int, subject: Subject, blocks: Blocks) -> Place | None:
-    """Where an effect sits that acts on a joint most: the joint, its main motor, the link that it carries, or the robot."""
+    """Where an effect sits that acts on a joint most: the joint, its main motor, the link that it
+    carries, or the robot.
+    """
     known = [location for name, location in blocks.places if name == effect]
     motor = subject.motors[int(np.argmax(np.abs(subject.joint_from_motor[joint])))]
-    links = [name for name, carrier in zip(subject.tree.links, subject.tree.link_joint, strict=True) if carrier == joint]
+    links = [
+        name
+        for name, carrier in zip(subject.tree.links, subject.tree.link_joint, strict=True)
+        if carrier == joint
+    ]
     for name in (subject.joints[joint], motor, *links):
         if name in known:
             return effect, name
@@ -170,8 +219,14 @@ def place_at(effect: str, joint: int, subject: Subject, blocks: Blocks) -> Place
     return (effect, shared[0]) if shared else None
 
 
-def shortest_set(grams: Mapping[str, np.ndarray], lengths: Mapping[str, float], blocks: Blocks, pairs: Sequence[Pair]) -> tuple[str, ...]:
-    """Motions that together tell what all can, chosen one by one by what each adds a second, and without those not needed.
+def shortest_set(
+    grams: Mapping[str, np.ndarray],
+    lengths: Mapping[str, float],
+    blocks: Blocks,
+    pairs: Sequence[Pair],
+) -> tuple[str, ...]:
+    """Motions that together tell what all can, chosen one by one by what each adds a second, and
+    without those not needed.
 
     Args:
         grams: information by motion.
@@ -193,7 +248,11 @@ def shortest_set(grams: Mapping[str, np.ndarray], lengths: Mapping[str, float], 
         now = told(chosen) if chosen else np.zeros(len(wanted))
         if (now[wanted] >= CLEAR).all():
             break
-        gains = {name: float((told([*chosen, name])[wanted] - now[wanted]).sum()) / lengths[name] for name in names if name not in chosen}
+        gains = {
+            name: float((told([*chosen, name])[wanted] - now[wanted]).sum()) / lengths[name]
+            for name in names
+            if name not in chosen
+        }
         chosen.append(max(gains, key=lambda name: gains[name]))
     for name in list(chosen):
         fewer = [n for n in chosen if n != name]
@@ -203,23 +262,42 @@ def shortest_set(grams: Mapping[str, np.ndarray], lengths: Mapping[str, float], 
 
 
 def _notes(subject: Subject, torque: bool) -> tuple[str, ...]:
-    notes = ["Self-collision is not checked: watch the first run at reduced gains, or with the neighbouring links out of the way."]
+    notes = [
+        "Self-collision is not checked: watch the first run at reduced gains, or with the "
+        "neighbouring links out of the way."
+    ]
     limits = np.isfinite(subject.torque_limit)
     if not limits.all():
-        notes.append("Torque limits of some motors are unknown: bounded by what gravity and a lively acceleration need.")
+        notes.append(
+            "Torque limits of some motors are unknown: bounded by what gravity and a lively "
+            "acceleration need."
+        )
     if not np.isfinite(subject.no_load_speed).all():
-        notes.append("Speed limits of some motors are unknown: bounded by the assumed ones of gap/rig_room.py.")
+        notes.append(
+            "Speed limits of some motors are unknown: bounded by the assumed ones of "
+            "gap/rig_room.py."
+        )
     if knows_gains(subject):
-        notes.append("Targets lead the motion by torque over stiffness, so that the nominal controller follows it.")
+        notes.append(
+            "Targets lead the motion by torque over stiffness, so that the nominal controller "
+            "follows it."
+        )
     else:
-        notes.append("Gains are unknown: the robot is taken to follow its targets exactly, and effects of the controller are not judged.")
+        notes.append(
+            "Gains are unknown: the robot is taken to follow its targets exactly, and effects of "
+            "the controller are not judged."
+        )
     if subject.passive.any():
         held = ", ".join(j for j, p in zip(subject.joints, subject.passive, strict=True) if p)
         notes.append(f"Joints without a drive are planned as if held still; hold them: {held}.")
     if torque:
-        notes.append("Log motor torque or current beside positions and targets: it separates drives from mechanics.")
+        notes.append(
+            "Log motor torque or current beside positions and targets: it separates drives from "
+            "mechanics."
+        )
     notes.append(
-        "thermal_derating needs motors that warm by 10 K (a loaded hold, logged with temperature) and voltage_sag two states of the battery."
+        "thermal_derating needs motors that warm by 10 K (a loaded hold, logged with temperature) "
+        "and voltage_sag two states of the battery."
     )
     return tuple(notes)
 
@@ -231,14 +309,21 @@ def inseparable(experiment: Experiment) -> tuple[Pair, ...]:
         pair
         for pair in experiment.pairs
         if apart(gram, experiment.blocks, pair) < CLEAR
-        and all(info.strength(gram, experiment.blocks, place) >= CLEAR for place in (pair.first, pair.second))
-    )  # fmt: skip
+        and all(
+            info.strength(gram, experiment.blocks, place) >= CLEAR
+            for place in (pair.first, pair.second)
+        )
+    )
 
 
 def hidden(experiment: Experiment) -> tuple[Place, ...]:
     """Effects at places where, at their usual size, no motion shows them."""
     gram = experiment.gram()
-    return tuple(place for place in experiment.blocks.places if info.strength(gram, experiment.blocks, place) < CLEAR)
+    return tuple(
+        place
+        for place in experiment.blocks.places
+        if info.strength(gram, experiment.blocks, place) < CLEAR
+    )
 
 
 def plan_mapping(experiment: Experiment) -> dict[str, Any]:
@@ -250,9 +335,15 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
     def effects_of(gram: np.ndarray) -> dict[str, Any]:
         found: dict[str, Any] = {}
         for place in blocks.places:
-            deviations = {k: _number(v) for k, v in info.standard_deviations(gram, blocks, place, subject).items()}
+            deviations = {
+                k: _number(v)
+                for k, v in info.standard_deviations(gram, blocks, place, subject).items()
+            }
             clear = info.strength(gram, blocks, place)
-            found.setdefault(place[0], {})[place[1]] = {"stands_out": _number(clear), "standard_deviation": deviations}
+            found.setdefault(place[0], {})[place[1]] = {
+                "stands_out": _number(clear),
+                "standard_deviation": deviations,
+            }
         return found
 
     return {
@@ -260,14 +351,36 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
         "robot": subject.path,
         "base": "fixed",
         "rate": experiment.rate,
-        "noise": {"share_of_strength": experiment.noise, "correlation_time": info.NOISE_TIME, "torque_measured": experiment.torque},
+        "noise": {
+            "share_of_strength": experiment.noise,
+            "correlation_time": info.NOISE_TIME,
+            "torque_measured": experiment.torque,
+        },
         "clear_from": CLEAR,
-        "start_posture": dict(zip(subject.joints, (float(v) for v in experiment.room.centre), strict=True)),
+        "start_posture": dict(
+            zip(subject.joints, (float(v) for v in experiment.room.centre), strict=True)
+        ),
         "motions": [
             {
-                "name": m.name, "purpose": m.purpose, "duration": m.duration, "scale": m.scale, "drives_off": float(m.off.sum() / experiment.rate),
-                "use": {"range": m.use.range, "speed": m.use.speed, "envelope": m.use.envelope, "continuous": m.use.continuous, "worst": m.use.worst},
-                "shows": sorted({place[0] for place in blocks.places if info.strength(grams[m.name], blocks, place) >= CLEAR}),
+                "name": m.name,
+                "purpose": m.purpose,
+                "duration": m.duration,
+                "scale": m.scale,
+                "drives_off": float(m.off.sum() / experiment.rate),
+                "use": {
+                    "range": m.use.range,
+                    "speed": m.use.speed,
+                    "envelope": m.use.envelope,
+                    "continuous": m.use.continuous,
+                    "worst": m.use.worst,
+                },
+                "shows": sorted(
+                    {
+                        place[0]
+                        for place in blocks.places
+                        if info.strength(grams[m.name], blocks, place) >= CLEAR
+                    }
+                ),
                 "tells_apart": _pairs_told(grams[m.name], experiment),
                 "effects": effects_of(grams[m.name]),
             }
@@ -275,13 +388,19 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
         ],
         "left_out": [{"name": one.name, "why": one.why} for one in experiment.left_out],
         "shortest_set": {
-            "motions": list(experiment.chosen), "duration": float(sum(experiment.motion(n).duration for n in experiment.chosen)),
-            "effects": effects_of(chosen), "tells_apart": _pairs_told(chosen, experiment),
+            "motions": list(experiment.chosen),
+            "duration": float(sum(experiment.motion(n).duration for n in experiment.chosen)),
+            "effects": effects_of(chosen),
+            "tells_apart": _pairs_told(chosen, experiment),
         },
-        "inseparable": [_pair(pair, experiment.gram(), experiment) for pair in inseparable(experiment)],
-        "not_shown": [{"effect": effect, "location": location} for effect, location in hidden(experiment)],
+        "inseparable": [
+            _pair(pair, experiment.gram(), experiment) for pair in inseparable(experiment)
+        ],
+        "not_shown": [
+            {"effect": effect, "location": location} for effect, location in hidden(experiment)
+        ],
         "notes": list(experiment.notes),
-    }  # fmt: skip
+    }
 
 
 def _pairs_told(gram: np.ndarray, experiment: Experiment) -> list[dict[str, Any]]:
@@ -291,39 +410,76 @@ def _pairs_told(gram: np.ndarray, experiment: Experiment) -> list[dict[str, Any]
 def _pair(pair: Pair, gram: np.ndarray, experiment: Experiment) -> dict[str, Any]:
     blocks = experiment.blocks
     return {
-        "joint": pair.joint, "first": list(pair.first), "second": list(pair.second), "separated_by": pair.by,
+        "joint": pair.joint,
+        "first": list(pair.first),
+        "second": list(pair.second),
+        "separated_by": pair.by,
         "apart": _number(apart(gram, blocks, pair)),
-        "principal_angle": _number(float(np.degrees(info.principal_angle(gram, blocks, pair.first, pair.second)))),
-    }  # fmt: skip
+        "principal_angle": _number(
+            float(np.degrees(info.principal_angle(gram, blocks, pair.first, pair.second)))
+        ),
+    }
 
 
 def _number(value: float) -> float | None:
     return float(f"{value:.4g}") if np.isfinite(value) else None
 
 
-def write_motion(folder: Path, experiment: Experiment, motion: Motion, kinds: Sequence[str]) -> list[Path]:
+def write_motion(
+    folder: Path, experiment: Experiment, motion: Motion, kinds: Sequence[str]
+) -> list[Path]:
     """Targets of one motion as CSV, as a Parquet log, or both."""
     subject = experiment.subject
     driven = [i for i in range(len(subject.joints)) if not subject.passive[i]]
     written = []
     if "csv" in kinds:
-        header = ",".join(["t", *(f"position_target/{subject.joints[i]}" for i in driven), "drives_on"])
+        header = ",".join(
+            ["t", *(f"position_target/{subject.joints[i]}" for i in driven), "drives_on"]
+        )
         rows = [header]
-        for time, target, off in zip(motion.time, motion.target[:, driven], motion.off, strict=True):
-            rows.append(",".join([f"{time:.6f}", *("" if off else f"{v:.6f}" for v in target), "0" if off else "1"]))
+        for time, target, off in zip(
+            motion.time, motion.target[:, driven], motion.off, strict=True
+        ):
+            rows.append(
+                ",".join(
+                    [
+                        f"{time:.6f}",
+                        *("" if off else f"{v:.6f}" for v in target),
+                        "0" if off else "1",
+                    ]
+                )
+            )
         written.append(write_text(folder / f"{motion.name}.csv", "\n".join(rows) + "\n"))
     if "parquet" in kinds:
         signals = {f"position_target/{subject.joints[i]}": motion.target[:, i] for i in driven}
-        metadata = Metadata(robot=subject.path, base="fixed", notes=f"targets of {motion.name}; unknown while the drives are off")
-        written.append(write_log(folder / f"{motion.name}.parquet", Log(motion.name, motion.time, signals, metadata)))
+        metadata = Metadata(
+            robot=subject.path,
+            base="fixed",
+            notes=f"targets of {motion.name}; unknown while the drives are off",
+        )
+        written.append(
+            write_log(
+                folder / f"{motion.name}.parquet", Log(motion.name, motion.time, signals, metadata)
+            )
+        )
     return written
 
 
 def excite(
-    robot: str | os.PathLike[str], out: Path, *, base: str = "fixed", rate: float = RATE, noise: float = info.NOISE, torque: bool = True,
-    kinds: str = "csv", seed: int = 0, overrides: Sequence[str] = (), progress: bool = False,
-) -> Experiment:  # fmt: skip
-    """Design the experiments for a rig and write targets and plan into a folder; texts and figures are the report's.
+    robot: str | os.PathLike[str],
+    out: Path,
+    *,
+    base: str = "fixed",
+    rate: float = RATE,
+    noise: float = info.NOISE,
+    torque: bool = True,
+    kinds: str = "csv",
+    seed: int = 0,
+    overrides: Sequence[str] = (),
+    progress: bool = False,
+) -> Experiment:
+    """Design the experiments for a rig and write targets and plan into a folder; texts and figures
+    are the report's.
 
     Args:
         robot: a design, MJCF or URDF.
@@ -344,8 +500,17 @@ def excite(
     if kinds not in FORMATS:
         raise InputError("excite", "format", kinds, f"expects one of {', '.join(FORMATS)}")
     if base != "fixed":
-        raise InputError("excite", "base", base, "expects fixed: these motions need a rig that holds the robot")
-    experiment = design_experiment(fixed_subject(str(robot), overrides), rate=rate, noise=noise, torque=torque, seed=seed, progress=progress)
+        raise InputError(
+            "excite", "base", base, "expects fixed: these motions need a rig that holds the robot"
+        )
+    experiment = design_experiment(
+        fixed_subject(str(robot), overrides),
+        rate=rate,
+        noise=noise,
+        torque=torque,
+        seed=seed,
+        progress=progress,
+    )
     for motion in experiment.motions:
         write_motion(out, experiment, motion, ("csv", "parquet") if kinds == "both" else (kinds,))
     write_json(out / "plan.json", plan_mapping(experiment))
@@ -363,4 +528,8 @@ def fixed_subject(robot: str, overrides: Sequence[str] = ()) -> Subject:
         return free
     blank = np.zeros(2)
     signals = {f"position/{name}": blank for name in free.joints}
-    return load_subject(robot, [Log("rig", np.array([0.0, 1.0]), signals, Metadata(base="fixed"))], overrides=overrides or None)
+    return load_subject(
+        robot,
+        [Log("rig", np.array([0.0, 1.0]), signals, Metadata(base="fixed"))],
+        overrides=overrides or None,
+    )

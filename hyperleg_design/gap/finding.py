@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 ERROR, WARNING, NOTE = "error", "warning", "note"
 SEVERITIES = (ERROR, WARNING, NOTE)
-"""An error would give wrong causes: nothing is diagnosed from such a log; a warning weakens the answer."""
+"""An error would give wrong causes: nothing is diagnosed from such a log; a warning weakens the
+answer."""
 
 
 @dataclass(frozen=True)

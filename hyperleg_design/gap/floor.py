@@ -1,10 +1,12 @@
-"""What a residual may be when nothing is wrong: noise that a log shows by itself, and how well models of robots are known anyhow.
+"""What a residual may be when nothing is wrong: noise that a log shows by itself, and how well
+models of robots are known anyhow.
 
-Of each sample of `filtering`, as a standard deviation. Torque noise is the residual's own level above its cutoff, taken as white;
-noise of accelerations is the smoother's, times the inertias by which the accelerations of all joints load one, and larger where joints
-are fast, as far as the samples scatter more there: what is stamped a moment early or late is off by its speed. Beyond noise, drives and
-friction of a healthy robot are known to shares of their size (`floor_torque`, `floor_friction`), which `nuisance` cannot express.
-Reference logs scale all of it.
+Of each sample of `filtering`, as a standard deviation. Torque noise is the residual's own level
+above its cutoff, taken as white; noise of accelerations is the smoother's, times the inertias by
+which the accelerations of all joints load one, and larger where joints are fast, as far as the
+samples scatter more there: what is stamped a moment early or late is off by its speed. Beyond
+noise, drives and friction of a healthy robot are known to shares of their size (`floor_torque`,
+`floor_friction`), which `nuisance` cannot express. Reference logs scale all of it.
 """
 
 from __future__ import annotations
@@ -28,7 +30,8 @@ if TYPE_CHECKING:
 NEAR = 0.5
 """Time over which the size of a load is averaged [s]."""
 TURNING, TURNING_TIME = 0.006, 0.05
-"""Way on which friction may turn over [rad], half of it; and time around it for which that counts [s]."""
+"""Way on which friction may turn over [rad], half of it; and time around it for which that counts
+[s]."""
 FAST = 10.0
 """Speed that a motor is made for where nobody gives its limits [rad/s]; assumed."""
 AT_MOST, ENOUGH = 1.5, 16
@@ -38,27 +41,42 @@ POSTURE = 0.05
 FEWEST = 64
 """Samples of a position that tell whether its noise goes with speed."""
 LEAST = 1e-4
-"""Floor over the torque that a joint is made for, at least: what single precision and rounding in logs leave."""
+"""Floor over the torque that a joint is made for, at least: what single precision and rounding in
+logs leave."""
 
 _SHAKEN: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 _INERTIAS: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
 
 def expected(sieve: Sieve, thresholds: Thresholds) -> list[np.ndarray]:
-    """Standard deviation that each sample of each row may have, `(samples,)` a row, in the row's unit."""
+    """Standard deviation that each sample of each row may have, `(samples,)` a row, in the row's
+    unit.
+    """
     load, still = _loads(sieve)
     return [_row(sieve, row, load, still, thresholds) for row in range(len(sieve.rows))]
 
 
-def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, np.ndarray], thresholds: Thresholds) -> np.ndarray:
+def _row(
+    sieve: Sieve,
+    row: int,
+    load: dict[str, np.ndarray],
+    still: dict[str, np.ndarray],
+    thresholds: Thresholds,
+) -> np.ndarray:
     signals, one = sieve.signals, sieve.rows[row]
     moving = load[one.balance][:, one.column]
     constant = still[one.balance][one.column]
     residual = np.where(sieve.mask[row], signals.residual[one.balance][:, one.column], 0.0)
-    density = _capped(sieve, row, residual, _white(residual, sieve.mask[row], one.cutoff, signals.step))
+    density = _capped(
+        sieve, row, residual, _white(residual, sieve.mask[row], one.cutoff, signals.step)
+    )
     samples = sieve.sample(row, np.nan_to_num(moving)[None])[0]
     level, _, _ = sieve.labels(row)
-    whole = np.sqrt(np.nanmean(np.where(sieve.mask[row], moving, np.nan) ** 2)) if sieve.mask[row].any() else 0.0
+    whole = (
+        np.sqrt(np.nanmean(np.where(sieve.mask[row], moving, np.nan) ** 2))
+        if sieve.mask[row].any()
+        else 0.0
+    )
     turning = _turning(sieve, row) if constant > 0 else np.zeros(len(signals.time))
     sinking = _smoothed(_sinking(sieve, row) ** 2, NEAR / signals.step)
     found, start = np.empty(len(samples)), 0
@@ -66,16 +84,24 @@ def _row(sieve: Sieve, row: int, load: dict[str, np.ndarray], still: dict[str, n
         part = slice(start, start + len(band.kept))
         start = part.stop
         local = _smoothed(samples[part] ** 2, band.count / (sieve.length * signals.step) * NEAR)
-        noise = white * (band.high - band.low) + _at(_of_acceleration(sieve, row, band.low, band.high), band)
+        noise = white * (band.high - band.low) + _at(
+            _of_acceleration(sieve, row, band.low, band.high), band
+        )
         share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
-        dry = ((thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant) ** 2 / len(sieve.bands[row])
-        found[part] = np.sqrt(noise + share + dry + _at(sinking, band) + (LEAST * _strength(sieve, row)) ** 2)
+        dry = (
+            (thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant
+        ) ** 2 / len(sieve.bands[row])
+        found[part] = np.sqrt(
+            noise + share + dry + _at(sinking, band) + (LEAST * _strength(sieve, row)) ** 2
+        )
     assert len(level) == start
     return found
 
 
 def _sinking(sieve: Sieve, row: int) -> np.ndarray:
-    """What the height of a foot leaves open of the ground's vertical force `(t,)` [N]; 0 elsewhere."""
+    """What the height of a foot leaves open of the ground's vertical force `(t,)` [N]; 0
+    elsewhere.
+    """
     one = sieve.rows[row]
     if one.balance != "ground" or one.column % 3 != 2:
         return np.zeros(len(sieve.signals.time))
@@ -95,7 +121,9 @@ def _at(values: np.ndarray, band: Band) -> np.ndarray:
 
 
 def _loads(sieve: Sieve) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """By balance: size of what is balanced `(t, columns)`, and friction of the model `(columns,)`."""
+    """By balance: size of what is balanced `(t, columns)`, and friction of the model
+    `(columns,)`.
+    """
     signals = sieve.signals
     subject = signals.subject
     found: dict[str, np.ndarray] = {}
@@ -133,7 +161,9 @@ def _strength(sieve: Sieve, row: int) -> float:
 
 
 def _white(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -> float:
-    """One-sided density of a residual above its cutoff, by the median, which lines and leaks do not move [unit^2/Hz]."""
+    """One-sided density of a residual above its cutoff, by the median, which lines and leaks do not
+    move [unit^2/Hz].
+    """
     known = np.flatnonzero(mask)
     if len(known) < 64:
         return 0.0
@@ -147,13 +177,16 @@ def _white(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -
     if high.sum() < 8:
         return 0.0
     passed = (2 * np.sin(np.pi * frequency[high] * step)) ** 6
-    passed = passed * (1 - (1 - np.cos(2 * np.pi * frequency[high] * step)) / 3)  # mean of linear interpolation at any place
+    passed = passed * (
+        1 - (1 - np.cos(2 * np.pi * frequency[high] * step)) / 3
+    )  # mean of linear interpolation at any place
     density = np.median(power[high] / passed) / np.log(2)
     return float(2 * step * density / np.sum(np.hanning(len(third)) ** 2))
 
 
 def _capped(sieve: Sieve, row: int, residual: np.ndarray, white: float) -> np.ndarray:
-    """Density of white noise in each band `(bands,)`, no more than what that band, or a faster one, shows in all [unit^2/Hz].
+    """Density of white noise in each band `(bands,)`, no more than what that band, or a faster one,
+    shows in all [unit^2/Hz].
 
     What knocks or rings at high frequencies is not white: it is no reason for noise at low ones.
     """
@@ -162,27 +195,41 @@ def _capped(sieve: Sieve, row: int, residual: np.ndarray, white: float) -> np.nd
     for band in sieve.bands[row]:
         part = samples[start : start + len(band.kept)]
         start += len(band.kept)
-        found.append(AT_MOST * float(np.mean(part**2)) / (band.high - band.low) if len(part) >= ENOUGH else np.inf)
+        found.append(
+            AT_MOST * float(np.mean(part**2)) / (band.high - band.low)
+            if len(part) >= ENOUGH
+            else np.inf
+        )
     return np.minimum.accumulate(np.r_[white, found[::-1]])[:0:-1]
 
 
 def _of_acceleration(sieve: Sieve, row: int, low: float, high: float) -> np.ndarray:
-    """Variance in a band of the torque that noise of positions feigns at each tick, twice differentiated, below the smoother's crossover `(t,)`."""
+    """Variance in a band of the torque that noise of positions feigns at each tick, twice
+    differentiated, below the smoother's crossover `(t,)`.
+    """
     signals, one = sieve.signals, sieve.rows[row]
-    if one.balance != "motion" or signals.noise is None or not np.isfinite(signals.noise[one.column]):
+    if (
+        one.balance != "motion"
+        or signals.noise is None
+        or not np.isfinite(signals.noise[one.column])
+    ):
         return np.zeros(len(signals.time))
     square = _shaken(signals)
     stiff = _feedback(sieve, row)
     turned = (2 * np.pi) ** 4 * (high**5 - low**5) / 5
     own = inertias(signals)[one.column][np.arange(len(square)) // _every(signals)]
     found = turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, one.column]
-    return np.asarray(_smoothed(2 * signals.step * found, 0.5 / (high - low) / signals.step))  # as long as a sample of the band sees
+    return np.asarray(
+        _smoothed(2 * signals.step * found, 0.5 / (high - low) / signals.step)
+    )  # as long as a sample of the band sees
 
 
 def _shaken(signals: Signals) -> np.ndarray:
-    """Variance of the noise of positions at each tick `(t, n)` [rad^2]: clocks that jitter make more of it where joints are fast.
+    """Variance of the noise of positions at each tick `(t, n)` [rad^2]: clocks that jitter make
+    more of it where joints are fast.
 
-    Its mean is what smoothing found; that a share of it goes with the square of speed, what the samples show beside the smoothed motion.
+    Its mean is what smoothing found; that a share of it goes with the square of speed, what the
+    samples show beside the smoothed motion.
     """
     assert signals.noise is not None
     if signals in _SHAKEN:
@@ -195,7 +242,9 @@ def _shaken(signals: Signals) -> np.ndarray:
         known = np.isfinite(samples)
         if known.sum() < FEWEST or not square.any():
             continue
-        beside = (samples - np.interp(signals.log.time, signals.time, signals.position[:, joint]))[known] ** 2
+        beside = (samples - np.interp(signals.log.time, signals.time, signals.position[:, joint]))[
+            known
+        ] ** 2
         speed = np.interp(signals.log.time[known], signals.time, square)
         share = _share(beside, speed / square.mean())
         found[:, joint] *= 1 - share + share * square / square.mean()
@@ -204,27 +253,40 @@ def _shaken(signals: Signals) -> np.ndarray:
 
 
 def of_acceleration(sieve: Sieve, row: int) -> tuple[np.ndarray, np.ndarray]:
-    """Variance of each sample of a row that noise of accelerations feigns, and the mean square of that noise's frequency `(samples,)` each."""
+    """Variance of each sample of a row that noise of accelerations feigns, and the mean square of
+    that noise's frequency `(samples,)` each.
+    """
     bands = sieve.bands[row]
     if not bands:
         return np.zeros(0), np.zeros(0)
     feigned = [_at(_of_acceleration(sieve, row, b.low, b.high), b) for b in bands]
-    rate = [np.full(len(b.kept), (2 * np.pi) ** 2 * 5 / 7 * (b.high**7 - b.low**7) / (b.high**5 - b.low**5)) for b in bands]
+    rate = [
+        np.full(
+            len(b.kept), (2 * np.pi) ** 2 * 5 / 7 * (b.high**7 - b.low**7) / (b.high**5 - b.low**5)
+        )
+        for b in bands
+    ]
     return np.concatenate(feigned), np.concatenate(rate)
 
 
 def _share(square: np.ndarray, speed: np.ndarray) -> float:
-    """Share of squares `(s,)` that goes with those of speed over their mean `(s,)`, from 0 to 1, by least squares."""
+    """Share of squares `(s,)` that goes with those of speed over their mean `(s,)`, from 0 to 1, by
+    least squares.
+    """
     apart = speed - speed.mean()
     rise = float(apart @ square) / max(float(apart @ apart), 1e-300)
     return float(np.clip(rise * speed.mean() / max(float(square.mean()), 1e-300), 0.0, 1.0))
 
 
 def inertias(signals: Signals) -> np.ndarray:
-    """Torque at each joint over the acceleration of each, rotors included, every `POSTURE` along a log `(n, p, n)` [kg m^2]."""
+    """Torque at each joint over the acceleration of each, rotors included, every `POSTURE` along a
+    log `(n, p, n)` [kg m^2].
+    """
     if signals not in _INERTIAS:
         some = np.nan_to_num(signals.position[:: _every(signals)])
-        _INERTIAS[signals] = np.stack(rigid.accelerating(signals.subject, some, np.eye(some.shape[1])), -1).swapaxes(0, 1)
+        _INERTIAS[signals] = np.stack(
+            rigid.accelerating(signals.subject, some, np.eye(some.shape[1])), -1
+        ).swapaxes(0, 1)
     return _INERTIAS[signals]
 
 
@@ -233,9 +295,15 @@ def _every(signals: Signals) -> int:
 
 
 def _feedback(sieve: Sieve, row: int) -> float:
-    """Torque over noise of position where the torque is computed from the logged position [Nm/rad]."""
+    """Torque over noise of position where the torque is computed from the logged position
+    [Nm/rad].
+    """
     signals, one = sieve.signals, sieve.rows[row]
-    gain = float(signals.subject.gains[one.column, 0]) if signals.measured is None and signals.target is not None else 0.0
+    gain = (
+        float(signals.subject.gains[one.column, 0])
+        if signals.measured is None and signals.target is not None
+        else 0.0
+    )
     return gain if np.isfinite(gain) else 0.0
 
 

@@ -1,4 +1,5 @@
-"""Balance of the ground: logged contact forces against those of the nominal ground at the logged motion.
+"""Balance of the ground: logged contact forces against those of the nominal ground at the logged
+motion.
 
 Each foot is judged by its whole force F, world frame, and by its pads:
 
@@ -6,18 +7,21 @@ Each foot is judged by its whole force F, world frame, and by its pads:
     sticking                   any tangential force within the cone mu F_z: the logged one, cut to the cone
     pressing                   F_z = sum over the pads below the floor of k(d) d + c(d) d', d the depth
 
-v_t is the velocity of what the foot touches the ground with: a pad that rolls does not slide. Soft contacts creep below the
-cone, in a simulation as in rubber, by F_t / c or less with c = b' i / (1 - i) over a pad's inverse weight, and more for a moment
-after each jerk; a foot slides for sure where its softest pad alone would be at the cone, away from where it lands and lifts off.
-k and c are MuJoCo's of the foot's shapes: with i(d) the impedance of `solimp` and R = (1 - i) / i times the body's inverse
-weight, F = (i k' d + b' d') / R, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of `solref` (T, r), or the two given as they are
-where negative; a pyramid of friction makes it 2 / (mu^2 (1 + mu^2)) as stiff. The floor lies where the nominal ground bears the
-logged mean force, since no log knows a floor to a tenth of a millimetre.
+v_t is the velocity of what the foot touches the ground with: a pad that rolls does not slide. Soft
+contacts creep below the cone, in a simulation as in rubber, by F_t / c or less with c = b' i / (1 -
+i) over a pad's inverse weight, and more for a moment after each jerk; a foot slides for sure where
+its softest pad alone would be at the cone, away from where it lands and lifts off. k and c are
+MuJoCo's of the foot's shapes: with i(d) the impedance of `solimp` and R = (1 - i) / i times the
+body's inverse weight, F = (i k' d + b' d') / R, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of
+`solref` (T, r), or the two given as they are where negative; a pyramid of friction makes it 2 /
+(mu^2 (1 + mu^2)) as stiff. The floor lies where the nominal ground bears the logged mean force,
+since no log knows a floor to a tenth of a millimetre.
 
-A base whose height nobody measured leaves the vertical rows unknown, one whose velocity nobody measured knows no sliding.
-MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that is left out, as no log tells a foot's acceleration so
-well, and counts as doubt; vertical rows of a standing foot are a few per cent of its load off by it, those of one that lands all.
-"""
+A base whose height nobody measured leaves the vertical rows unknown, one whose velocity nobody
+measured knows no sliding. MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that
+is left out, as no log tells a foot's acceleration so well, and counts as doubt; vertical rows of a
+standing foot are a few per cent of its load off by it, those of one that lands all.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -39,9 +43,11 @@ if TYPE_CHECKING:
 SLIDING = 0.05
 """Speed from which a foot may slide [m/s] (assumed: above what noise of encoders makes)."""
 LANDING = 0.02
-"""Time around ticks without load, in which speed and force of a foot change too fast to go together [s] (assumed)."""
+"""Time around ticks without load, in which speed and force of a foot change too fast to go together
+[s] (assumed)."""
 HEIGHT = 0.001
-"""Height of a pad is known so well [m]: offsets of a leg's encoders, and of what tells where the base is (assumed)."""
+"""Height of a pad is known so well [m]: offsets of a leg's encoders, and of what tells where the
+base is (assumed)."""
 KEPT = 32
 """Results of `Footing.pressing` that are kept."""
 HALVINGS = 34
@@ -63,14 +69,19 @@ class Law:
     impedance: np.ndarray
     """MuJoCo's `solimp`: least, most, width, middle, power, `(p, 5)`."""
     weakest: float = 1.0
-    """Friction along the flat sides of its cone over that along the edges: a pyramid's holds less there, and nobody knows its edges."""
+    """Friction along the flat sides of its cone over that along the edges: a pyramid's holds less
+    there, and nobody knows its edges."""
 
     @property
     def creep(self) -> float:
-        """Tangential force over speed of one pad below the cone, of the softest at its softest [Ns/m]."""
+        """Tangential force over speed of one pad below the cone, of the softest at its softest
+        [Ns/m].
+        """
         return float(np.min(self.damper * self._mass(self.impedance[:, 0])))
 
-    def force(self, depth: np.ndarray, sink: np.ndarray, spring: float = 1.0, damper: float = 1.0) -> np.ndarray:
+    def force(
+        self, depth: np.ndarray, sink: np.ndarray, spring: float = 1.0, damper: float = 1.0
+    ) -> np.ndarray:
         """Vertical force on all pads together `(t,)` [N]; pads push and never pull.
 
         Args:
@@ -80,11 +91,15 @@ class Law:
             damper: scale of b'.
         """
         impedance = self._impedance(depth)
-        push = (spring * self.spring * impedance * depth + damper * self.damper * sink) * self._mass(impedance)
+        push = (
+            spring * self.spring * impedance * depth + damper * self.damper * sink
+        ) * self._mass(impedance)
         return np.asarray(np.where(depth > 0, np.maximum(push, 0.0), 0.0 * depth).sum(-1))
 
     def mass(self, depth: np.ndarray) -> np.ndarray:
-        """1 / R of pads under the floor `(t, p)` [kg], by which contacts resist acceleration; arguments as of `force`."""
+        """1 / R of pads under the floor `(t, p)` [kg], by which contacts resist acceleration;
+        arguments as of `force`.
+        """
         return np.asarray(np.where(depth > 0, self._mass(self._impedance(depth)), 0.0))
 
     def _mass(self, impedance: np.ndarray) -> np.ndarray:
@@ -128,7 +143,8 @@ class Footing:
     """What `pressing` found already; most of what asks differs in friction alone."""
 
     def pressing(self, spring: float, damper: float) -> np.ndarray:
-        """Vertical force of a ground at this motion `(t,)` [N], its floor where it bears the mean of the logged forces.
+        """Vertical force of a ground at this motion `(t,)` [N], its floor where it bears the mean
+        of the logged forces.
 
         Args:
             spring: scale of k.
@@ -149,7 +165,11 @@ class Footing:
 
     def _floor(self, spring: float, damper: float) -> float:
         """Height at which the floor bears the mean of the logged forces [m]."""
-        mean, height, sink = float(self.force[self.judged, 2].mean()), self.height[self.judged], self.sink[self.judged]
+        mean, height, sink = (
+            float(self.force[self.judged, 2].mean()),
+            self.height[self.judged],
+            self.sink[self.judged],
+        )
         low, high = float(height.min()), float(height.max()) + 0.1
         for _ in range(HALVINGS):
             # bisection, as a higher floor bears more
@@ -161,15 +181,21 @@ class Footing:
         return (low + high) / 2
 
     def doubt(self) -> np.ndarray:
-        """What the vertical force of a nominal ground leaves open, by its pads' height and by their acceleration `(t,)` [N]."""
+        """What the vertical force of a nominal ground leaves open, by its pads' height and by their
+        acceleration `(t,)` [N].
+        """
         if not self.judged.any():
             return np.zeros(len(self.force))
         floor = self._floor(1.0, 1.0)
-        above, below = (self.law.force(floor + sign * HEIGHT - self.height, self.sink) for sign in (1, -1))
+        above, below = (
+            self.law.force(floor + sign * HEIGHT - self.height, self.sink) for sign in (1, -1)
+        )
         resisted = np.abs((self.law.mass(floor - self.height) * self.fall).sum(-1))
         return np.asarray(np.hypot((above - below) / 2, np.nan_to_num(resisted)))
 
-    def ground(self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    def ground(
+        self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray
+    ) -> np.ndarray:
         """Force of a ground with scaled properties at this motion `(k, t, 3)` [N].
 
         Args:
@@ -184,12 +210,20 @@ class Footing:
         cut = np.minimum(1.0, limit / np.maximum(size, 1e-9))[..., None] * tangential
         speed = np.linalg.norm(self.slide, axis=-1)
         along = self.slide / np.maximum(speed, 1e-9)[:, None]
-        sliding = (self.settled & (speed > np.maximum(SLIDING, self.friction * normal / self.law.creep)))[:, None]
+        sliding = (
+            self.settled & (speed > np.maximum(SLIDING, self.friction * normal / self.law.creep))
+        )[:, None]
         slid = np.clip(size, self.law.weakest * limit, limit)
         tangential = np.where(sliding, -slid[..., None] * along, cut)
-        pressing = np.stack([self.pressing(1 / c, d / np.sqrt(c)) for c, d in zip(compliance, damping, strict=True)])
+        pressing = np.stack(
+            [self.pressing(1 / c, d / np.sqrt(c)) for c, d in zip(compliance, damping, strict=True)]
+        )
         found = np.concatenate([tangential, pressing[..., None]], -1)
-        return np.where((normal > LOADED)[None, :, None], found, np.where(normal[None, :, None] <= 0, self.force[None], np.nan))
+        return np.where(
+            (normal > LOADED)[None, :, None],
+            found,
+            np.where(normal[None, :, None] <= 0, self.force[None], np.nan),
+        )
 
 
 _FOOTINGS: WeakKeyDictionary[Signals, tuple[Footing, ...]] = WeakKeyDictionary()
@@ -203,7 +237,9 @@ def footings(signals: Signals) -> tuple[Footing, ...]:
 
 
 def balance(signals: Signals) -> np.ndarray | None:
-    """Logged less nominal force of the ground on each foot `(t, 3 f)` [N]; NaN where unknown; None without logged forces."""
+    """Logged less nominal force of the ground on each foot `(t, 3 f)` [N]; NaN where unknown; None
+    without logged forces.
+    """
     feet = footings(signals)
     if not feet:
         return None
@@ -217,9 +253,13 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
     subject, base = signals.subject, signals.base
     if signals.contact is None or base is None or not subject.pads:
         return ()
-    relative = np.einsum("tij,tpj->tpi", base.rotation, rigid.pad_points(subject, signals.position, base.rotation))
+    relative = np.einsum(
+        "tij,tpj->tpi", base.rotation, rigid.pad_points(subject, signals.position, base.rotation)
+    )
     points = base.position[:, None] + relative
-    velocity = np.einsum("tij,tj->ti", base.rotation, base.linear_velocity)[:, None] + np.gradient(relative, signals.step, axis=0)
+    velocity = np.einsum("tij,tj->ti", base.rotation, base.linear_velocity)[:, None] + np.gradient(
+        relative, signals.step, axis=0
+    )
     velocity += rigid.pad_rolling(subject, signals.position, base.rotation, signals.step)
     of_foot = np.array([p.foot for p in subject.pads])
     found = []
@@ -230,18 +270,45 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
         weight = _loads(signals, own, lowest)
         slide = np.einsum("tp,tpi->ti", weight, velocity[:, own, :2])
         height, sink = points[:, own, 2], -velocity[:, own, 2]
-        friction, law = nominal_ground(subject, tuple(subject.tree.links[subject.pads[p].link] for p in own))
-        loaded = np.isfinite(force[:, 2]) & (np.nan_to_num(force[:, 2]) > LOADED) & np.isfinite(height).all(1) & signals.valid
+        friction, law = nominal_ground(
+            subject, tuple(subject.tree.links[subject.pads[p].link] for p in own)
+        )
+        loaded = (
+            np.isfinite(force[:, 2])
+            & (np.nan_to_num(force[:, 2]) > LOADED)
+            & np.isfinite(height).all(1)
+            & signals.valid
+        )
         span = 2 * max(round(LANDING / signals.step), 1) + 1
         settled = minimum_filter1d(np.nan_to_num(force[:, 2]) > LOADED, span)
         fall = np.gradient(sink, signals.step, axis=0)
-        on_pads = np.full((len(force), len(own), 3), np.nan) if signals.pad_force is None else signals.pad_force[:, own]
-        found.append(Footing(force, slide, on_pads, velocity[:, own, :2], height, sink, fall, friction, law, loaded, settled))
+        on_pads = (
+            np.full((len(force), len(own), 3), np.nan)
+            if signals.pad_force is None
+            else signals.pad_force[:, own]
+        )
+        found.append(
+            Footing(
+                force,
+                slide,
+                on_pads,
+                velocity[:, own, :2],
+                height,
+                sink,
+                fall,
+                friction,
+                law,
+                loaded,
+                settled,
+            )
+        )
     return tuple(found)
 
 
 def _loads(signals: Signals, own: np.ndarray, lowest: np.ndarray) -> np.ndarray:
-    """Share of each of a foot's pads in its load `(t, p)`; all on the lowest where nobody measured it."""
+    """Share of each of a foot's pads in its load `(t, p)`; all on the lowest where nobody measured
+    it.
+    """
     alone = (own[None, :] == lowest[:, None]).astype(float)
     if signals.pad_force is None:
         return alone
@@ -258,34 +325,58 @@ def foot_bodies(subject: Subject, foot: int) -> tuple[str, ...]:
 def foot_geoms(model: mujoco.MjModel, bodies: tuple[str, ...]) -> list[int]:
     """Shapes of these bodies that collide."""
     ids = {model.body(name).id for name in bodies}
-    return [g for g in range(model.ngeom) if int(model.geom_bodyid[g]) in ids and (model.geom_contype[g] or model.geom_conaffinity[g])]
+    return [
+        g
+        for g in range(model.ngeom)
+        if int(model.geom_bodyid[g]) in ids and (model.geom_contype[g] or model.geom_conaffinity[g])
+    ]
 
 
 def floor_geoms(model: mujoco.MjModel) -> list[int]:
     """Shapes of the world that collide."""
-    return [g for g in range(model.ngeom) if model.geom_bodyid[g] == 0 and (model.geom_contype[g] or model.geom_conaffinity[g])]
+    return [
+        g
+        for g in range(model.ngeom)
+        if model.geom_bodyid[g] == 0 and (model.geom_contype[g] or model.geom_conaffinity[g])
+    ]
 
 
 def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray, int]:
-    """Friction `(3,)`, `solref` `(2,)` and number of contact dimensions between a shape and the floor, as MuJoCo mixes them."""
+    """Friction `(3,)`, `solref` `(2,)` and number of contact dimensions between a shape and the
+    floor, as MuJoCo mixes them.
+    """
     floor = floor_geoms(model)
     if not floor:
-        return model.geom_friction[geom].copy(), model.geom_solref[geom].copy(), int(model.geom_condim[geom])
+        return (
+            model.geom_friction[geom].copy(),
+            model.geom_solref[geom].copy(),
+            int(model.geom_condim[geom]),
+        )
     other = floor[0]
     ranks = model.geom_priority[geom], model.geom_priority[other]
     if ranks[0] != ranks[1]:
         chosen = geom if ranks[0] > ranks[1] else other
-        return model.geom_friction[chosen].copy(), model.geom_solref[chosen].copy(), int(model.geom_condim[chosen])
+        return (
+            model.geom_friction[chosen].copy(),
+            model.geom_solref[chosen].copy(),
+            int(model.geom_condim[chosen]),
+        )
     friction = np.maximum(model.geom_friction[geom], model.geom_friction[other])
     parts = model.geom_solmix[[geom, other]]
     share = parts[0] / parts.sum() if parts.sum() > 0 else 0.5
     own, theirs = model.geom_solref[geom], model.geom_solref[other]
-    solref = share * own + (1 - share) * theirs if own[0] > 0 and theirs[0] > 0 else np.minimum(own, theirs)
+    solref = (
+        share * own + (1 - share) * theirs
+        if own[0] > 0 and theirs[0] > 0
+        else np.minimum(own, theirs)
+    )
     return friction, solref, int(max(model.geom_condim[geom], model.geom_condim[other]))
 
 
 def nominal_ground(subject: Subject, links: tuple[str, ...]) -> tuple[float, Law]:
-    """Friction coefficient of the model's ground under the first, and how it bears one pad of each of these links."""
+    """Friction coefficient of the model's ground under the first, and how it bears one pad of each
+    of these links.
+    """
     import mujoco
 
     model = subject.model
@@ -298,13 +389,22 @@ def nominal_ground(subject: Subject, links: tuple[str, ...]) -> tuple[float, Law
         impedance = model.geom_solimp[geom].copy()
         impedance[:2] = np.clip(impedance[:2], 1e-4, 0.9999)
         impedance[2] = max(impedance[2], 1e-9)
-        most, weight = impedance[1], max(float(model.body_invweight0[model.geom_bodyid[geom], 0]), 1e-9)
+        most, weight = (
+            impedance[1],
+            max(float(model.body_invweight0[model.geom_bodyid[geom], 0]), 1e-9),
+        )
         if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and dimensions > 1:
-            weight *= float(friction[0]) ** 2 * (1 + float(friction[0]) ** 2) / (2 * model.opt.impratio)
+            weight *= (
+                float(friction[0]) ** 2 * (1 + float(friction[0]) ** 2) / (2 * model.opt.impratio)
+            )
         if solref[0] > 0:
-            rows.append((1 / (most * solref[0] * solref[1]) ** 2, 2 / (most * solref[0]), weight, impedance))
+            rows.append(
+                (1 / (most * solref[0] * solref[1]) ** 2, 2 / (most * solref[0]), weight, impedance)
+            )
         else:
             rows.append((-solref[0] / most**2, -solref[1] / most, weight, impedance))
     spring, damper, weights, impedances = (np.array(values) for values in zip(*rows, strict=True))
     pyramid = model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
-    return coefficient, Law(spring, damper, weights, impedances, float(np.sqrt(0.5)) if pyramid else 1.0)
+    return coefficient, Law(
+        spring, damper, weights, impedances, float(np.sqrt(0.5)) if pyramid else 1.0
+    )

@@ -1,4 +1,6 @@
-"""Causes that are heard: in what joints do at high frequencies or in short knocks, and in no balance."""
+"""Causes that are heard: in what joints do at high frequencies or in short knocks, and in no
+balance.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +12,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.diagnosis import Named
 
 RINGING, KNOCKING, UNSTABLE = "ringing", "knocking", "unstable"
-"""How it is known: by the torque that a belt's joints take of nobody (`loose`), by joints that knock about (`knocking`), by which
-joints a loop swings (`unstable`)."""
+"""How it is known: by the torque that a belt's joints take of nobody (`loose`), by joints that
+knock about (`knocking`), by which joints a loop swings (`unstable`)."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from hyperleg_design.gap.fit import ROUNDS, Design, Fit
 from hyperleg_design.gap.samples import BLOCKS
 
 FREEDOM = 40.0
-"""Most degrees of freedom of a predictive distribution: the scale of other data is never known better (assumed)."""
+"""Most degrees of freedom of a predictive distribution: the scale of other data is never known
+better (assumed)."""
 
 
 AT_ONCE = 20_000
@@ -31,12 +32,15 @@ class Held:
     left: np.ndarray
     """What is left of every sample, weighted `(S,)`."""
     over: float
-    """Log-likelihood of all blocks had no group less noise than its floor: what models tell of less than the floor does not count.
+    """Log-likelihood of all blocks had no group less noise than its floor: what models tell of less
+    than the floor does not count.
 
-    Nor does what causes that scale torques have of it (`endogenous`), which shrinks noise however small.
+    Nor does what causes that scale torques have of it (`endogenous`), which shrinks noise however
+    small.
     """
     bare: np.ndarray
-    """As `square`, had the causes not been there: the same calibration errors, without the causes' traces `(B, G)`."""
+    """As `square`, had the causes not been there: the same calibration errors, without the causes'
+    traces `(B, G)`."""
 
     @property
     def total(self) -> float:
@@ -57,7 +61,11 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
         design.trust(fit)
     base = design.base
     samples = base.samples
-    left, spread, freedom = np.zeros(len(samples.value)), np.ones(len(samples.value)), np.ones(len(samples.value))
+    left, spread, freedom = (
+        np.zeros(len(samples.value)),
+        np.ones(len(samples.value)),
+        np.ones(len(samples.value)),
+    )
     bare, open_to = np.zeros(len(samples.value)), doubt(base, way)
     scaled, faint = [], []
     fold_of = samples.fold[way][samples.part]
@@ -71,26 +79,34 @@ def predict(design: Design, way: int = BLOCKS, fit: Fit | None = None) -> Held:
         rest, trace = design.left(found.phi, errors), design.trace(found.phi)
         left[here], bare[here] = rest[here], (rest + trace)[here]
         spread[here] = found.scale[samples.group[here]]
-        freedom[here] = np.minimum(base.freedom + number_of(base, way, fold, False), FREEDOM)[samples.group[here]]
+        freedom[here] = np.minimum(base.freedom + number_of(base, way, fold, False), FREEDOM)[
+            samples.group[here]
+        ]
     cell = samples.block * samples.groups + samples.group
     cells, inverse = np.unique(cell, return_inverse=True)
     size = np.bincount(inverse, samples.share)
     square = np.bincount(inverse, left**2 / (1 + open_to / spread))
     nu, scale = (np.bincount(inverse, v * samples.share) / size for v in (freedom, spread))
-    likelihood = np.bincount(cells // samples.groups, _student(square, size, nu, scale), base.blocks)
+    likelihood = np.bincount(
+        cells // samples.groups, _student(square, size, nu, scale), base.blocks
+    )
     over = float(_student(square, size, nu, np.maximum(scale, 1.0)).sum())
     for fold in range(samples.folds(way) if design.factors else 0):
         share = np.bincount(samples.block, samples.share * (fold_of == fold), base.blocks)
         likelihood = likelihood + scaled[fold] * share / samples.share.sum()
         over += faint[fold] * float(share.sum() / samples.share.sum())
     squares, whole = (
-        np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(base.blocks, samples.groups) for v in (left, bare)
+        np.bincount(cell, (v / samples.weight) ** 2, base.blocks * samples.groups).reshape(
+            base.blocks, samples.groups
+        )
+        for v in (left, bare)
     )
     return Held(likelihood, squares, left, over, whole)
 
 
 def untold(design: Design, fit: Fit, way: int = BLOCKS) -> np.ndarray:
-    """How far the other folds leave the causes' trace in each fold open: standard deviation over the trace, root mean squares `(folds,)`.
+    """How far the other folds leave the causes' trace in each fold open: standard deviation over
+    the trace, root mean squares `(folds,)`.
 
     Args:
         design: columns of the model.
@@ -109,14 +125,20 @@ def untold(design: Design, fit: Fit, way: int = BLOCKS) -> np.ndarray:
 
 
 def _student(square: np.ndarray, size: np.ndarray, nu: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Log density of cells of `size` numbers whose squares sum up to `square`, of a t-distribution of `nu` and `scale`; each `(cells,)`."""
-    return np.asarray(-0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale))
+    """Log density of cells of `size` numbers whose squares sum up to `square`, of a t-distribution
+    of `nu` and `scale`; each `(cells,)`.
+    """
+    return np.asarray(
+        -0.5 * (nu + size) * np.log1p(square / (nu * scale)) - 0.5 * size * np.log(scale)
+    )
 
 
 def doubt(base: Base, way: int = BLOCKS) -> np.ndarray:
-    """How far the calibration errors of the other folds leave each sample open, without any cause: variance over the floor's `(S,)`.
+    """How far the calibration errors of the other folds leave each sample open, without any cause:
+    variance over the floor's `(S,)`.
 
-    A joint that hardly slides in any other block is foretold by the usual size of its errors alone. Kept while the base lives.
+    A joint that hardly slides in any other block is foretold by the usual size of its errors alone.
+    Kept while the base lives.
     """
     kept = _DOUBTS.setdefault(base, {})
     if way not in kept:
@@ -125,12 +147,17 @@ def doubt(base: Base, way: int = BLOCKS) -> np.ndarray:
         found = np.zeros(len(samples.value))
         fold_of, session_of = samples.fold[way][samples.part], samples.session[samples.part]
         for fold in range(samples.folds(way)):
-            weight = 1 / np.minimum(design.fit(way, fold, scale, rounds=2).scale, 1.0)  # a gap does not make the other blocks tell less
+            weight = 1 / np.minimum(
+                design.fit(way, fold, scale, rounds=2).scale, 1.0
+            )  # a gap does not make the other blocks tell less
             for session in range(samples.sessions):
                 here = np.flatnonzero((fold_of == fold) & (session_of == session))
                 if not here.size:
                     continue
-                known = np.linalg.inv(base.part(way, fold, session, False).weighed(weight)[:-1, :-1] + base.prior.precision)
+                known = np.linalg.inv(
+                    base.part(way, fold, session, False).weighed(weight)[:-1, :-1]
+                    + base.prior.precision
+                )
                 for start in range(0, here.size, AT_ONCE):
                     part = here[start : start + AT_ONCE]
                     mine = base.errors[:, part]

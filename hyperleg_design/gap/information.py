@@ -1,15 +1,18 @@
-"""What a motion can tell: Fisher information of the effects' traces, how well each is known, and which pairs look alike.
+"""What a motion can tell: Fisher information of the effects' traces, how well each is known, and
+which pairs look alike.
 
-Around an effect at its usual size, its trace is taken as linear in its parameters: the block of an (effect, place) holds the
-derivative of the trace by each parameter, and the trace itself. With noise of standard deviation s, correlated over a time T, in
-each row of the balances, the information of all blocks together is the Gram matrix
+Around an effect at its usual size, its trace is taken as linear in its parameters: the block of an
+(effect, place) holds the derivative of the trace by each parameter, and the trace itself. With
+noise of standard deviation s, correlated over a time T, in each row of the balances, the
+information of all blocks together is the Gram matrix
 
     F = sum over rows and ticks of  J^T J  step / (2 T s^2),
 
-and Fs of several motions add up. Everything else follows from F alone: the standard deviation of a parameter while the effect's
-others are fitted; how many of its own standard deviations an effect of usual size stands out; how many are left of it after a
+and Fs of several motions add up. Everything else follows from F alone: the standard deviation of a
+parameter while the effect's others are fitted; how many of its own standard deviations an effect of
+usual size stands out; how many are left of it after a
 rival has explained what it can,  d^2 = F_aa - F_ab F_bb^-1 F_ba ; and the smallest principal angle between two blocks.
-"""
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -28,7 +31,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 NOISE = 0.01
-"""Noise of a balance over the strength of its joint or motor [-]; assumed, of the order of torque estimates from currents."""
+"""Noise of a balance over the strength of its joint or motor [-]; assumed, of the order of torque
+estimates from currents."""
 NOISE_TIME = 0.05
 """Over which that noise is correlated [s]; assumed: residuals of robots are not white."""
 BAND = 25.0
@@ -102,17 +106,30 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
     }
     scales = {balance: scale for balance, scale in scales.items() if balance in signals.residual}
     every = max(int(0.5 / (2 * BAND * signals.step)), 1)
-    known = {balance: np.isfinite(signals.residual[balance]) & signals.valid[:, None] for balance in scales}
+    known = {
+        balance: np.isfinite(signals.residual[balance]) & signals.valid[:, None]
+        for balance in scales
+    }
     shape = (len(signals.time[::every]), blocks.columns)
-    rows = {balance: np.zeros((scale.size, *shape), np.float32) for balance, scale in scales.items()}
+    rows = {
+        balance: np.zeros((scale.size, *shape), np.float32) for balance, scale in scales.items()
+    }
     for at, (identifier, location) in enumerate(blocks.places):
-        for balance, found in _block(EFFECTS[identifier], signals, location, blocks.values[at]).items():
+        for balance, found in _block(
+            EFFECTS[identifier], signals, location, blocks.values[at]
+        ).items():
             if balance not in scales:
                 continue
             for row in np.flatnonzero(np.any(found != 0, (0, 1))):
-                values = np.where(known[balance][:, row] & np.isfinite(found[..., row]), found[..., row], 0.0)
-                kept = np.where(known[balance][::every, row], _filtered(values, signals.step)[:, ::every], 0.0)
-                rows[balance][row, :, blocks.start[at] : blocks.start[at] + len(found)] = kept.T / scales[balance][row]
+                values = np.where(
+                    known[balance][:, row] & np.isfinite(found[..., row]), found[..., row], 0.0
+                )
+                kept = np.where(
+                    known[balance][::every, row], _filtered(values, signals.step)[:, ::every], 0.0
+                )
+                rows[balance][row, :, blocks.start[at] : blocks.start[at] + len(found)] = (
+                    kept.T / scales[balance][row]
+                )
     total = np.zeros((blocks.columns, blocks.columns))
     for part in rows.values():
         for columns in part:
@@ -121,8 +138,12 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
     return total * (signals.step * every / (2 * NOISE_TIME))
 
 
-def _block(one: Effect, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-    """By balance, derivatives by each parameter times its scale, and the trace at the values `(parameters + 1, t, rows)`."""
+def _block(
+    one: Effect, signals: Signals, location: str, values: np.ndarray
+) -> dict[str, np.ndarray]:
+    """By balance, derivatives by each parameter times its scale, and the trace at the values
+    `(parameters + 1, t, rows)`.
+    """
     subject = signals.subject
     count = len(values)
     size = scales_of(one, location, subject, values)
@@ -131,7 +152,10 @@ def _block(one: Effect, signals: Signals, location: str, values: np.ndarray) -> 
     for p in range(count):
         tried[2 * p, p] = min(values[p] + STEP * size[p], high[p])
         tried[2 * p + 1, p] = max(values[p] - STEP * size[p], low[p])
-    width = tried[2 * np.arange(count), np.arange(count)] - tried[2 * np.arange(count) + 1, np.arange(count)]
+    width = (
+        tried[2 * np.arange(count), np.arange(count)]
+        - tried[2 * np.arange(count) + 1, np.arange(count)]
+    )
     scale = np.divide(size, width, out=np.zeros(count), where=width > 0)
     out = {}
     for balance, traces in one.trace(signals, location, tried).items():
@@ -146,17 +170,30 @@ def _filtered(values: np.ndarray, step: float) -> np.ndarray:
 
     if 0.45 / step <= BAND or values.shape[1] < 20:
         return values
-    return np.asarray(sosfiltfilt(butter(2, BAND, fs=1 / step, output="sos"), values, axis=1, padlen=min(values.shape[1] - 1, 60)))
+    return np.asarray(
+        sosfiltfilt(
+            butter(2, BAND, fs=1 / step, output="sos"),
+            values,
+            axis=1,
+            padlen=min(values.shape[1] - 1, 60),
+        )
+    )
 
 
 def scales_of(one: Effect, location: str, subject: Subject, values: np.ndarray) -> np.ndarray:
-    """Size of each parameter by which derivatives are taken: its usual distance, or its value where that is less `(parameters,)`."""
+    """Size of each parameter by which derivatives are taken: its usual distance, or its value where
+    that is less `(parameters,)`.
+    """
     usual = np.abs(one.usual(location, subject))
     return np.where(values == 0, usual, np.minimum(usual, np.abs(values)))
 
 
-def standard_deviations(gram: np.ndarray, blocks: Blocks, place: Place, subject: Subject) -> dict[str, float]:
-    """Of an effect's parameters in their own units while its others are fitted; infinite where these data do not show one."""
+def standard_deviations(
+    gram: np.ndarray, blocks: Blocks, place: Place, subject: Subject
+) -> dict[str, float]:
+    """Of an effect's parameters in their own units while its others are fitted; infinite where
+    these data do not show one.
+    """
     one = EFFECTS[place[0]]
     scale = scales_of(one, place[1], subject, blocks.values[blocks.places.index(place)])
     span = blocks.span(place)
@@ -181,11 +218,15 @@ def distinction(gram: np.ndarray, blocks: Blocks, place: Place, rivals: Sequence
 
 
 def principal_angle(gram: np.ndarray, blocks: Blocks, place: Place, rival: Place) -> float:
-    """Smallest angle between what two effects can leave in the balances [rad]; pi/2 where either leaves nothing."""
+    """Smallest angle between what two effects can leave in the balances [rad]; pi/2 where either
+    leaves nothing.
+    """
     a, b = _basis(gram, blocks.span(place)), _basis(gram, blocks.span(rival))
     if a.shape[1] == 0 or b.shape[1] == 0:
         return float(np.pi / 2)
-    cosine = np.linalg.svd(a.T @ gram[np.ix_(blocks.span(place), blocks.span(rival))] @ b, compute_uv=False)[0]
+    cosine = np.linalg.svd(
+        a.T @ gram[np.ix_(blocks.span(place), blocks.span(rival))] @ b, compute_uv=False
+    )[0]
     return float(np.arccos(min(cosine, 1.0)))
 
 

@@ -1,4 +1,6 @@
-"""From files to what measuring and diagnosing work on: logs opened, checked, joined with their robot, and conditioned."""
+"""From files to what measuring and diagnosing work on: logs opened, checked, joined with their
+robot, and conditioned.
+"""
 
 from __future__ import annotations
 
@@ -29,26 +31,37 @@ class Intake:
     """Of all logs, tests first."""
 
 
-def take_in(robot: str, sources: Sequence[str | os.PathLike[str]], references: Sequence[str | os.PathLike[str]] = ()) -> Intake:
+def take_in(
+    robot: str,
+    sources: Sequence[str | os.PathLike[str]],
+    references: Sequence[str | os.PathLike[str]] = (),
+) -> Intake:
     """Open, check and condition logs.
 
     Args:
         robot: a design of ours, or an MJCF or URDF file; empty: what the logs name.
-        sources: files or folders of any known format; logs whose metadata say so count as references.
+        sources: files or folders of any known format; logs whose metadata say so count as
+            references.
         references: of the healthy robot.
 
     Raises:
-        InputError: no log to test, a log that cannot be opened or is not fit, a robot that does not go with the logs.
+        InputError: no log to test, a log that cannot be opened or is not fit, a robot that does not
+        go with the logs.
     """
     tests, healthy = open_logs(sources, references)
     subject = load_subject(robot or None, [*tests, *healthy])
     checks = [_checked(log, subject) for log in (*tests, *healthy)]
     return Intake(
-        subject, tuple(condition(log, subject) for log in tests), tuple(condition(log, subject) for log in healthy), tuple(checks)
-    )  # fmt: skip
+        subject,
+        tuple(condition(log, subject) for log in tests),
+        tuple(condition(log, subject) for log in healthy),
+        tuple(checks),
+    )
 
 
-def open_logs(sources: Sequence[str | os.PathLike[str]], references: Sequence[str | os.PathLike[str]] = ()) -> tuple[list[Log], list[Log]]:
+def open_logs(
+    sources: Sequence[str | os.PathLike[str]], references: Sequence[str | os.PathLike[str]] = ()
+) -> tuple[list[Log], list[Log]]:
     """Logs to be tested, and those of the healthy robot: named so, or by their own metadata.
 
     Raises:
@@ -56,12 +69,16 @@ def open_logs(sources: Sequence[str | os.PathLike[str]], references: Sequence[st
     """
     if not sources:
         raise InputError("gap", "logs", None, "expects files or folders of logs")
-    opened = [(log, log.metadata.role == REFERENCE) for source in sources for log in open_log(source)]
+    opened = [
+        (log, log.metadata.role == REFERENCE) for source in sources for log in open_log(source)
+    ]
     opened += [(log, True) for source in references for log in open_log(source)]
     tests = [log for log, reference in opened if not reference]
     healthy = [log for log, reference in opened if reference]
     if not tests:
-        raise InputError("gap", "logs", len(healthy), "are all references: name at least one log to be diagnosed")
+        raise InputError(
+            "gap", "logs", len(healthy), "are all references: name at least one log to be diagnosed"
+        )
     return tests, healthy
 
 

@@ -1,4 +1,5 @@
-"""One recording: a row a tick, columns `signal/name`, and what is known of the robot; read from and written to Parquet.
+"""One recording: a row a tick, columns `signal/name`, and what is known of the robot; read from and
+written to Parquet.
 
 | column | unit | |
 |---|---|---|
@@ -40,7 +41,13 @@ if TYPE_CHECKING:
     import pyarrow.parquet
 
 JOINT_SIGNALS = ("position_target", "position", "velocity", "joint_torque")
-MOTOR_SIGNALS = ("motor_torque_command", "motor_torque", "motor_current", "motor_velocity", "motor_temperature")
+MOTOR_SIGNALS = (
+    "motor_torque_command",
+    "motor_torque",
+    "motor_current",
+    "motor_velocity",
+    "motor_temperature",
+)
 VECTOR_SIGNALS = {
     "gyro": ("x", "y", "z"),
     "accelerometer": ("x", "y", "z"),
@@ -51,15 +58,30 @@ VECTOR_SIGNALS = {
 BATTERY = "battery_voltage"
 CONTACT = "contact_force"
 UNITS = {
-    "t": "s", "position_target": "rad", "position": "rad", "velocity": "rad/s", "joint_torque": "Nm", "motor_torque_command": "Nm",
-    "motor_torque": "Nm", "motor_current": "A", "motor_velocity": "rad/s", "motor_temperature": "degC", BATTERY: "V", "gyro": "rad/s",
-    "accelerometer": "m/s^2", "base_position": "m", "base_orientation": "", "base_velocity": "m/s", CONTACT: "N",
-}  # fmt: skip
+    "t": "s",
+    "position_target": "rad",
+    "position": "rad",
+    "velocity": "rad/s",
+    "joint_torque": "Nm",
+    "motor_torque_command": "Nm",
+    "motor_torque": "Nm",
+    "motor_current": "A",
+    "motor_velocity": "rad/s",
+    "motor_temperature": "degC",
+    BATTERY: "V",
+    "gyro": "rad/s",
+    "accelerometer": "m/s^2",
+    "base_position": "m",
+    "base_orientation": "",
+    "base_velocity": "m/s",
+    CONTACT: "N",
+}
 """By signal."""
 SCHEMA_KEY = b"hyperleg"
 """Of the Parquet schema's metadata."""
 MAX_VALUES = 32 * 1024 * 1024
-"""Numbers that one log may hold (256 MiB, half an hour of 100 columns at 200 Hz); of longer ones, blocks spread evenly are read."""
+"""Numbers that one log may hold (256 MiB, half an hour of 100 columns at 200 Hz); of longer ones,
+blocks spread evenly are read."""
 BLOCK_ROWS = 16384
 """Rows that are read or left out together, at full rate."""
 
@@ -69,7 +91,8 @@ class Log:
     """One recording of `t` ticks; arrays are read-only.
 
     Raises:
-        InputError: a time base that does not rise strictly, an unknown column, or columns of different lengths.
+        InputError: a time base that does not rise strictly, an unknown column, or columns of
+        different lengths.
     """
 
     name: str
@@ -79,7 +102,8 @@ class Log:
     """By column, `(t,)` each; units in `UNITS`; NaN where unknown."""
     metadata: Metadata = field(default_factory=Metadata)
     folder: str = ""
-    """In which it was found: a `robot` file of its metadata may stand there; not written into files."""
+    """In which it was found: a `robot` file of its metadata may stand there; not written into
+    files."""
 
     def __post_init__(self) -> None:
         """Check."""
@@ -89,10 +113,21 @@ class Log:
         signals = {}
         for column, values in self.signals.items():
             if not known_column(column):
-                raise InputError(self.name, column, None, "is no column of the log format: expects signal/name, such as position/left_knee")
+                raise InputError(
+                    self.name,
+                    column,
+                    None,
+                    "is no column of the log format: expects signal/name, such as "
+                    "position/left_knee",
+                )
             signals[column] = _frozen(values, self.name, column)
             if signals[column].shape != time.shape:
-                raise InputError(self.name, column, signals[column].shape, f"expects one value a tick, {time.shape}")
+                raise InputError(
+                    self.name,
+                    column,
+                    signals[column].shape,
+                    f"expects one value a tick, {time.shape}",
+                )
         object.__setattr__(self, "signals", signals)
 
     def has(self, kind: str, name: str = "") -> bool:
@@ -101,7 +136,9 @@ class Log:
         return values is not None and bool(np.isfinite(values).any())
 
     def stack(self, kind: str, names: Iterable[str]) -> np.ndarray:
-        """Columns `kind/name` beside each other `(t, len(names))`; NaN where a column is missing."""
+        """Columns `kind/name` beside each other `(t, len(names))`; NaN where a column is
+        missing.
+        """
         missing = np.full(len(self.time), np.nan)
         columns = [self.signals.get(f"{kind}/{name}", missing) for name in names]
         return np.stack(columns, -1) if columns else np.empty((len(self.time), 0))
@@ -117,7 +154,9 @@ class Log:
 
     def names(self, *kinds: str) -> tuple[str, ...]:
         """Names that stand behind any of these signals, in the order of the columns."""
-        return tuple(dict.fromkeys(c.partition("/")[2] for c in self.signals if c.partition("/")[0] in kinds))
+        return tuple(
+            dict.fromkeys(c.partition("/")[2] for c in self.signals if c.partition("/")[0] in kinds)
+        )
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -146,7 +185,11 @@ class Log:
 
     def part(self, rows: slice | np.ndarray, name: str = "") -> Log:
         """Some rows of it."""
-        return self.changed(name=name or self.name, time=self.time[rows], signals={c: v[rows] for c, v in self.signals.items()})
+        return self.changed(
+            name=name or self.name,
+            time=self.time[rows],
+            signals={c: v[rows] for c, v in self.signals.items()},
+        )
 
     def changed(self, **values: Any) -> Log:
         """A copy with fields replaced."""
@@ -164,7 +207,9 @@ def known_column(column: str) -> bool:
         return bool(name)
     if kind in VECTOR_SIGNALS:
         return name in VECTOR_SIGNALS[kind]
-    return (kind == CONTACT and len(name) > 2 and name[-2:] in ("_x", "_y", "_z")) or (kind == BATTERY and not slash)
+    return (kind == CONTACT and len(name) > 2 and name[-2:] in ("_x", "_y", "_z")) or (
+        kind == BATTERY and not slash
+    )
 
 
 def unit(column: str) -> str:
@@ -193,10 +238,12 @@ def write_log(path: str | os.PathLike[str], log: Log) -> Path:
 def read_log(path: str | os.PathLike[str]) -> Log:
     """Read a Parquet log and its side file `NAME.json`, whose fields win.
 
-    Of recordings with more than `MAX_VALUES` numbers, blocks spread evenly are read and a remark says so.
+    Of recordings with more than `MAX_VALUES` numbers, blocks spread evenly are read and a remark
+    says so.
 
     Raises:
-        InputError: missing, truncated or empty file, no time, a column of texts, a clock that runs backwards, bad metadata.
+        InputError: missing, truncated or empty file, no time, a column of texts, a clock that runs
+        backwards, bad metadata.
     """
     import pyarrow
     import pyarrow.parquet
@@ -209,12 +256,22 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     except FileNotFoundError:
         raise InputError(str(path), "", None, "does not exist") from None
     except (pyarrow.ArrowException, OSError, ValueError) as error:
-        raise InputError(path.name, "", None, f"is no whole Parquet file ({in_short(error, 90)}): record or copy it again") from None
+        raise InputError(
+            path.name,
+            "",
+            None,
+            f"is no whole Parquet file ({in_short(error, 90)}): record or copy it again",
+        ) from None
     return finished_log(path, time, signals, metadata_beside(path, _inside(inside, path)), remarks)
 
 
 def finished_log(
-    path: Path, time: np.ndarray, signals: Mapping[str, np.ndarray], metadata: Metadata, remarks: Iterable[str] = (), name: str = ""
+    path: Path,
+    time: np.ndarray,
+    signals: Mapping[str, np.ndarray],
+    metadata: Metadata,
+    remarks: Iterable[str] = (),
+    name: str = "",
 ) -> Log:
     """A log of what a reader found in a file: tidied, checked, its remarks noted.
 
@@ -223,21 +280,40 @@ def finished_log(
     """
     time, signals, more = tidied(time, signals, path.name)
     _check_clock(time, path.name)
-    if not any(column.startswith("position/") and np.isfinite(values).any() for column, values in signals.items()):
-        raise InputError(path.name, "position/...", None, "is missing: expects the measured angle of at least one joint, in position/JOINT")
-    return Log(name or path.stem, time, signals, metadata.remarked(*remarks, *more), str(path.resolve().parent))
+    if not any(
+        column.startswith("position/") and np.isfinite(values).any()
+        for column, values in signals.items()
+    ):
+        raise InputError(
+            path.name,
+            "position/...",
+            None,
+            "is missing: expects the measured angle of at least one joint, in position/JOINT",
+        )
+    return Log(
+        name or path.stem,
+        time,
+        signals,
+        metadata.remarked(*remarks, *more),
+        str(path.resolve().parent),
+    )
 
 
 def metadata_beside(path: Path, inside: Mapping[str, Any]) -> Metadata:
-    """Metadata found in a file, overruled field by field by the side file `NAME.json` where there is one."""
+    """Metadata found in a file, overruled field by field by the side file `NAME.json` where there
+    is one.
+    """
     side = path.with_suffix(".json")
     if side != path and side.is_file():
         return metadata_from_mapping({**inside, **read_metadata_mapping(side)}, side.name)
     return metadata_from_mapping(inside, path.name)
 
 
-def tidied(time: np.ndarray, signals: Mapping[str, np.ndarray], name: str) -> tuple[np.ndarray, dict[str, np.ndarray], tuple[str, ...]]:
-    """Rows without a time left out, rows that repeat a time merged (two streams written at one stamp), infinities made NaN.
+def tidied(
+    time: np.ndarray, signals: Mapping[str, np.ndarray], name: str
+) -> tuple[np.ndarray, dict[str, np.ndarray], tuple[str, ...]]:
+    """Rows without a time left out, rows that repeat a time merged (two streams written at one
+    stamp), infinities made NaN.
 
     Args:
         time: `(t,)` [s].
@@ -248,7 +324,8 @@ def tidied(time: np.ndarray, signals: Mapping[str, np.ndarray], name: str) -> tu
         Time, signals, and what was done.
 
     Raises:
-        InputError: more than half of the rows repeat or lack a time: the clock is too coarse or stands still.
+        InputError: more than half of the rows repeat or lack a time: the clock is too coarse or
+        stands still.
     """
     time, remarks = np.asarray(time, float), []
     signals = {column: np.asarray(values, float) for column, values in signals.items()}
@@ -256,10 +333,19 @@ def tidied(time: np.ndarray, signals: Mapping[str, np.ndarray], name: str) -> tu
     infinite = sorted(column for column, values in signals.items() if np.isinf(values).any())
     if infinite:
         remarks.append(f"infinite values count as unknown: {', '.join(infinite[:6])}")
-        signals |= {column: np.where(np.isinf(signals[column]), np.nan, signals[column]) for column in infinite}
+        signals |= {
+            column: np.where(np.isinf(signals[column]), np.nan, signals[column])
+            for column in infinite
+        }
     if not known.all():
         if known.mean() < 0.5:
-            raise InputError(name, "t", None, f"is no number in {int((~known).sum())} of {len(known)} rows: expects a time in every row")
+            raise InputError(
+                name,
+                "t",
+                None,
+                f"is no number in {int((~known).sum())} of {len(known)} rows: expects a time in "
+                f"every row",
+            )
         remarks.append(f"{int((~known).sum())} rows have no time and were left out")
         time, signals = time[known], {column: values[known] for column, values in signals.items()}
     first = np.concatenate([[True], np.diff(time) != 0])[: len(time)]
@@ -267,20 +353,29 @@ def tidied(time: np.ndarray, signals: Mapping[str, np.ndarray], name: str) -> tu
         return time, signals, tuple(remarks)
     repeats = int((~first).sum())
     if repeats > len(time) / 2:
-        raise InputError(name, "t", None, f"repeats in {repeats} of {len(time)} rows: the clock is too coarse or stands still")
+        raise InputError(
+            name,
+            "t",
+            None,
+            f"repeats in {repeats} of {len(time)} rows: the clock is too coarse or stands still",
+        )
     remarks.append(f"{repeats} rows repeat the time of the row before and were merged with it")
     starts = np.flatnonzero(first)
     ends = np.append(starts[1:], len(time))
     merged = {column: values[starts] for column, values in signals.items()}
     for later in range(1, int((ends - starts).max())):
-        row = np.minimum(starts + later, ends - 1)  # what the first of several rows does not know, a later one may
+        row = np.minimum(
+            starts + later, ends - 1
+        )  # what the first of several rows does not know, a later one may
         for column, values in signals.items():
             merged[column] = np.where(np.isnan(merged[column]), values[row], merged[column])
     return time[starts], merged, tuple(remarks)
 
 
 def chosen_blocks(rows: int, columns: int) -> np.ndarray:
-    """Which blocks of `BLOCK_ROWS` rows to read so that no more than `MAX_VALUES` numbers are held, `(blocks,)` of bool."""
+    """Which blocks of `BLOCK_ROWS` rows to read so that no more than `MAX_VALUES` numbers are held,
+    `(blocks,)` of bool.
+    """
     blocks = -(-rows // BLOCK_ROWS)
     most = max(1, MAX_VALUES // (BLOCK_ROWS * max(columns, 1)))
     if blocks <= most:
@@ -292,27 +387,54 @@ def chosen_blocks(rows: int, columns: int) -> np.ndarray:
 
 def shortened(rows: int, kept: int) -> str:
     """Remark on a recording too long to be read whole."""
-    return f"too long to be held in memory: {kept} of its {rows} rows were read, in blocks at full rate spread over the recording"
+    return (
+        f"too long to be held in memory: {kept} of its {rows} rows were read, in blocks at "
+        f"full "
+        f"rate spread over the recording"
+    )
 
 
-def _columns(file: pyarrow.parquet.ParquetFile, path: Path) -> tuple[np.ndarray, dict[str, np.ndarray], list[str]]:
+def _columns(
+    file: pyarrow.parquet.ParquetFile, path: Path
+) -> tuple[np.ndarray, dict[str, np.ndarray], list[str]]:
     import pyarrow
 
     schema = file.schema_arrow
     if "t" not in schema.names:
-        raise InputError(path.name, "t", list(schema.names)[:6], "is missing: expects the time in seconds in a column t")
+        raise InputError(
+            path.name,
+            "t",
+            list(schema.names)[:6],
+            "is missing: expects the time in seconds in a column t",
+        )
     wanted = ["t", *(c for c in schema.names if known_column(c))]
     if len(set(wanted)) != len(wanted):
-        raise InputError(path.name, next(c for c in wanted if wanted.count(c) > 1), None, "stands twice")
+        raise InputError(
+            path.name, next(c for c in wanted if wanted.count(c) > 1), None, "stands twice"
+        )
     for column in wanted:
         kind = schema.field(column).type
-        if not (pyarrow.types.is_floating(kind) or pyarrow.types.is_integer(kind) or pyarrow.types.is_boolean(kind) or pyarrow.types.is_null(kind)):
-            raise InputError(path.name, column, str(kind), "is no column of numbers: expects floats")
+        if not (
+            pyarrow.types.is_floating(kind)
+            or pyarrow.types.is_integer(kind)
+            or pyarrow.types.is_boolean(kind)
+            or pyarrow.types.is_null(kind)
+        ):
+            raise InputError(
+                path.name, column, str(kind), "is no column of numbers: expects floats"
+            )
     rows = file.metadata.num_rows
     if not rows:
         raise InputError(path.name, "", None, "is an empty log: it has no rows")
     others = [c for c in schema.names if c not in wanted and not c.startswith("__")]
-    remarks = [f"columns that the format does not know were left out: {', '.join(others[:8])}{' ...' if len(others) > 8 else ''}"] if others else []
+    remarks = (
+        [
+            f"columns that the format does not know were left out: "
+            f"{', '.join(others[:8])}{' ...' if len(others) > 8 else ''}"
+        ]
+        if others
+        else []
+    )
     chosen = chosen_blocks(rows, len(wanted))
     parts: dict[str, list[np.ndarray]] = {c: [] for c in wanted}
     start = 0
@@ -320,7 +442,9 @@ def _columns(file: pyarrow.parquet.ParquetFile, path: Path) -> tuple[np.ndarray,
         count = file.metadata.row_group(group).num_rows
         if count and chosen[start // BLOCK_ROWS : (start + count - 1) // BLOCK_ROWS + 1].any():
             first = start
-            for batch in file.iter_batches(BLOCK_ROWS, row_groups=[group], columns=wanted, use_threads=False):
+            for batch in file.iter_batches(
+                BLOCK_ROWS, row_groups=[group], columns=wanted, use_threads=False
+            ):
                 keep = chosen[(first + np.arange(batch.num_rows)) // BLOCK_ROWS]
                 first += batch.num_rows
                 if keep.any():
@@ -339,7 +463,9 @@ def _array(column: Any) -> np.ndarray:
 
     if pyarrow.types.is_null(column.type):
         return np.full(len(column), np.nan)
-    return np.asarray(column.cast(pyarrow.float64(), safe=False).to_numpy(zero_copy_only=False), float)
+    return np.asarray(
+        column.cast(pyarrow.float64(), safe=False).to_numpy(zero_copy_only=False), float
+    )
 
 
 def _inside(content: bytes | None, path: Path) -> dict[str, Any]:
@@ -350,7 +476,9 @@ def _inside(content: bytes | None, path: Path) -> dict[str, Any]:
     except ValueError:
         raise InputError(path.name, "schema metadata hyperleg", None, "is not JSON") from None
     if not isinstance(found, dict):
-        raise InputError(path.name, "schema metadata hyperleg", found, "expects names with values, { ... }")
+        raise InputError(
+            path.name, "schema metadata hyperleg", found, "expects names with values, { ... }"
+        )
     return found
 
 
@@ -364,7 +492,12 @@ def _check_clock(time: np.ndarray, name: str) -> None:
     if len(back):
         row = int(back[0]) + 1
         found = f"{time[row]:.9g} s in row {row} after {time[row - 1]:.9g} s"
-        raise InputError(name, "t", found, "runs backwards or repeats: sort the rows, or split the recording there")
+        raise InputError(
+            name,
+            "t",
+            found,
+            "runs backwards or repeats: sort the rows, or split the recording there",
+        )
 
 
 def _frozen(values: Any, where: str, column: str) -> np.ndarray:
@@ -375,6 +508,11 @@ def _frozen(values: Any, where: str, column: str) -> np.ndarray:
     if array.ndim != 1:
         raise InputError(where, column, array.shape, "expects one value a tick")
     if np.isinf(array).any():
-        raise InputError(where, column, float(array[np.isinf(array)][0]), "expects finite numbers, NaN where unknown")
+        raise InputError(
+            where,
+            column,
+            float(array[np.isinf(array)][0]),
+            "expects finite numbers, NaN where unknown",
+        )
     array.flags.writeable = False
     return array

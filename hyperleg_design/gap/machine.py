@@ -22,7 +22,11 @@ def machine_of(subject: Subject) -> Machine:
 
         whole = machine_of_design(subject.design)
         places = [whole.motor(name) for name in subject.motors]
-        power, rated, voltage = whole.power_constant[places], whole.rated_torque[places], whole.voltage
+        power, rated, voltage = (
+            whole.power_constant[places],
+            whole.rated_torque[places],
+            whole.voltage,
+        )
     return Machine(
         joints=subject.joints,
         motors=subject.motors,

@@ -1,10 +1,13 @@
-"""How large the gap is, and where: by signal, joint, motor and regime, against the repeatability floor.
+"""How large the gap is, and where: by signal, joint, motor and regime, against the repeatability
+floor.
 
-Torque residuals count below `BAND` only: above it, noise of sensors and of differentiation outweighs what a model can explain.
-At the motors, torques are those of the controller's map from joints to motors, angles those of the transposed
-`joint_from_motor`. The floor, the size that a residual has when nothing is wrong, comes from reference logs; else from pairs of
-test logs with the same targets (half of the variance of their difference); else from the smooth-against-noisy split: of torques
-the residual's own level above `BAND`, taken as white, of positions and velocities the smoother's own error.
+Torque residuals count below `BAND` only: above it, noise of sensors and of differentiation
+outweighs what a model can explain. At the motors, torques are those of the controller's map from
+joints to motors, angles those of the transposed `joint_from_motor`. The floor, the size that a
+residual has when nothing is wrong, comes from reference logs; else from pairs of test logs with the
+same targets (half of the variance of their difference); else from the smooth-against-noisy split:
+of torques the residual's own level above `BAND`, taken as white, of positions and velocities the
+smoother's own error.
 """
 
 from __future__ import annotations
@@ -24,14 +27,18 @@ BAND = 10.0
 BANDS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, 25.0))
 """Frequency bands told apart [Hz]."""
 STILL = 0.05
-"""Speed below which a joint stands still [rad/s]; assumed, some times what a position sensor resolves."""
+"""Speed below which a joint stands still [rad/s]; assumed, some times what a position sensor
+resolves."""
 REVERSAL = 0.1
 """[s] Around a change of direction; assumed, in which presliding and play show."""
 SAME_TARGET = 0.002
 """Root-mean-square difference of targets up to which two logs are repeats [rad]."""
 WINDOW = 0.25
 """Of the predictions that give gaps of position and velocity [s]."""
-TORQUE_SIGNALS = {balance: ("torque" if balance == "motion" else balance, *told) for balance, told in BALANCES.items()}
+TORQUE_SIGNALS = {
+    balance: ("torque" if balance == "motion" else balance, *told)
+    for balance, told in BALANCES.items()
+}
 """Name, kind of place and unit of what each balance shows."""
 
 
@@ -54,7 +61,8 @@ class Row:
     mean: float
     """Mean of the residual: what is lasting in it."""
     share: float
-    """Of the squared excess over the floor of this signal at all places, what this place has; in a regime, of this place's."""
+    """Of the squared excess over the floor of this signal at all places, what this place has; in a
+    regime, of this place's."""
     size: float
     """Root mean square of the signal itself, where that means something; NaN else."""
     ticks: int
@@ -77,22 +85,37 @@ class Gap:
     def table(self) -> dict[str, list[object]]:
         """Columns by name, excess included."""
         names = [f.name for f in fields(Row)]
-        return {**{n: [getattr(r, n) for r in self.rows] for n in names}, "excess": [r.excess for r in self.rows]}
+        return {
+            **{n: [getattr(r, n) for r in self.rows] for n in names},
+            "excess": [r.excess for r in self.rows],
+        }
 
     def mapping(self) -> dict[str, object]:
         """As JSON takes it; what is unknown is null."""
-        rows = [{k: None if isinstance(v, float) and not np.isfinite(v) else v for k, v in asdict(r).items()} for r in self.rows]
+        rows = [
+            {
+                k: None if isinstance(v, float) and not np.isfinite(v) else v
+                for k, v in asdict(r).items()
+            }
+            for r in self.rows
+        ]
         return {"floor_from": self.floor_from, "notes": list(self.notes), "rows": rows}
 
-    def select(self, signal: str = "", kind: str = "", location: str = "", regime: str = "all") -> tuple[Row, ...]:
+    def select(
+        self, signal: str = "", kind: str = "", location: str = "", regime: str = "all"
+    ) -> tuple[Row, ...]:
         """Rows of some signal, kind, place and regime; an empty text stands for any."""
         wanted = {"signal": signal, "kind": kind, "location": location, "regime": regime}
-        return tuple(r for r in self.rows if all(not v or getattr(r, k) == v for k, v in wanted.items()))
+        return tuple(
+            r for r in self.rows if all(not v or getattr(r, k) == v for k, v in wanted.items())
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class _Sheet:
-    """One signal of one log: residual, the same without what lies above the band, size, and masks of regimes."""
+    """One signal of one log: residual, the same without what lies above the band, size, and masks
+    of regimes.
+    """
 
     signal: str
     kind: str
@@ -109,7 +132,13 @@ class _Sheet:
     """Residual within frequency bands `(t, k)`."""
 
 
-def measure(signals: Sequence[Signals], reference: Sequence[Signals] = (), *, predict: bool = True, threads: int = 1) -> Gap:
+def measure(
+    signals: Sequence[Signals],
+    reference: Sequence[Signals] = (),
+    *,
+    predict: bool = True,
+    threads: int = 1,
+) -> Gap:
     """Gap of logs, in every signal that they allow.
 
     Args:
@@ -142,7 +171,19 @@ def _sheets(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, st
         residual = np.where(valid, signals.residual[balance], np.nan)
         if balance == "motion":
             believed = applied(subject.joint_from_motor, signals.believed)
-            made.append(_sheet(signals, signal, "joint", unit, subject.joints, residual, believed, signals.position, signals.velocity))
+            made.append(
+                _sheet(
+                    signals,
+                    signal,
+                    "joint",
+                    unit,
+                    subject.joints,
+                    residual,
+                    believed,
+                    signals.position,
+                    signals.velocity,
+                )
+            )
             if not subject.one_to_one:
                 at_motors = applied(subject.motor_from_joint, residual)
                 made.append(_motor_sheet(signals, signal, unit, at_motors, signals.believed))
@@ -153,9 +194,20 @@ def _sheets(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, st
             assert signals.command is not None
             made.append(_motor_sheet(signals, signal, unit, residual, signals.command))
         elif balance == "transmission":
-            made.append(_motor_sheet(signals, signal, unit, residual, signals.velocity @ subject.joint_from_motor))
+            made.append(
+                _motor_sheet(
+                    signals, signal, unit, residual, signals.velocity @ subject.joint_from_motor
+                )
+            )
         else:
-            names: tuple[str, ...] = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
+            names: tuple[str, ...] = (
+                "force_x",
+                "force_y",
+                "force_z",
+                "moment_x",
+                "moment_y",
+                "moment_z",
+            )
             if balance == "ground":
                 names = tuple(f"{foot}_{axis}" for foot in subject.feet for axis in "xyz")
             made.append(_sheet(signals, signal, kind, unit, names, residual, None, None, None))
@@ -164,9 +216,21 @@ def _sheets(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, st
     return {(s.signal, s.kind): s for s in made}
 
 
-def _motor_sheet(signals: Signals, signal: str, unit: str, residual: np.ndarray, size: np.ndarray) -> _Sheet:
+def _motor_sheet(
+    signals: Signals, signal: str, unit: str, residual: np.ndarray, size: np.ndarray
+) -> _Sheet:
     matrix = signals.subject.joint_from_motor
-    return _sheet(signals, signal, "motor", unit, signals.subject.motors, residual, size, signals.position @ matrix, signals.velocity @ matrix)
+    return _sheet(
+        signals,
+        signal,
+        "motor",
+        unit,
+        signals.subject.motors,
+        residual,
+        size,
+        signals.position @ matrix,
+        signals.velocity @ matrix,
+    )
 
 
 def _predictions(signals: Signals, threads: int) -> list[_Sheet]:
@@ -181,17 +245,46 @@ def _predictions(signals: Signals, threads: int) -> list[_Sheet]:
         return []
     found = replay(signals, windows=windows, follow=follow, threads=threads).errors(signals)
     made, ticks = [], windows.ticks[:, :-1]
-    for signal, unit, errors in (("position", "rad", found[0][0]), ("velocity", "rad/s", found[1][0])):
+    for signal, unit, errors in (
+        ("position", "rad", found[0][0]),
+        ("velocity", "rad/s", found[1][0]),
+    ):
         values = np.full(signals.position.shape, np.nan)
         values[ticks] = errors[:, :-1]
-        values[~np.isfinite(signals.residual["motion"])] = np.nan  # what an unknown ground pushes is no gap
+        values[~np.isfinite(signals.residual["motion"])] = (
+            np.nan
+        )  # what an unknown ground pushes is no gap
         own = signals.position if signal == "position" else signals.velocity
-        made.append(_sheet(signals, signal, "joint", unit, subject.joints, values, own, signals.position, signals.velocity, banded=False))
+        made.append(
+            _sheet(
+                signals,
+                signal,
+                "joint",
+                unit,
+                subject.joints,
+                values,
+                own,
+                signals.position,
+                signals.velocity,
+                banded=False,
+            )
+        )
         if not subject.one_to_one:
             matrix = np.asarray(subject.joint_from_motor)
             at_motors, position = applied(matrix.T, values), signals.position @ matrix
             made.append(
-                _sheet(signals, signal, "motor", unit, subject.motors, at_motors, own @ matrix, position, signals.velocity @ matrix, banded=False)
+                _sheet(
+                    signals,
+                    signal,
+                    "motor",
+                    unit,
+                    subject.motors,
+                    at_motors,
+                    own @ matrix,
+                    position,
+                    signals.velocity @ matrix,
+                    banded=False,
+                )
             )
     return made
 
@@ -208,42 +301,80 @@ def _sheet(
     velocity: np.ndarray | None,
     banded: bool = True,
 ) -> _Sheet:
-    regimes = _regimes(signals, kind, names, load if signal not in ("position", "velocity") else None, position, velocity)
-    size = np.full(len(names), np.nan) if load is None else _rms(np.where(signals.valid[:, None], load, np.nan))
+    regimes = _regimes(
+        signals,
+        kind,
+        names,
+        load if signal not in ("position", "velocity") else None,
+        position,
+        velocity,
+    )
+    size = (
+        np.full(len(names), np.nan)
+        if load is None
+        else _rms(np.where(signals.valid[:, None], load, np.nan))
+    )
     if not banded:
-        return _Sheet(signal, kind, unit, names, residual, _smoothing_error(signals, signal, kind), size, regimes, {})
+        return _Sheet(
+            signal,
+            kind,
+            unit,
+            names,
+            residual,
+            _smoothing_error(signals, signal, kind),
+            size,
+            regimes,
+            {},
+        )
     spectrum, frequency, weight = _spectrum(residual, signals.step)
     kept = _band(spectrum, frequency, weight, 0.0, BAND, residual)
     high = frequency > BAND
     with np.errstate(invalid="ignore", divide="ignore"):
         density = np.mean(np.abs(spectrum[high]) ** 2, 0) if high.any() else np.zeros(len(names))
         floor = np.sqrt(density * 2 * np.sum(frequency <= BAND)) / len(residual) / weight
-    bands = {f"{low:g}-{top:g} Hz": _band(spectrum, frequency, weight, low, top, residual) for low, top in BANDS if low < 0.5 / signals.step}
+    bands = {
+        f"{low:g}-{top:g} Hz": _band(spectrum, frequency, weight, low, top, residual)
+        for low, top in BANDS
+        if low < 0.5 / signals.step
+    }
     return _Sheet(signal, kind, unit, names, kept, np.nan_to_num(floor), size, regimes, bands)
 
 
 def _smoothing_error(signals: Signals, signal: str, kind: str) -> np.ndarray:
-    """Standard deviation of smoothed positions or velocities, at the joints `(n,)` or the motors `(m,)`.
+    """Standard deviation of smoothed positions or velocities, at the joints `(n,)` or the motors
+    `(m,)`.
 
-    White noise through a low-pass at the crossover keeps omega_c h / pi of its variance, its derivative omega_c^2 times that.
+    White noise through a low-pass at the crossover keeps omega_c h / pi of its variance, its
+    derivative omega_c^2 times that.
     """
     if signals.noise is None or signals.bandwidth is None:
         return np.zeros(len(signals.subject.motors if kind == "motor" else signals.subject.joints))
     crossover = 2 * np.pi * np.nan_to_num(signals.bandwidth)
-    error = np.nan_to_num(signals.noise) * np.sqrt(np.minimum(crossover * signals.step / np.pi, 1.0))
+    error = np.nan_to_num(signals.noise) * np.sqrt(
+        np.minimum(crossover * signals.step / np.pi, 1.0)
+    )
     if signal == "velocity":
         error = error * crossover
     return np.sqrt(error**2 @ signals.subject.joint_from_motor**2) if kind == "motor" else error
 
 
 def _spectrum(residual: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Spectrum of a residual with unknown ticks at zero, its frequencies, and the root of the known part `(k,)`."""
+    """Spectrum of a residual with unknown ticks at zero, its frequencies, and the root of the known
+    part `(k,)`.
+    """
     known = np.isfinite(residual)
     spectrum = np.fft.rfft(np.where(known, residual, 0.0), axis=0)
     return spectrum, np.fft.rfftfreq(len(residual), step), np.sqrt(np.maximum(known.mean(0), 1e-9))
 
 
-def _band(spectrum: np.ndarray, frequency: np.ndarray, weight: np.ndarray, low: float, top: float, residual: np.ndarray) -> np.ndarray:
+def _band(
+    spectrum: np.ndarray,
+    frequency: np.ndarray,
+    weight: np.ndarray,
+    low: float,
+    top: float,
+    residual: np.ndarray,
+) -> np.ndarray:
     """Part of a residual in a band, unknown where the residual is."""
     inside = (frequency >= low) & (frequency < top)
     part = np.fft.irfft(np.where(inside[:, None], spectrum, 0.0), len(residual), axis=0)
@@ -251,7 +382,12 @@ def _band(spectrum: np.ndarray, frequency: np.ndarray, weight: np.ndarray, low: 
 
 
 def _regimes(
-    signals: Signals, kind: str, names: tuple[str, ...], load: np.ndarray | None, position: np.ndarray | None, velocity: np.ndarray | None
+    signals: Signals,
+    kind: str,
+    names: tuple[str, ...],
+    load: np.ndarray | None,
+    position: np.ndarray | None,
+    velocity: np.ndarray | None,
 ) -> dict[str, np.ndarray]:
     """What each joint, motor or foot does at each tick `(t, k)`, by regime."""
     shape = (len(signals.time), len(names))
@@ -269,7 +405,10 @@ def _regimes(
         found["low posture"], found["high posture"] = _halves(position)
     if signals.voltage is not None and np.ptp(signals.voltage[np.isfinite(signals.voltage)]) > 0:
         low, high = _halves(signals.voltage[:, None])
-        found["low voltage"], found["high voltage"] = np.broadcast_to(low, shape), np.broadcast_to(high, shape)
+        found["low voltage"], found["high voltage"] = (
+            np.broadcast_to(low, shape),
+            np.broadcast_to(high, shape),
+        )
     if signals.touching is not None and kind == "joint":
         stance, known = _stance(signals, names)
         found["stance"], found["swing"] = stance & known, ~stance & known
@@ -295,7 +434,9 @@ def _near_reversal(velocity: np.ndarray, reach: int) -> np.ndarray:
 
 
 def _stance(signals: Signals, names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """Whether a foot that each joint carries touches `(t, n)`, and whether the joint carries a foot `(n,)`."""
+    """Whether a foot that each joint carries touches `(t, n)`, and whether the joint carries a foot
+    `(n,)`.
+    """
     subject, touching = signals.subject, signals.touching
     assert touching is not None
     stance, known = np.zeros((len(signals.time), len(names)), bool), np.zeros(len(names), bool)
@@ -307,9 +448,13 @@ def _stance(signals: Signals, names: tuple[str, ...]) -> tuple[np.ndarray, np.nd
 
 
 def _floors(
-    signals: Sequence[Signals], sheets: Sequence[dict[tuple[str, str], _Sheet]], reference: Sequence[dict[tuple[str, str], _Sheet]]
+    signals: Sequence[Signals],
+    sheets: Sequence[dict[tuple[str, str], _Sheet]],
+    reference: Sequence[dict[tuple[str, str], _Sheet]],
 ) -> tuple[dict[tuple[str, str, str], np.ndarray], str]:
-    """Floors by signal, kind and regime `(k,)`, and where they come from; `all` stands in for regimes that are missing."""
+    """Floors by signal, kind and regime `(k,)`, and where they come from; `all` stands in for
+    regimes that are missing.
+    """
     if reference:
         return _pooled_floors(reference), "reference"
     repeats = _repeats(signals, sheets)
@@ -322,7 +467,9 @@ def _floors(
     return found, "split"
 
 
-def _pooled_floors(sheets: Iterable[dict[tuple[str, str], _Sheet]]) -> dict[tuple[str, str, str], np.ndarray]:
+def _pooled_floors(
+    sheets: Iterable[dict[tuple[str, str], _Sheet]],
+) -> dict[tuple[str, str, str], np.ndarray]:
     groups: dict[tuple[str, str], list[_Sheet]] = {}
     for each in sheets:
         for key, sheet in each.items():
@@ -330,11 +477,15 @@ def _pooled_floors(sheets: Iterable[dict[tuple[str, str], _Sheet]]) -> dict[tupl
     found = {}
     for key, group in groups.items():
         for regime in _regime_names(group):
-            found[(*key, regime)] = _rms(np.concatenate([_values(sheet, regime) for sheet in group]))
+            found[(*key, regime)] = _rms(
+                np.concatenate([_values(sheet, regime) for sheet in group])
+            )
     return found
 
 
-def _repeats(signals: Sequence[Signals], sheets: Sequence[dict[tuple[str, str], _Sheet]]) -> dict[tuple[str, str, str], np.ndarray]:
+def _repeats(
+    signals: Sequence[Signals], sheets: Sequence[dict[tuple[str, str], _Sheet]]
+) -> dict[tuple[str, str, str], np.ndarray]:
     """Half of the variance between logs that follow the same targets from their first tick on."""
     differences: dict[tuple[str, str, str], list[np.ndarray]] = {}
     for i, one in enumerate(signals):
@@ -354,10 +505,14 @@ def _repeats(signals: Sequence[Signals], sheets: Sequence[dict[tuple[str, str], 
             if not np.sqrt(np.nanmean(apart**2)) < SAME_TARGET:
                 continue
             for key in sheets[i].keys() & sheets[j].keys():
-                difference = (sheets[i][key].residual[:length] - sheets[j][key].residual[:length]) / np.sqrt(2)
+                difference = (
+                    sheets[i][key].residual[:length] - sheets[j][key].residual[:length]
+                ) / np.sqrt(2)
                 differences.setdefault((*key, "all"), []).append(difference)
                 for regime, inside in sheets[i][key].regimes.items():
-                    differences.setdefault((*key, regime), []).append(np.where(inside[:length], difference, np.nan))
+                    differences.setdefault((*key, regime), []).append(
+                        np.where(inside[:length], difference, np.nan)
+                    )
     return {key: _rms(np.concatenate(found)) for key, found in differences.items()}
 
 
@@ -382,13 +537,21 @@ def _rows(group: Sequence[_Sheet], floors: dict[tuple[str, str, str], np.ndarray
     key = (first.signal, first.kind)
     names = first.names
     default = floors.get((*key, "all"), np.zeros(len(names)))
-    size = np.sqrt(np.nanmean(np.square([s.size for s in group]), 0)) if np.isfinite(group[0].size).any() else np.full(len(names), np.nan)
+    size = (
+        np.sqrt(np.nanmean(np.square([s.size for s in group]), 0))
+        if np.isfinite(group[0].size).any()
+        else np.full(len(names), np.nan)
+    )
     whole = 0.0
     squares: dict[str, np.ndarray] = {}
     rows: list[tuple[int, Row]] = []
     for regime in _regime_names(group):
         values = np.concatenate([_values(s, regime) for s in group])
-        gap, floor, ticks = _rms(values), np.nan_to_num(floors.get((*key, regime), default)), np.isfinite(values).sum(0)
+        gap, floor, ticks = (
+            _rms(values),
+            np.nan_to_num(floors.get((*key, regime), default)),
+            np.isfinite(values).sum(0),
+        )
         if regime not in {n for s in group for n in s.bands}:
             squared = np.maximum(np.nan_to_num(gap) ** 2 - floor**2, 0.0) * ticks
         else:
@@ -403,8 +566,24 @@ def _rows(group: Sequence[_Sheet], floors: dict[tuple[str, str, str], np.ndarray
             if not ticks[k]:
                 continue
             part = float(min(share[k], 1.0)) if np.isfinite(share[k]) else 0.0
-            rows.append((k, Row(first.signal, first.unit, first.kind, name, regime, float(gap[k]), float(floor[k]), float(mean[k]), part,
-                                float(size[k]), int(ticks[k]))))  # fmt: skip
+            rows.append(
+                (
+                    k,
+                    Row(
+                        first.signal,
+                        first.unit,
+                        first.kind,
+                        name,
+                        regime,
+                        float(gap[k]),
+                        float(floor[k]),
+                        float(mean[k]),
+                        part,
+                        float(size[k]),
+                        int(ticks[k]),
+                    ),
+                )
+            )
     return [row for _, row in sorted(rows, key=lambda pair: pair[0])]
 
 

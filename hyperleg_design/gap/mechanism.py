@@ -1,7 +1,9 @@
-"""Kinematic tree of a robot as plain arrays: one moving frame a joint, its z axis the joint's axis, and what mass rides on it.
+"""Kinematic tree of a robot as plain arrays: one moving frame a joint, its z axis the joint's axis,
+and what mass rides on it.
 
-Made from a compiled MuJoCo model, so that whatever file a robot came from, inverse dynamics, Pinocchio and replays share one
-set of numbers. Several joints in one body become several frames, all but the last without mass.
+Made from a compiled MuJoCo model, so that whatever file a robot came from, inverse dynamics,
+Pinocchio and replays share one set of numbers. Several joints in one body become several frames,
+all but the last without mass.
 """
 
 from __future__ import annotations
@@ -38,8 +40,8 @@ class Mechanism:
     reference: np.ndarray
     """Position at which the frames stand as given [rad or m] `(n,)`."""
     inertial: np.ndarray
-    """Mass, mass times centre of mass, and inertia about the origin (xx, xy, yy, xz, yz, zz) of what each joint's frame
-    carries, in that frame `(n, 10)` [kg, kg m, kg m^2]."""
+    """Mass, mass times centre of mass, and inertia about the origin (xx, xy, yy, xz, yz, zz) of
+    what each joint's frame carries, in that frame `(n, 10)` [kg, kg m, kg m^2]."""
     base_inertial: np.ndarray
     """The same of a floating base, in its own frame `(10,)`."""
     links: tuple[str, ...]
@@ -67,7 +69,8 @@ class Mechanism:
         return found[::-1]
 
     def beyond(self, name: str) -> int:
-        """Most joints in a row that a link carries: 0 at the ends of a robot, 1 of feet with toes and hands with fingers.
+        """Most joints in a row that a link carries: 0 at the ends of a robot, 1 of feet with toes
+        and hands with fingers.
 
         0 of a base, on whose back or in whose trunk loads are as well; 1 of what is no link.
         """
@@ -82,10 +85,17 @@ class Mechanism:
     @property
     def length(self) -> float:
         """Of the longest chain, from its first joint to its last [m]."""
-        return max((float(np.linalg.norm(self.offset[self.chain(j)[1:]], axis=1).sum()) for j in range(self.count)), default=0.0)
+        return max(
+            (
+                float(np.linalg.norm(self.offset[self.chain(j)[1:]], axis=1).sum())
+                for j in range(self.count)
+            ),
+            default=0.0,
+        )
 
     def link(self, name: str) -> int:
-        """Place of a link, given by its own name or by that of the joint that carries it (its outermost link).
+        """Place of a link, given by its own name or by that of the joint that carries it (its
+        outermost link).
 
         Raises:
             InputError: no such link or joint.
@@ -96,7 +106,9 @@ class Mechanism:
             carried = np.flatnonzero(self.link_joint == self.joints.index(name))
             if len(carried):
                 return int(carried[0])
-        raise InputError("robot", "link", name, f"no such moving link; there are {', '.join(self.links)}")
+        raise InputError(
+            "robot", "link", name, f"no such moving link; there are {', '.join(self.links)}"
+        )
 
 
 def mechanism_of(model: mujoco.MjModel) -> Mechanism:
@@ -109,7 +121,9 @@ def mechanism_of(model: mujoco.MjModel) -> Mechanism:
 
     kinds = mujoco.mjtJoint
     joints: list[str] = []
-    rows: dict[str, list[Any]] = {k: [] for k in ("parent", "rotation", "offset", "hinge", "reference")}
+    rows: dict[str, list[Any]] = {
+        k: [] for k in ("parent", "rotation", "offset", "hinge", "reference")
+    }
     inertials: list[np.ndarray] = []
     base_inertial = np.zeros(10)
     frames: list[tuple[int, np.ndarray, np.ndarray]] = [(BASE, np.eye(3), np.zeros(3))]
@@ -128,11 +142,21 @@ def mechanism_of(model: mujoco.MjModel) -> Mechanism:
             moving = True
             if kind == kinds.mjJNT_FREE:
                 if above != 0 or floating:
-                    raise InputError("robot", name or "free joint", None, "is not the root's; one floating base can be understood")
+                    raise InputError(
+                        "robot",
+                        name or "free joint",
+                        None,
+                        "is not the root's; one floating base can be understood",
+                    )
                 floating, carrier, rotation, offset = True, BASE, np.eye(3), np.zeros(3)
                 continue
             if kind == kinds.mjJNT_BALL:
-                raise InputError("robot", name, "ball", "ball joints are not understood; model it as three hinges")
+                raise InputError(
+                    "robot",
+                    name,
+                    "ball",
+                    "ball joints are not understood; model it as three hinges",
+                )
             anchor = offset + rotation @ model.jnt_pos[joint]
             axes = _axes_with_z(rotation @ model.jnt_axis[joint])
             rows["parent"].append(carrier)
@@ -176,30 +200,68 @@ def mechanism_of(model: mujoco.MjModel) -> Mechanism:
 
 
 def inertial_parameters(mass: float, com: np.ndarray, inertia: np.ndarray) -> np.ndarray:
-    """Ten parameters `(10,)` from mass [kg], centre of mass [m] `(3,)` and inertia about it [kg m^2] `(3, 3)`."""
+    """Ten parameters `(10,)` from mass [kg], centre of mass [m] `(3,)` and inertia about it [kg
+    m^2] `(3, 3)`.
+    """
     x, y, z = com
     about = inertia + mass * (com @ com * np.eye(3) - np.outer(com, com))
-    return np.array([mass, mass * x, mass * y, mass * z, about[0, 0], about[0, 1], about[1, 1], about[0, 2], about[1, 2], about[2, 2]])
+    return np.array(
+        [
+            mass,
+            mass * x,
+            mass * y,
+            mass * z,
+            about[0, 0],
+            about[0, 1],
+            about[1, 1],
+            about[0, 2],
+            about[1, 2],
+            about[2, 2],
+        ]
+    )
 
 
 def mass_properties(parameters: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mass, centre of mass and inertia about it from ten parameters; of a massless thing, at the origin."""
+    """Mass, centre of mass and inertia about it from ten parameters; of a massless thing, at the
+    origin.
+    """
     mass, moment = float(parameters[0]), parameters[1:4]
     com = moment / mass if mass else np.zeros(3)
-    return mass, com, _about_origin(parameters) - mass * (com @ com * np.eye(3) - np.outer(com, com))
+    return (
+        mass,
+        com,
+        _about_origin(parameters) - mass * (com @ com * np.eye(3) - np.outer(com, com)),
+    )
 
 
 def moved_inertial(parameters: np.ndarray, rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """Ten parameters seen from another frame, in which the old one stands at `rotation` `(3, 3)` and `offset` `(3,)`."""
+    """Ten parameters seen from another frame, in which the old one stands at `rotation` `(3, 3)`
+    and `offset` `(3,)`.
+    """
     mass, com, inertia = mass_properties(parameters)
     if not mass:
         moved = rotation @ _about_origin(parameters) @ rotation.T
-        return np.array([0, 0, 0, 0, moved[0, 0], moved[0, 1], moved[1, 1], moved[0, 2], moved[1, 2], moved[2, 2]])
+        return np.array(
+            [
+                0,
+                0,
+                0,
+                0,
+                moved[0, 0],
+                moved[0, 1],
+                moved[1, 1],
+                moved[0, 2],
+                moved[1, 2],
+                moved[2, 2],
+            ]
+        )
     return inertial_parameters(mass, offset + rotation @ com, rotation @ inertia @ rotation.T)
 
 
 def quaternion_rotation(wxyz: np.ndarray) -> np.ndarray:
-    """Rotation matrices `(..., 3, 3)` of quaternions `(..., 4)`, w first, of any length but zero."""
+    """Rotation matrices `(..., 3, 3)` of quaternions `(..., 4)`, w first, of any length but
+    zero.
+    """
     q = np.asarray(wxyz, float)
     w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
     rows = [
@@ -213,7 +275,8 @@ def quaternion_rotation(wxyz: np.ndarray) -> np.ndarray:
 def pinocchio_model(tree: Mechanism, gravity: np.ndarray) -> pinocchio.Model:
     """Pinocchio model of the same tree; `q` is measured from `reference`, rotors are left out.
 
-    Configurations are base position and quaternion (x y z w), where the base floats, then joints; frames bear links' names.
+    Configurations are base position and quaternion (x y z w), where the base floats, then joints;
+    frames bear links' names.
     """
     import pinocchio as pin
 
@@ -227,12 +290,16 @@ def pinocchio_model(tree: Mechanism, gravity: np.ndarray) -> pinocchio.Model:
     for index, name in enumerate(tree.joints):
         kind = pin.JointModelRZ() if tree.hinge[index] else pin.JointModelPZ()
         above = root if tree.parent[index] == BASE else places[tree.parent[index]]
-        places.append(model.addJoint(above, kind, pin.SE3(tree.rotation[index], tree.offset[index]), name))
+        places.append(
+            model.addJoint(above, kind, pin.SE3(tree.rotation[index], tree.offset[index]), name)
+        )
         model.appendBodyToJoint(places[-1], _pin_inertia(tree.inertial[index]), pin.SE3.Identity())
     for index, name in enumerate(tree.links):
         carrier = int(tree.link_joint[index])
         place = pin.SE3(tree.link_rotation[index], tree.link_offset[index])
-        model.addFrame(pin.Frame(name, root if carrier == BASE else places[carrier], place, pin.FrameType.BODY))
+        model.addFrame(
+            pin.Frame(name, root if carrier == BASE else places[carrier], place, pin.FrameType.BODY)
+        )
     return model
 
 

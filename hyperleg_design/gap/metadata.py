@@ -1,4 +1,6 @@
-"""What a log says about its robot besides the signals: gains, torque constants, payload, base, session."""
+"""What a log says about its robot besides the signals: gains, torque constants, payload, base,
+session.
+"""
 
 from __future__ import annotations
 
@@ -44,12 +46,15 @@ class Metadata:
     torque_constant: Mapping[str, float] = field(default_factory=dict)
     """By motor [Nm/A], of the torque that `motor_torque` means."""
     supply: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    """By motor without current control, whose duty cycle follows the gains: nominal supply [V], and stall torque [Nm] and no-load
-    speed [rad/s] at it. Their stiffness and their limits follow the logged voltage of the battery."""
+    """By motor without current control, whose duty cycle follows the gains: nominal supply [V], and
+    stall torque [Nm] and no-load speed [rad/s] at it. Their stiffness and their limits follow the
+    logged voltage of the battery."""
     payload: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
-    """What hangs on the robot by link: mass [kg], centre of mass in the link's frame x, y, z [m]."""
+    """What hangs on the robot by link: mass [kg], centre of mass in the link's frame x, y, z
+    [m]."""
     session: str = ""
-    """Logs of one session share one assembly, calibration and temperature; empty, a session of its own."""
+    """Logs of one session share one assembly, calibration and temperature; empty, a session of its
+    own."""
     role: str = "test"
     """One of `ROLES`."""
     notes: str = ""
@@ -77,7 +82,11 @@ class Metadata:
     def mapping(self) -> dict[str, Any]:
         """As JSON holds it: fields at their defaults left out, unknown keys beside the known."""
         default = Metadata()
-        known = {k: getattr(self, k) for k in FIELDS if k != "extra" and getattr(self, k) != getattr(default, k)}
+        known = {
+            k: getattr(self, k)
+            for k in FIELDS
+            if k != "extra" and getattr(self, k) != getattr(default, k)
+        }
         plain: dict[str, Any] = json.loads(json.dumps(known, allow_nan=False))
         return {**self.extra, **plain}
 
@@ -92,7 +101,10 @@ def metadata_from_mapping(content: Mapping[str, Any], where: str) -> Metadata:
         InputError: a value of the wrong kind or out of range, with its place.
     """
     content = _mapping(content, where, "")
-    extra = {**_mapping(content.get("extra", {}), where, "extra"), **{k: v for k, v in content.items() if k not in FIELDS}}
+    extra = {
+        **_mapping(content.get("extra", {}), where, "extra"),
+        **{k: v for k, v in content.items() if k not in FIELDS},
+    }
     return Metadata(**_checked(content, where), extra=extra)
 
 
@@ -111,10 +123,14 @@ def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
         "notes": _text,
         "remarks": _texts,
     }
-    values = {key: check(content[key], where, key) for key, check in checks.items() if key in content}
+    values = {
+        key: check(content[key], where, key) for key, check in checks.items() if key in content
+    }
     for key, allowed in (("base", BASES), ("role", ROLES)):
         if key in values and values[key] not in allowed:
-            raise InputError(where, key, values[key], f"expects {' or '.join(a for a in allowed if a)}")
+            raise InputError(
+                where, key, values[key], f"expects {' or '.join(a for a in allowed if a)}"
+            )
     return values
 
 
@@ -177,12 +193,20 @@ def _gains(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]:
     for joint, pair in _mapping(value, where, name).items():
         found[joint] = _numbers(pair, 2, where, f"{name}.{joint}")
         if min(found[joint]) < 0:
-            raise InputError(where, f"{name}.{joint}", pair, "expects [stiffness Nm/rad, damping Nms/rad], neither negative")
+            raise InputError(
+                where,
+                f"{name}.{joint}",
+                pair,
+                "expects [stiffness Nm/rad, damping Nms/rad], neither negative",
+            )
     return found
 
 
 def _torque_constants(value: Any, where: str, name: str) -> dict[str, float]:
-    found = {motor: _number(constant, where, f"{name}.{motor}") for motor, constant in _mapping(value, where, name).items()}
+    found = {
+        motor: _number(constant, where, f"{name}.{motor}")
+        for motor, constant in _mapping(value, where, name).items()
+    }
     for motor, constant in found.items():
         if constant <= 0:
             raise InputError(where, f"{name}.{motor}", constant, "expects Nm/A, above 0")
@@ -190,10 +214,18 @@ def _torque_constants(value: Any, where: str, name: str) -> dict[str, float]:
 
 
 def _supplies(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]:
-    found = {motor: _numbers(numbers, 3, where, f"{name}.{motor}") for motor, numbers in _mapping(value, where, name).items()}
+    found = {
+        motor: _numbers(numbers, 3, where, f"{name}.{motor}")
+        for motor, numbers in _mapping(value, where, name).items()
+    }
     for motor, numbers in found.items():
         if min(numbers) <= 0:
-            raise InputError(where, f"{name}.{motor}", value[motor], "expects [supply V, stall torque Nm, no-load speed rad/s], all above 0")
+            raise InputError(
+                where,
+                f"{name}.{motor}",
+                value[motor],
+                "expects [supply V, stall torque Nm, no-load speed rad/s], all above 0",
+            )
     return found
 
 
@@ -201,9 +233,15 @@ def _payloads(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]
     found = {}
     for link, numbers in _mapping(value, where, name).items():
         flat = (
-            [numbers[0], *numbers[1]] if isinstance(numbers, list | tuple) and len(numbers) == 2 and isinstance(numbers[1], list | tuple) else numbers
+            [numbers[0], *numbers[1]]
+            if isinstance(numbers, list | tuple)
+            and len(numbers) == 2
+            and isinstance(numbers[1], list | tuple)
+            else numbers
         )
         found[link] = _numbers(flat, 4, where, f"{name}.{link}")
         if found[link][0] < 0:
-            raise InputError(where, f"{name}.{link}", numbers, "expects [mass kg, x, y, z m], mass not negative")
+            raise InputError(
+                where, f"{name}.{link}", numbers, "expects [mass kg, x, y, z m], mass not negative"
+            )
     return found

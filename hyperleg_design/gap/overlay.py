@@ -6,7 +6,8 @@
       - {effect: coulomb_friction, location: left_knee, parameters: {torque: 1.9}}
     source: {diagnosis: results/gap/diagnosis.json, verdict: explained, closed: 0.93}
 
-Parameters that are not given stay at their nulls. `source` says where the effects come from; nothing depends on it.
+Parameters that are not given stay at their nulls. `source` says where the effects come from;
+nothing depends on it.
 """
 
 from __future__ import annotations
@@ -51,7 +52,9 @@ class Overlay:
     def __post_init__(self) -> None:
         checked = {}
         for (identifier, location), values in self.change.items():
-            checked[identifier, location] = _checked(self.robot or "overlay", f"{identifier} at {location}", identifier, values)
+            checked[identifier, location] = _checked(
+                self.robot or "overlay", f"{identifier} at {location}", identifier, values
+            )
         object.__setattr__(self, "change", checked)
 
     def alterations(self, robot: Subject | Design) -> tuple[Alteration, ...]:
@@ -67,8 +70,16 @@ class Overlay:
 
     def mapping(self) -> dict[str, Any]:
         """As the file has it."""
-        effects = [{"effect": e, "location": place, "parameters": dict(values)} for (e, place), values in self.change.items()]
-        return {"schema": SCHEMA, "robot": self.robot, "effects": effects, "source": dict(self.source)}
+        effects = [
+            {"effect": e, "location": place, "parameters": dict(values)}
+            for (e, place), values in self.change.items()
+        ]
+        return {
+            "schema": SCHEMA,
+            "robot": self.robot,
+            "effects": effects,
+            "source": dict(self.source),
+        }
 
 
 def alterations(change: Change, subject: Subject) -> tuple[Alteration, ...]:
@@ -103,8 +114,17 @@ def overlay_from_mapping(content: Mapping[str, Any], where: str) -> Overlay:
     """
     _only(content, _KEYS, where, "")
     if content.get("schema") != SCHEMA:
-        raise InputError(where, "schema", content.get("schema"), f"expects {SCHEMA}; another version of hyperleg wrote this file")
-    entries, source, robot = content.get("effects"), content.get("source") or {}, content.get("robot", "")
+        raise InputError(
+            where,
+            "schema",
+            content.get("schema"),
+            f"expects {SCHEMA}; another version of hyperleg wrote this file",
+        )
+    entries, source, robot = (
+        content.get("effects"),
+        content.get("source") or {},
+        content.get("robot", ""),
+    )
     if not isinstance(entries, list):
         raise InputError(where, "effects", entries, "expects a list of effects")
     if not isinstance(source, dict):
@@ -146,8 +166,14 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     path = path / "diagnosis.json" if path.is_dir() else path
     where = short_name(path)
     content = read_json(path)
-    if not isinstance(content, dict) or content.get("schema") != 1 or not isinstance(content.get("causes"), list):
-        raise InputError(where, "", None, "is not a diagnosis: expects schema 1 and a list of causes")
+    if (
+        not isinstance(content, dict)
+        or content.get("schema") != 1
+        or not isinstance(content.get("causes"), list)
+    ):
+        raise InputError(
+            where, "", None, "is not a diagnosis: expects schema 1 and a list of causes"
+        )
     verdict = content.get("verdict")
     if not content["causes"]:
         raise InputError(where, "causes", [], f"there is nothing to add: the verdict is {verdict}")
@@ -155,12 +181,26 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     for number, cause in enumerate(content["causes"]):
         try:
             key = cause["effect"], cause["location"]
-            own = {p.name for p in effect(str(key[0])).parameters}  # the rest is told for people: a limit for its inverse
-            values = {name: value["value"] for name, value in cause["parameters"].items() if name in own}
+            own = {
+                p.name for p in effect(str(key[0])).parameters
+            }  # the rest is told for people: a limit for its inverse
+            values = {
+                name: value["value"] for name, value in cause["parameters"].items() if name in own
+            }
         except (TypeError, KeyError, AttributeError):
-            raise InputError(where, f"causes.{number}", cause, "expects effect, location and parameters, each with a value") from None
+            raise InputError(
+                where,
+                f"causes.{number}",
+                cause,
+                "expects effect, location and parameters, each with a value",
+            ) from None
         if not values:
-            raise InputError(where, f"causes.{number}.parameters", sorted(cause["parameters"]), f"none is a parameter of {key[0]}: {', '.join(own)}")
+            raise InputError(
+                where,
+                f"causes.{number}.parameters",
+                sorted(cause["parameters"]),
+                f"none is a parameter of {key[0]}: {', '.join(own)}",
+            )
         change[key] = _checked(where, f"causes.{number}", key[0], values)
     gap = content.get("gap")
     closed = gap.get("closed") if isinstance(gap, dict) else None
@@ -172,7 +212,11 @@ def _only(content: Mapping[str, Any], known: tuple[str, ...], where: str, place:
     for key in content:
         if key not in known:
             near = difflib.get_close_matches(str(key), known, n=1)
-            remedy = f"no such field; did you mean {near[0]}?" if near else f"no such field; there are {', '.join(known)}"
+            remedy = (
+                f"no such field; did you mean {near[0]}?"
+                if near
+                else f"no such field; there are {', '.join(known)}"
+            )
             raise InputError(where, f"{place}.{key}".lstrip("."), None, remedy)
 
 
@@ -186,10 +230,19 @@ def _checked(where: str, place: str, identifier: Any, values: Any) -> dict[str, 
     found = {}
     for name, value in values.items():
         at = f"{place}.parameters.{name}"
-        if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer) or not math.isfinite(value):
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, int | float | np.floating | np.integer)
+            or not math.isfinite(value)
+        ):
             raise InputError(where, at, value, "expects a finite number")
         parameter = known[name]
         if not parameter.low <= value <= parameter.high:
-            raise InputError(where, at, float(value), f"expects {parameter.low:g} .. {parameter.high:g} {parameter.unit}".rstrip())
+            raise InputError(
+                where,
+                at,
+                float(value),
+                f"expects {parameter.low:g} .. {parameter.high:g} {parameter.unit}".rstrip(),
+            )
         found[name] = float(value)
     return found

@@ -1,7 +1,8 @@
-"""A planned motion rehearsed on the nominal model: what a log of it would hold if nothing were wrong.
+"""A planned motion rehearsed on the nominal model: what a log of it would hold if nothing were
+wrong.
 
-Where all gains are known the closed loop is simulated, drives off where the plan says so; else the robot is taken to follow
-exactly, with the torque that inverse dynamics asks for.
+Where all gains are known the closed loop is simulated, drives off where the plan says so; else the
+robot is taken to follow exactly, with the torque that inverse dynamics asks for.
 """
 
 from __future__ import annotations
@@ -26,7 +27,15 @@ def knows_gains(subject: Subject) -> bool:
     return bool(np.isfinite(subject.gains[~subject.passive]).all())
 
 
-def rehearsed(subject: Subject, name: str, time: np.ndarray, target: np.ndarray, position: np.ndarray, *, torque: bool = True) -> Log:
+def rehearsed(
+    subject: Subject,
+    name: str,
+    time: np.ndarray,
+    target: np.ndarray,
+    position: np.ndarray,
+    *,
+    torque: bool = True,
+) -> Log:
     """Log of a planned motion on the nominal robot, noise left out.
 
     Args:
@@ -45,7 +54,9 @@ def rehearsed(subject: Subject, name: str, time: np.ndarray, target: np.ndarray,
     else:
         velocity = np.gradient(position, step, axis=0)
         acceleration = np.gradient(velocity, step, axis=0)
-        needed = rigid.inverse_dynamics(subject, position, velocity, acceleration) + rigid.friction_torque(subject, position, velocity)
+        needed = rigid.inverse_dynamics(
+            subject, position, velocity, acceleration
+        ) + rigid.friction_torque(subject, position, velocity)
         command = np.asarray(needed @ subject.motor_from_joint.T)
         command[off] = 0.0
     signals: dict[str, np.ndarray] = {}
@@ -54,12 +65,26 @@ def rehearsed(subject: Subject, name: str, time: np.ndarray, target: np.ndarray,
         if closed and not subject.passive[i]:
             signals[f"position_target/{joint}"] = target[:, i]
     for i, motor in enumerate(subject.motors):
-        # A closed loop's command follows from targets and gains, as it does where the controller sits in the drives.
-        signals[f"motor_torque_command/{motor}"] = np.where(off, 0.0, np.nan) if closed else command[:, i]
+        # A closed loop's command follows from targets and gains, as it does where the controller
+        # sits in the drives.
+        signals[f"motor_torque_command/{motor}"] = (
+            np.where(off, 0.0, np.nan) if closed else command[:, i]
+        )
         if torque:
             signals[f"motor_torque/{motor}"] = command[:, i]
-    gains = {j: (float(k), float(d)) for j, (k, d) in zip(subject.joints, subject.gains, strict=True) if np.isfinite(k + d)}
-    return Log(name, time, signals, Metadata(robot=subject.path, base="fixed", gains=gains, notes="rehearsed on the nominal model"))
+    gains = {
+        j: (float(k), float(d))
+        for j, (k, d) in zip(subject.joints, subject.gains, strict=True)
+        if np.isfinite(k + d)
+    }
+    return Log(
+        name,
+        time,
+        signals,
+        Metadata(
+            robot=subject.path, base="fixed", gains=gains, notes="rehearsed on the nominal model"
+        ),
+    )
 
 
 def swung(subject: Subject, start: np.ndarray, time: np.ndarray) -> np.ndarray:
@@ -68,8 +93,11 @@ def swung(subject: Subject, start: np.ndarray, time: np.ndarray) -> np.ndarray:
     return closed_loop(subject, step, np.full((len(time), len(start)), np.nan), start)[0]
 
 
-def closed_loop(subject: Subject, step: float, target: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Position, velocity `(t, n)` and motor torque `(t, m)` along targets, by MuJoCo's own servos; no torque where targets are unknown.
+def closed_loop(
+    subject: Subject, step: float, target: np.ndarray, start: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Position, velocity `(t, n)` and motor torque `(t, m)` along targets, by MuJoCo's own servos;
+    no torque where targets are unknown.
 
     Args:
         subject: with its base fixed and all gains known.
@@ -94,13 +122,19 @@ def closed_loop(subject: Subject, step: float, target: np.ndarray, start: np.nda
         control = np.repeat(np.nan_to_num(target[part][:, driven]), substeps, 0)
         if not len(control):
             continue
-        model.opt.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | (0 if on else int(mujoco.mjtDisableBit.mjDSBL_ACTUATION))
+        model.opt.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | (
+            0 if on else int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
+        )
         found, _ = rollout.rollout(model, data, state[None], control[None])
         state = found[0, -1]
         rows.append(found[0, substeps - 1 :: substeps, 1:])
     states = np.concatenate(rows)[: len(target)]
     position, velocity = states[:, : model.nq], states[:, model.nq : model.nq + model.nv]
     stiffness, damping = np.nan_to_num(subject.gains).T
-    asked = np.where(off[:, None] | subject.passive, 0.0, stiffness * (np.nan_to_num(target) - position) - damping * velocity)
+    asked = np.where(
+        off[:, None] | subject.passive,
+        0.0,
+        stiffness * (np.nan_to_num(target) - position) - damping * velocity,
+    )
     torque = limited_torque(subject, asked @ subject.motor_from_joint.T, velocity)
     return position, velocity, torque

@@ -1,4 +1,6 @@
-"""A subject whose base is fixed as an `MjSpec` with position servos, for tools that want MuJoCo's own actuators."""
+"""A subject whose base is fixed as an `MjSpec` with position servos, for tools that want MuJoCo's
+own actuators.
+"""
 
 from __future__ import annotations
 
@@ -40,22 +42,46 @@ def rig_spec(subject: Subject, step: float) -> Any:
     armature = np.diag(subject.armature) if subject.one_to_one else np.zeros(tree.count)
     for i, name in enumerate(tree.joints):
         above = spec.worldbody if tree.parent[i] < 0 else bodies[int(tree.parent[i])]
-        body = above.add_body(name=f"link_{name}", pos=tree.offset[i], quat=_quaternion(tree.rotation[i]))
+        body = above.add_body(
+            name=f"link_{name}", pos=tree.offset[i], quat=_quaternion(tree.rotation[i])
+        )
         mass, com, inertia = mass_properties(tree.inertial[i])
         body.explicitinertial = True
         body.mass = max(mass, LIGHTEST)
         body.ipos = com
-        body.fullinertia = [inertia[0, 0], inertia[1, 1], inertia[2, 2], inertia[0, 1], inertia[0, 2], inertia[1, 2]]
+        body.fullinertia = [
+            inertia[0, 0],
+            inertia[1, 1],
+            inertia[2, 2],
+            inertia[0, 1],
+            inertia[0, 2],
+            inertia[1, 2],
+        ]
         kind = mujoco.mjtJoint.mjJNT_HINGE if tree.hinge[i] else mujoco.mjtJoint.mjJNT_SLIDE
-        limited = bool(np.isfinite(subject.position_low[i]) and np.isfinite(subject.position_high[i]))
+        limited = bool(
+            np.isfinite(subject.position_low[i]) and np.isfinite(subject.position_high[i])
+        )
         limits = [subject.position_low[i], subject.position_high[i]] if limited else [0.0, 0.0]
         body.add_joint(
-            name=name, type=kind, axis=[0, 0, 1], ref=float(tree.reference[i]), armature=float(armature[i]), limited=limited, range=limits,
-            frictionloss=float(subject.coulomb[i]), damping=[float(subject.viscous[i]), 0, 0], stiffness=[float(subject.spring[i]), 0, 0],
+            name=name,
+            type=kind,
+            axis=[0, 0, 1],
+            ref=float(tree.reference[i]),
+            armature=float(armature[i]),
+            limited=limited,
+            range=limits,
+            frictionloss=float(subject.coulomb[i]),
+            damping=[float(subject.viscous[i]), 0, 0],
+            stiffness=[float(subject.spring[i]), 0, 0],
             springref=float(subject.spring_rest[i]),
-        )  # fmt: skip
+        )
         bodies.append(body)
-        spec.add_sensor(name=SENSOR + name, type=mujoco.mjtSensor.mjSENS_JOINTPOS, objtype=mujoco.mjtObj.mjOBJ_JOINT, objname=name)
+        spec.add_sensor(
+            name=SENSOR + name,
+            type=mujoco.mjtSensor.mjSENS_JOINTPOS,
+            objtype=mujoco.mjtObj.mjOBJ_JOINT,
+            objname=name,
+        )
     if not subject.one_to_one:
         for column, motor in enumerate(subject.motors):
             tendon = spec.add_tendon(name=motor, armature=float(subject.rotor_inertia[column]))
@@ -69,7 +95,10 @@ def rig_spec(subject: Subject, step: float) -> Any:
         servo.gaintype, servo.biastype = mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtBias.mjBIAS_AFFINE
         servo.gainprm[0], servo.biasprm[1], servo.biasprm[2] = stiffness, -stiffness, -damping
         if subject.one_to_one and np.isfinite(subject.torque_limit[i]):
-            servo.forcelimited, servo.forcerange = True, [-float(subject.torque_limit[i]), float(subject.torque_limit[i])]
+            servo.forcelimited, servo.forcerange = (
+                True,
+                [-float(subject.torque_limit[i]), float(subject.torque_limit[i])],
+            )
     return spec
 
 

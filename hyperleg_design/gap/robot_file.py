@@ -1,7 +1,8 @@
-"""A robot from somebody else's MJCF or URDF: what its drives are, and a bare model of it for inverse dynamics and replays.
+"""A robot from somebody else's MJCF or URDF: what its drives are, and a bare model of it for
+inverse dynamics and replays.
 
-Drawing shapes go, and missing mesh files with them, as long as the masses do not depend on them. Drives are read from the
-file's actuators and then taken out: replays apply torques themselves.
+Drawing shapes go, and missing mesh files with them, as long as the masses do not depend on them.
+Drives are read from the file's actuators and then taken out: replays apply torques themselves.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ import numpy as np
 from hyperleg_design.errors import InputError, in_short
 
 ANGLE_TRANSMISSIONS = ("mjTRN_JOINT", "mjTRN_JOINTINPARENT", "mjTRN_TENDON")
-"""Kinds of transmission whose torque per unit of force does not change with posture, as long as the tendon is fixed."""
+"""Kinds of transmission whose torque per unit of force does not change with posture, as long as the
+tendon is fixed."""
 
 SMALLEST_MASS = 1e-6
 SMALLEST_INERTIA = 1e-9
@@ -34,9 +36,11 @@ class Drives:
     matrix: np.ndarray
     """Joint torque of motor torque `(n, m)`."""
     gear: np.ndarray
-    """Of the actuators over their joints where they are one to one, whose motors count at the joint; else 1 `(m,)`."""
+    """Of the actuators over their joints where they are one to one, whose motors count at the
+    joint; else 1 `(m,)`."""
     gains: np.ndarray
-    """Stiffness and damping of the joint controllers, NaN where the file states none `(n, 2)` [Nm/rad, Nms/rad]."""
+    """Stiffness and damping of the joint controllers, NaN where the file states none `(n, 2)`
+    [Nm/rad, Nms/rad]."""
     limit: np.ndarray
     """Largest motor torque, infinite where unstated `(m,)` [Nm]."""
     rotor_inertia: np.ndarray
@@ -61,13 +65,19 @@ def read_spec(path: Path) -> Any:
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except (ValueError, RuntimeError) as error:
-        raise InputError(str(path), "", None, f"is neither MJCF nor URDF that MuJoCo can read: {_line(error)}") from None
+        raise InputError(
+            str(path), "", None, f"is neither MJCF nor URDF that MuJoCo can read: {_line(error)}"
+        ) from None
     spec.compiler.fusestatic = False
     for index, joint in enumerate(spec.joints):
         joint.name = joint.name or f"joint_{index}"
     for index, body in enumerate(spec.bodies):
         body.name = body.name or f"body_{index}"
-        if body.explicitinertial and not body.mass and not np.nan_to_num(np.asarray(body.fullinertia)).any():
+        if (
+            body.explicitinertial
+            and not body.mass
+            and not np.nan_to_num(np.asarray(body.fullinertia)).any()
+        ):
             body.fullinertia, body.inertia = [np.nan] * 6, [0.0] * 3
     return spec
 
@@ -87,16 +97,37 @@ def strip_scene(spec: Any, path: Path, *, contact: bool) -> list[str]:
 
     notes = []
     if len(spec.equalities):
-        notes.append(f"{len(spec.equalities)} equality constraints (closed loops, mimic joints) are left out")
-    for group in (spec.sensors, spec.equalities, spec.keys, spec.pairs, spec.cameras, spec.skins, spec.flexes, spec.tuples):
+        notes.append(
+            f"{len(spec.equalities)} equality constraints (closed loops, mimic joints) are left out"
+        )
+    for group in (
+        spec.sensors,
+        spec.equalities,
+        spec.keys,
+        spec.pairs,
+        spec.cameras,
+        spec.skins,
+        spec.flexes,
+        spec.tuples,
+    ):
         for item in list(group):
             spec.delete(item)
-    from_geoms = int(spec.compiler.inertiafromgeom) == int(mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE)
+    from_geoms = int(spec.compiler.inertiafromgeom) == int(
+        mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
+    )
     needed = set()
     for body in spec.bodies:
-        weighed = body is spec.worldbody or body.name == "world" or (bool(body.explicitinertial) and not from_geoms)
+        weighed = (
+            body is spec.worldbody
+            or body.name == "world"
+            or (bool(body.explicitinertial) and not from_geoms)
+        )
         for geom in list(body.geoms):
-            mesh = geom.type in (mujoco.mjtGeom.mjGEOM_MESH, mujoco.mjtGeom.mjGEOM_SDF, mujoco.mjtGeom.mjGEOM_HFIELD)
+            mesh = geom.type in (
+                mujoco.mjtGeom.mjGEOM_MESH,
+                mujoco.mjtGeom.mjGEOM_SDF,
+                mujoco.mjtGeom.mjGEOM_HFIELD,
+            )
             touches = contact and not mesh and (geom.contype or geom.conaffinity)
             if weighed and not touches:
                 spec.delete(geom)
@@ -152,7 +183,11 @@ def set_base(spec: Any, wanted: str | None, path: Path) -> str:
         raise InputError(str(path), "", None, "has no joint")
     robot = max(roots, key=_joints_below)
     for body in list(spec.worldbody.bodies):
-        if body is not robot and body.name != robot.name and any(j.type == free for j in body.joints):
+        if (
+            body is not robot
+            and body.name != robot.name
+            and any(j.type == free for j in body.joints)
+        ):
             spec.delete(body)
     own = [j for j in robot.joints if j.type == free]
     if wanted == "fixed" and own:
@@ -161,7 +196,13 @@ def set_base(spec: Any, wanted: str | None, path: Path) -> str:
         return "fixed"
     if wanted == "floating" and not own:
         if list(robot.joints):
-            raise InputError(str(path), "base", "floating", f"its root, {robot.name}, hangs on a joint; give the file a root link that can float")
+            raise InputError(
+                str(path),
+                "base",
+                "floating",
+                f"its root, {robot.name}, hangs on a joint; give the file a root link that can "
+                f"float",
+            )
         robot.add_freejoint(name="floating_base")
         return "floating"
     return "floating" if own else "fixed"
@@ -176,17 +217,30 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
     import mujoco
 
     kinds = mujoco.mjtJoint
-    single = [j for j in range(model.njnt) if int(model.jnt_type[j]) in (int(kinds.mjJNT_HINGE), int(kinds.mjJNT_SLIDE)) and _name(model, j) in kept]
-    joints, dofs = tuple(_name(model, j) for j in single), np.array([model.jnt_dofadr[j] for j in single])
+    single = [
+        j
+        for j in range(model.njnt)
+        if int(model.jnt_type[j]) in (int(kinds.mjJNT_HINGE), int(kinds.mjJNT_SLIDE))
+        and _name(model, j) in kept
+    ]
+    joints, dofs = (
+        tuple(_name(model, j) for j in single),
+        np.array([model.jnt_dofadr[j] for j in single]),
+    )
     count = len(joints)
     notes: list[str] = []
     moment = _moment(model)
     found = []
     for index in range(model.nu):
         kind = mujoco.mjtTrn(model.actuator_trntype[index]).name
-        wraps_sites = kind == "mjTRN_TENDON" and not _is_fixed_tendon(model, int(model.actuator_trnid[index, 0]))
+        wraps_sites = kind == "mjTRN_TENDON" and not _is_fixed_tendon(
+            model, int(model.actuator_trnid[index, 0])
+        )
         if kind not in ANGLE_TRANSMISSIONS or wraps_sites:
-            notes.append(f"actuator {model.actuator(index).name} acts through {kind}, whose lever changes with posture: left out")
+            notes.append(
+                f"actuator {model.actuator(index).name} acts through {kind}, whose lever changes "
+                f"with posture: left out"
+            )
         elif np.any(moment[index, dofs]):
             found.append(index)
     usable = np.array(found, int)
@@ -195,7 +249,12 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
     limit = np.array([_force_limit(model, i) for i in usable])
     stiffness, damping = np.array([_feedback(model, i) for i in usable]).reshape(-1, 2).T
     armature = model.dof_armature[dofs]
-    effort = np.array([max(abs(model.jnt_actfrcrange[j])) if model.jnt_actfrclimited[j] else np.inf for j in single])
+    effort = np.array(
+        [
+            max(abs(model.jnt_actfrcrange[j])) if model.jnt_actfrclimited[j] else np.inf
+            for j in single
+        ]
+    )
     gains = np.full((count, 2), np.nan)
     if np.all(np.count_nonzero(matrix, 0) <= 1):
         own = matrix != 0
@@ -204,13 +263,41 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
         for column, values in enumerate((stiffness, damping)):
             gains[servo, column] = (matrix[servo] ** 2 * values).sum(1)
         reached = np.where(own, np.abs(matrix), 0.0)
-        total = np.array([sum(r * f for r, f in zip(row, limit, strict=True) if r) for row in reached]) if found else np.full(count, np.inf)
+        total = (
+            np.array([sum(r * f for r, f in zip(row, limit, strict=True) if r) for row in reached])
+            if found
+            else np.full(count, np.inf)
+        )
         rotor = armature + matrix**2 @ model.actuator_armature[usable]
         alias = [next((names[a] for a in np.flatnonzero(own[j])), joints[j]) for j in range(count)]
-        gear = np.array([float(matrix[j, own[j]][0]) if own[j].sum() == 1 else 1.0 for j in range(count)])
-        return Drives(joints, tuple(alias), np.eye(count), gear, gains, np.minimum(total, effort), rotor, np.zeros(count), ~driven, tuple(notes))
+        gear = np.array(
+            [float(matrix[j, own[j]][0]) if own[j].sum() == 1 else 1.0 for j in range(count)]
+        )
+        return Drives(
+            joints,
+            tuple(alias),
+            np.eye(count),
+            gear,
+            gains,
+            np.minimum(total, effort),
+            rotor,
+            np.zeros(count),
+            ~driven,
+            tuple(notes),
+        )
     rotor = np.array([_tendon_armature(model, i) for i in usable]) + model.actuator_armature[usable]
-    return Drives(tuple(names), tuple(names), matrix, np.ones(len(names)), gains, limit, rotor, armature, np.zeros(count, bool), tuple(notes))
+    return Drives(
+        tuple(names),
+        tuple(names),
+        matrix,
+        np.ones(len(names)),
+        gains,
+        limit,
+        rotor,
+        armature,
+        np.zeros(count, bool),
+        tuple(notes),
+    )
 
 
 def strip_drives(spec: Any) -> None:
@@ -226,7 +313,10 @@ def lock(spec: Any, kept: Collection[str]) -> tuple[str, ...]:
 
     locked = []
     for joint in list(spec.joints):
-        if joint.type in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE) and joint.name not in kept:
+        if (
+            joint.type in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
+            and joint.name not in kept
+        ):
             locked.append(joint.name)
             spec.delete(joint)
     return tuple(locked)
@@ -240,7 +330,9 @@ def _moment(model: Any) -> np.ndarray:
     mujoco.mj_forward(model, data)
     dense = np.zeros((len(data.moment_rownnz), model.nv))
     for row, (start, length) in enumerate(zip(data.moment_rowadr, data.moment_rownnz, strict=True)):
-        dense[row, data.moment_colind[start : start + length]] = np.ravel(data.actuator_moment)[start : start + length]
+        dense[row, data.moment_colind[start : start + length]] = np.ravel(data.actuator_moment)[
+            start : start + length
+        ]
     return dense[: model.nu]
 
 
@@ -273,7 +365,9 @@ def _force_limit(model: Any, actuator: int) -> float:
 
 
 def _feedback(model: Any, actuator: int) -> tuple[float, float]:
-    """Stiffness and damping that an actuator's bias puts on its own length, zero for a torque motor."""
+    """Stiffness and damping that an actuator's bias puts on its own length, zero for a torque
+    motor.
+    """
     import mujoco
 
     if model.actuator_biastype[actuator] != mujoco.mjtBias.mjBIAS_AFFINE:
@@ -301,7 +395,9 @@ def imu_site(spec: Any) -> str:
 
 
 def imu_place(model: Any, site: str) -> tuple[np.ndarray, np.ndarray]:
-    """Axes `(3, 3)` and place `(3,)` of the sensor in the base's frame; the base's own where the file has none on the base."""
+    """Axes `(3, 3)` and place `(3,)` of the sensor in the base's frame; the base's own where the
+    file has none on the base.
+    """
     import mujoco
 
     from hyperleg_design.gap.mechanism import quaternion_rotation
@@ -317,14 +413,23 @@ def add_floor(spec: Any) -> None:
     import mujoco
 
     if not any(g.type == mujoco.mjtGeom.mjGEOM_PLANE for g in spec.worldbody.geoms):
-        spec.worldbody.add_geom(name="gap_floor", type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], contype=1, conaffinity=1)
+        spec.worldbody.add_geom(
+            name="gap_floor",
+            type=mujoco.mjtGeom.mjGEOM_PLANE,
+            size=[0, 0, 1],
+            contype=1,
+            conaffinity=1,
+        )
 
 
 def _single(model: Any) -> tuple[np.ndarray, np.ndarray]:
     """Joints that are hinges or slides, and their velocities."""
     import mujoco
 
-    joints = np.flatnonzero((model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE) | (model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE))
+    joints = np.flatnonzero(
+        (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE)
+        | (model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE)
+    )
     return joints, np.asarray(model.jnt_dofadr)[joints]
 
 
@@ -337,7 +442,9 @@ def friction(model: Any) -> tuple[np.ndarray, np.ndarray]:
 def springs(model: Any) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness and rest position of springs that the file gives the joints `(n,)` each."""
     joints, _ = _single(model)
-    return np.array(model.jnt_stiffness[joints]), np.array(model.qpos_spring[model.jnt_qposadr[joints]])
+    return np.array(model.jnt_stiffness[joints]), np.array(
+        model.qpos_spring[model.jnt_qposadr[joints]]
+    )
 
 
 def limits(model: Any) -> tuple[np.ndarray, np.ndarray]:
@@ -355,7 +462,9 @@ def take_out_friction(model: Any) -> None:
 
 
 def touching_points(model: Any, geom: int) -> tuple[np.ndarray, float]:
-    """Points of a shape that meet a floor first, in its body's frame `(p, 3)` [m], and the radius around them."""
+    """Points of a shape that meet a floor first, in its body's frame `(p, 3)` [m], and the radius
+    around them.
+    """
     import mujoco
 
     from hyperleg_design.gap.mechanism import quaternion_rotation
@@ -371,20 +480,35 @@ def touching_points(model: Any, geom: int) -> tuple[np.ndarray, float]:
 
 
 def add_mass(model: Any, body: str, mass: float, com: np.ndarray) -> None:
-    """Put a point mass on a body of a compiled model, which changes in place; centre of mass in the body's frame [kg, m]."""
+    """Put a point mass on a body of a compiled model, which changes in place; centre of mass in the
+    body's frame [kg, m].
+    """
     import mujoco
 
-    from hyperleg_design.gap.mechanism import inertial_parameters, mass_properties, quaternion_rotation
+    from hyperleg_design.gap.mechanism import (
+        inertial_parameters,
+        mass_properties,
+        quaternion_rotation,
+    )
 
     index = model.body(body).id
     turned = quaternion_rotation(model.body_iquat[index])
-    own = inertial_parameters(float(model.body_mass[index]), model.body_ipos[index], turned @ np.diag(model.body_inertia[index]) @ turned.T)
+    own = inertial_parameters(
+        float(model.body_mass[index]),
+        model.body_ipos[index],
+        turned @ np.diag(model.body_inertia[index]) @ turned.T,
+    )
     total, centre, inertia = mass_properties(own + inertial_parameters(mass, com, np.zeros((3, 3))))
     values, vectors = np.linalg.eigh(inertia)
     if np.linalg.det(vectors) < 0:
         vectors[:, 0] *= -1
     quaternion = np.zeros(4)
     mujoco.mju_mat2Quat(quaternion, vectors.ravel())
-    model.body_mass[index], model.body_ipos[index], model.body_inertia[index], model.body_iquat[index] = total, centre, values, quaternion
+    (
+        model.body_mass[index],
+        model.body_ipos[index],
+        model.body_inertia[index],
+        model.body_iquat[index],
+    ) = total, centre, values, quaternion
     model.body_simple[index] = 0
     mujoco.mj_setConst(model, mujoco.MjData(model))

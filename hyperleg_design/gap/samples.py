@@ -1,8 +1,9 @@
-"""All logs of a diagnosis as one list of samples over their floor, and the sums of products that every fit is made of.
+"""All logs of a diagnosis as one list of samples over their floor, and the sums of products that
+every fit is made of.
 
-A *group* is one row in one band, pooled over the logs, its rare episodes of much larger residuals apart; the noise of a group is one
-unknown scale on its floor. A *part* is a stretch
-of one log; parts are dealt to folds twice: `BLOCKS` deals stretches of every log, `LOGS` whole logs.
+A *group* is one row in one band, pooled over the logs, its rare episodes of much larger residuals
+apart; the noise of a group is one unknown scale on its floor. A *part* is a stretch of one log;
+parts are dealt to folds twice: `BLOCKS` deals stretches of every log, `LOGS` whole logs.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ MOST_PARTS = 20
 BLOCKS, LOGS = 0, 1
 """Ways to hold out."""
 OF_EPISODES = 0.15
-"""What numbers in episodes count for, over others: drives at their limits and collisions are nobody's model."""
+"""What numbers in episodes count for, over others: drives at their limits and collisions are
+nobody's model."""
 BLOCK = 1.0
 """Length of the blocks that the bootstrap draws [s]."""
 
@@ -76,7 +78,8 @@ class Samples:
     log: np.ndarray
     """Of each part `(P,)`."""
     holds: Mapping[str, float] = field(default_factory=dict)
-    """Joints that hold more than all known friction in any of the logs, and by how much [Nm]; see `holding`."""
+    """Joints that hold more than all known friction in any of the logs, and by how much [Nm]; see
+    `holding`."""
 
     @property
     def groups(self) -> int:
@@ -103,14 +106,22 @@ class Samples:
         found: list[Piece] = []
         for piece in sorted(self.pieces, key=lambda p: p.start):
             session, last = int(self.session[piece.part]), found[-1] if found else None
-            if last is not None and (last.stop, last.group, last.part) == (piece.start, piece.group, session):
+            if last is not None and (last.stop, last.group, last.part) == (
+                piece.start,
+                piece.group,
+                session,
+            ):
                 found[-1] = Piece(last.start, piece.stop, piece.group, session)
             else:
                 found.append(Piece(piece.start, piece.stop, piece.group, session))
         return tuple(found)
 
-    def columns(self, trace: Callable[[Signals], Mapping[str, np.ndarray]], count: int) -> np.ndarray | None:
-        """Samples of `count` traces `(count, S)`, in their units; None where no log shows any of them."""
+    def columns(
+        self, trace: Callable[[Signals], Mapping[str, np.ndarray]], count: int
+    ) -> np.ndarray | None:
+        """Samples of `count` traces `(count, S)`, in their units; None where no log shows any of
+        them.
+        """
         found = None
         for sieve, places in zip(self.sieves, self.where, strict=True):
             for row, values in traced(sieve, trace(sieve.signals)).items():
@@ -121,7 +132,11 @@ class Samples:
 
 
 def gather(
-    sieves: Sequence[Sieve], floors: Sequence[Sequence[np.ndarray]], sessions: Sequence[int], information: float, episode: np.ndarray | None = None
+    sieves: Sequence[Sieve],
+    floors: Sequence[Sequence[np.ndarray]],
+    sessions: Sequence[int],
+    information: float,
+    episode: np.ndarray | None = None,
 ) -> Samples:
     """Samples of all logs.
 
@@ -133,10 +148,15 @@ def gather(
         episode: samples that belong to episodes `(S,)` of bool.
     """
     keys = list(dict.fromkeys((r.balance, r.column) for sieve in sieves for r in sieve.rows))
-    rows = tuple(next(r for s in sieves for r in s.rows if (r.balance, r.column) == key) for key in keys)
+    rows = tuple(
+        next(r for s in sieves for r in s.rows if (r.balance, r.column) == key) for key in keys
+    )
     deal = _parts(sieves)
     groups: dict[tuple[int, int, bool], int] = {}
-    parts: dict[tuple[int, int], int] = {(log, chunk): i for i, (log, chunk) in enumerate((g, c) for g, n in enumerate(deal) for c in range(n))}
+    parts: dict[tuple[int, int], int] = {
+        (log, chunk): i
+        for i, (log, chunk) in enumerate((g, c) for g, n in enumerate(deal) for c in range(n))
+    }
     table: list[list[np.ndarray]] = [[] for _ in range(8)]
     where, pieces, start, blocks = [], [], 0, 0
     for number, sieve in enumerate(sieves):
@@ -149,7 +169,9 @@ def gather(
                 share = np.where(episode[start : start + len(band)], OF_EPISODES * share, share)
             overall = keys.index((row.balance, row.column))
             group = np.empty(len(band), int)
-            apart = np.zeros(len(band), bool) if episode is None else episode[start : start + len(band)]
+            apart = (
+                np.zeros(len(band), bool) if episode is None else episode[start : start + len(band)]
+            )
             for b in np.unique(band).tolist():
                 for flag in (False, True):
                     mine = (band == b) & (apart == flag)
@@ -161,11 +183,22 @@ def gather(
             edges = np.flatnonzero(np.diff(group) | np.diff(part)) + 1
             for low, high in zip(np.r_[0, edges], np.r_[edges, len(group)], strict=True):
                 if high > low:
-                    pieces.append(Piece(start + int(low), start + int(high), int(group[low]), int(part[low])))
+                    pieces.append(
+                        Piece(start + int(low), start + int(high), int(group[low]), int(part[low]))
+                    )
             values = sieve.sample(place, residual[None])[0]
             for column, found in zip(
                 table,
-                (values, floors[number][place], share, np.full(len(band), overall), group, part, blocks + (time / BLOCK).astype(int), time),
+                (
+                    values,
+                    floors[number][place],
+                    share,
+                    np.full(len(band), overall),
+                    group,
+                    part,
+                    blocks + (time / BLOCK).astype(int),
+                    time,
+                ),
                 strict=True,
             ):
                 column.append(found)
@@ -181,15 +214,31 @@ def gather(
     if len(sieves) < 2:
         fold[1] = fold[0]
     return Samples(
-        tuple(sieves), rows, joined[0], joined[1], joined[2], joined[3].astype(int), joined[4].astype(int), joined[5].astype(int),
-        joined[6].astype(int), tuple(where), tuple(pieces), np.array([r for r, *_ in key_of]),
-        np.array([b for _, b, _ in key_of]), np.array([e for *_, e in key_of], bool), joined[7],
-        np.array(sessions)[log_of], fold, log_of,
-    )  # fmt: skip
+        tuple(sieves),
+        rows,
+        joined[0],
+        joined[1],
+        joined[2],
+        joined[3].astype(int),
+        joined[4].astype(int),
+        joined[5].astype(int),
+        joined[6].astype(int),
+        tuple(where),
+        tuple(pieces),
+        np.array([r for r, *_ in key_of]),
+        np.array([b for _, b, _ in key_of]),
+        np.array([e for *_, e in key_of], bool),
+        joined[7],
+        np.array(sessions)[log_of],
+        fold,
+        log_of,
+    )
 
 
 def _parts(sieves: Sequence[Sieve]) -> list[int]:
-    """Stretches that each log is cut into: five of a short one, ten of a long one, no more than is needed of many."""
+    """Stretches that each log is cut into: five of a short one, ten of a long one, no more than is
+    needed of many.
+    """
     most = max(MOST_PARTS // len(sieves), 1)
     found = []
     for sieve in sieves:
@@ -201,7 +250,9 @@ def _parts(sieves: Sequence[Sieve]) -> list[int]:
 
 @dataclass(frozen=True, eq=False)
 class Products:
-    """Sums of products of k columns and the p columns of a base, by part (or session) and group, over floor and share."""
+    """Sums of products of k columns and the p columns of a base, by part (or session) and group,
+    over floor and share.
+    """
 
     own: np.ndarray
     """`(P, G, k, k)`"""
@@ -209,8 +260,12 @@ class Products:
     """`(P, G, k, p)`"""
 
 
-def products(samples: Samples, columns: np.ndarray, packed: Packed, whole: bool = False) -> Products:
-    """Of columns `(k, S)` among themselves and with a base, both weighted already; of `whole` sessions or by part."""
+def products(
+    samples: Samples, columns: np.ndarray, packed: Packed, whole: bool = False
+) -> Products:
+    """Of columns `(k, S)` among themselves and with a base, both weighted already; of `whole`
+    sessions or by part.
+    """
     k = len(columns)
     count = samples.sessions if whole else len(samples.session)
     own = np.zeros((count, samples.groups, k, k))
@@ -221,7 +276,9 @@ def products(samples: Samples, columns: np.ndarray, packed: Packed, whole: bool 
             if total[piece.stop] > total[piece.start]:
                 mine = columns[:, piece.start : piece.stop]
                 own[piece.part, piece.group] += mine @ mine.T
-                cross[piece.part, piece.group][:, shown] += mine @ base[:, piece.start - run.start : piece.stop - run.start].T
+                cross[piece.part, piece.group][:, shown] += (
+                    mine @ base[:, piece.start - run.start : piece.stop - run.start].T
+                )
     return Products(own, cross)
 
 
@@ -247,4 +304,6 @@ def pack(samples: Samples, base: np.ndarray, shown: Sequence[np.ndarray]) -> Pac
     for run in samples.runs:
         own = shown[samples.group_row[run.group]]
         runs.append((own, np.ascontiguousarray(base[own, run.start : run.stop])))
-    return Packed(len(base), tuple(runs), tuple(tuple(sorted(one, key=lambda p: p.start)) for one in inside))
+    return Packed(
+        len(base), tuple(runs), tuple(tuple(sorted(one, key=lambda p: p.start)) for one in inside)
+    )

@@ -1,4 +1,6 @@
-"""How a log was sampled: rate, jitter, dropouts, and of each column its own rate, quantisation, noise and saturation."""
+"""How a log was sampled: rate, jitter, dropouts, and of each column its own rate, quantisation,
+noise and saturation.
+"""
 
 from __future__ import annotations
 
@@ -74,7 +76,9 @@ def sampling_of(time: np.ndarray) -> Sampling:
     usual = steps[steps <= DROPOUT * step]
     spread = 1.4826 * float(np.median(np.abs(usual - np.median(usual)))) if len(usual) else 0.0
     lost = float(np.maximum(steps[steps > DROPOUT * step] - step, 0).sum() / (time[-1] - time[0]))
-    return Sampling(len(time), float(time[-1] - time[0]), step, spread / step, lost, float(steps.max()))
+    return Sampling(
+        len(time), float(time[-1] - time[0]), step, spread / step, lost, float(steps.max())
+    )
 
 
 def columns_of(log: Log) -> tuple[Column, ...]:
@@ -95,12 +99,23 @@ def _column(name: str, values: np.ndarray, rate: float) -> Column:
     low, high = float(own.min()), float(own.max())
     sampled = own[::held] if held > 1 else own
     return Column(
-        name, rate / (every * held), missing, low, high, quantum(own), noise(sampled), saturation(own), low == high, held
-    )  # fmt: skip
+        name,
+        rate / (every * held),
+        missing,
+        low,
+        high,
+        quantum(own),
+        noise(sampled),
+        saturation(own),
+        low == high,
+        held,
+    )
 
 
 def held_rows(values: np.ndarray) -> int:
-    """Rows over which every value is kept, as a controller keeps a slow policy's target; 1 where values change freely."""
+    """Rows over which every value is kept, as a controller keeps a slow policy's target; 1 where
+    values change freely.
+    """
     changes = np.flatnonzero(np.diff(values)) + 1
     if len(changes) < 8:
         return 1
@@ -112,12 +127,16 @@ def held_rows(values: np.ndarray) -> int:
 
 
 def quantum(values: np.ndarray) -> float:
-    """Smallest step between values of a quantised signal `(t,)`; 0 where values hardly ever repeat, or are no multiples of one step."""
+    """Smallest step between values of a quantised signal `(t,)`; 0 where values hardly ever repeat,
+    or are no multiples of one step.
+    """
     levels = np.unique(values)
     if len(levels) < 2 or len(levels) > 0.95 * len(values):
         return 0.0
     gaps = np.diff(levels)
-    real = gaps[gaps > 1e-6 * max(abs(levels[0]), abs(levels[-1]), 1e-12)]  # not the rounding of single precision
+    real = gaps[
+        gaps > 1e-6 * max(abs(levels[0]), abs(levels[-1]), 1e-12)
+    ]  # not the rounding of single precision
     if not len(real):
         return 0.0
     step = float(real.min())
@@ -126,7 +145,9 @@ def quantum(values: np.ndarray) -> float:
 
 
 def noise(values: np.ndarray) -> float:
-    """Standard deviation of the white part of a smooth signal `(t,)`, from its third differences."""
+    """Standard deviation of the white part of a smooth signal `(t,)`, from its third
+    differences.
+    """
     if len(values) < 8:
         return 0.0
     third = np.diff(values, 3)
@@ -137,7 +158,9 @@ def noise(values: np.ndarray) -> float:
 
 
 def saturation(values: np.ndarray) -> float:
-    """Share of samples of `(t,)` at a bound: an extreme far more frequent than the value next to it, and reached several times."""
+    """Share of samples of `(t,)` at a bound: an extreme far more frequent than the value next to
+    it, and reached several times.
+    """
     levels, counts = np.unique(values, return_counts=True)
     if len(levels) < 20:
         return 0.0

@@ -1,6 +1,8 @@
-"""Every effect at every place, linearised and fitted beside the calibration errors; the promising ones refitted exactly.
+"""Every effect at every place, linearised and fitted beside the calibration errors; the promising
+ones refitted exactly.
 
-An effect that is not linear is tried from each of its starts by a few Gauss-Newton steps within its bounds, on the traces themselves.
+An effect that is not linear is tried from each of its starts by a few Gauss-Newton steps within its
+bounds, on the traces themselves.
 """
 
 from __future__ import annotations
@@ -29,15 +31,18 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 SHOWN = 0.02
-"""Root mean square of a trace over the floor, at its usual size in the group where it shows most, below which these logs cannot show it."""
+"""Root mean square of a trace over the floor, at its usual size in the group where it shows most,
+below which these logs cannot show it."""
 STEPS = 8
 """Gauss-Newton steps a start in the screen."""
 MOST_DESCENTS, DESCENTS, KINDS = 16, 2, 3
-"""Effects that are not linear which are fitted exactly, starts of each, and of one with choices: one of each of the best so many choices."""
+"""Effects that are not linear which are fitted exactly, starts of each, and of one with choices:
+one of each of the best so many choices."""
 MOST_STARTS = 18
 """Starts of an effect at a place whose traces are tried."""
 PROMISING = 0.1
-"""Gain of an effect by its starts' traces, over the best gain of any, from which it is fitted exactly."""
+"""Gain of an effect by its starts' traces, over the best gain of any, from which it is fitted
+exactly."""
 
 BREAKAWAY = "stribeck_friction"
 """Effect of joints that stick."""
@@ -77,7 +82,8 @@ class NotJudged:
 
 
 Traces: TypeAlias = NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]
-"""Why an effect at a place is not judged; it linearised, in each variant; or starts `(s, k)` and their traces `(s, S)`."""
+"""Why an effect at a place is not judged; it linearised, in each variant; or starts `(s, k)` and
+their traces `(s, S)`."""
 
 
 def spread(job: Callable[[T], R], items: Sequence[T], threads: int) -> list[R]:
@@ -90,7 +96,11 @@ def spread(job: Callable[[T], R], items: Sequence[T], threads: int) -> list[R]:
 
 def places(subject: Subject, effects: Iterable[str] | None = None) -> list[tuple[str, str]]:
     """Effects and where they can sit on a robot."""
-    return [(name, place) for name in (EFFECTS if effects is None else effects) for place in EFFECTS[name].locations(subject)]
+    return [
+        (name, place)
+        for name in (EFFECTS if effects is None else effects)
+        for place in EFFECTS[name].locations(subject)
+    ]
 
 
 def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarray) -> Cause | None:
@@ -119,23 +129,50 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         step = effect.steps(location, subject)
         tried = np.clip(np.where(values + step <= high, values + step, values - step), low, high)
         divide = (tried - values) / usual
-        settings = np.concatenate([np.broadcast_to(values, (k, k)) + np.diag(tried - values), values[None]])
+        settings = np.concatenate(
+            [np.broadcast_to(values, (k, k)) + np.diag(tried - values), values[None]]
+        )
         found = samples.columns(lambda s: effect.trace(s, location, settings), k + 1)
         if found is None:
             return None
         some = divide != 0
-        columns = np.where(some[:, None], (found[:k] - found[k]) / np.where(some, divide, 1.0)[:, None], 0.0)
+        columns = np.where(
+            some[:, None], (found[:k] - found[k]) / np.where(some, divide, 1.0)[:, None], 0.0
+        )
         constant = found[k] - ((values - nulls) / usual) @ columns
-    declared = max((float(kg[0]) for place, kg in subject.declared.payload.items() if _same_place(subject, place, location)), default=0.0)
+    declared = max(
+        (
+            float(kg[0])
+            for place, kg in subject.declared.payload.items()
+            if _same_place(subject, place, location)
+        ),
+        default=0.0,
+    )
     scaled = factor(samples, effect.identifier, location, usual, values)
     driver = DRIVERS.get(effect.identifier)
     unseen = driver is not None and all(getattr(s.signals, driver) is None for s in samples.sieves)
     shakes = effect.unsettles(values) and _unsettling(samples, effect, location)
     return Cause(
-        effect.identifier, location, values, nulls, usual, low, high, shape, columns, constant, effect.linear, declared, scaled, unseen, shakes,
-        effect.doubtful(values), subject.tree.beyond(location),
-        effect.odds(location, subject, values) + telling.odds(effect.identifier, location, [s.signals for s in samples.sieves]),
-    )  # fmt: skip
+        effect.identifier,
+        location,
+        values,
+        nulls,
+        usual,
+        low,
+        high,
+        shape,
+        columns,
+        constant,
+        effect.linear,
+        declared,
+        scaled,
+        unseen,
+        shakes,
+        effect.doubtful(values),
+        subject.tree.beyond(location),
+        effect.odds(location, subject, values)
+        + telling.odds(effect.identifier, location, [s.signals for s in samples.sieves]),
+    )
 
 
 def _unsettling(samples: Samples, effect: Effect, location: str) -> bool:
@@ -144,12 +181,16 @@ def _unsettling(samples: Samples, effect: Effect, location: str) -> bool:
     subject = samples.sieves[0].signals.subject
     if location in subject.motors and effect.kind == "motor":
         moves = subject.joint_from_motor[:, subject.motors.index(location)] != 0
-        return any(joint in shaken for joint, moved in zip(subject.joints, moves, strict=True) if moved)
+        return any(
+            joint in shaken for joint, moved in zip(subject.joints, moves, strict=True) if moved
+        )
     return location in shaken if location in subject.joints else bool(shaken)
 
 
 def at_rest(samples: Samples, effect: str, location: str) -> float:
-    """Log-likelihood that breakaway friction gains by what its joint holds at rest, which is in no sample."""
+    """Log-likelihood that breakaway friction gains by what its joint holds at rest, which is in no
+    sample.
+    """
     return SURE if effect == BREAKAWAY and location in samples.holds else 0.0
 
 
@@ -160,19 +201,27 @@ def _same_place(subject: Subject, one: str, other: str) -> bool:
 
 
 def reach(samples: Samples, columns: np.ndarray) -> float:
-    """Largest root mean square over the groups of columns `(k, S)` over the floor, summed over the columns."""
-    square = np.bincount(samples.group, samples.share * np.square(columns / samples.floor).sum(0), samples.groups)
+    """Largest root mean square over the groups of columns `(k, S)` over the floor, summed over the
+    columns.
+    """
+    square = np.bincount(
+        samples.group, samples.share * np.square(columns / samples.floor).sum(0), samples.groups
+    )
     number = np.bincount(samples.group, samples.share, samples.groups)
     return float(np.sqrt(np.max(square / np.maximum(number, 1e-9), initial=0.0)))
 
 
 def screen(
-    base: Base, nothing: Fit, wanted: Sequence[tuple[str, str]], threads: int = 1, beside: Sequence[Cause] = ()
+    base: Base,
+    nothing: Fit,
+    wanted: Sequence[tuple[str, str]],
+    threads: int = 1,
+    beside: Sequence[Cause] = (),
 ) -> list[Candidate | NotJudged]:
     """Fit each effect alone, or beside causes that are known.
 
-    Linear effects are fitted at once. Of the others each start's trace is fitted with a free size first; the best of them are
-    then descended from.
+    Linear effects are fitted at once. Of the others each start's trace is fitted with a free size
+    first; the best of them are then descended from.
 
     Args:
         base: residual and calibration errors.
@@ -182,11 +231,24 @@ def screen(
         beside: causes that are fitted along.
     """
     first = spread(lambda item: _tried(base, nothing, *item, beside), wanted, threads)
-    rough = sorted((i for i, one in enumerate(first) if isinstance(one, _Rough)), key=lambda i: (-first[i].gain, i))  # type: ignore[union-attr]
+    rough = sorted(
+        (i for i, one in enumerate(first) if isinstance(one, _Rough)),
+        key=lambda i: (-first[i].gain, i),  # type: ignore[union-attr]
+    )
     sure = max((one.gain for one in first if isinstance(one, Candidate)), default=0.0)
     top = max((first[i].gain for i in rough), default=0.0)  # type: ignore[union-attr]
-    chosen = [i for rank, i in enumerate(rough) if rank < MOST_DESCENTS and first[i].gain > PROMISING * max(sure, top)]  # type: ignore[union-attr]
-    descended = dict(zip(chosen, spread(lambda i: _best(base, first[i], nothing, beside), chosen, threads), strict=True))  # type: ignore[arg-type]
+    chosen = [
+        i
+        for rank, i in enumerate(rough)
+        if rank < MOST_DESCENTS and first[i].gain > PROMISING * max(sure, top)  # type: ignore[union-attr]
+    ]
+    descended = dict(
+        zip(
+            chosen,
+            spread(lambda i: _best(base, first[i], nothing, beside), chosen, threads),  # type: ignore[arg-type]
+            strict=True,
+        )
+    )
     found: list[Candidate | NotJudged] = []
     for i, one in enumerate(first):
         if isinstance(one, _Rough):
@@ -225,7 +287,11 @@ def _size(traced: Traces) -> int:
     """Memory that traces take [byte]."""
     if isinstance(traced, NotJudged):
         return 0
-    return sum(c.columns.nbytes + c.constant.nbytes for c in traced) if isinstance(traced, list) else sum(a.nbytes for a in traced)
+    return (
+        sum(c.columns.nbytes + c.constant.nbytes for c in traced)
+        if isinstance(traced, list)
+        else sum(a.nbytes for a in traced)
+    )
 
 
 def _trace(base: Base, effect: Effect, location: str) -> Traces:
@@ -234,14 +300,23 @@ def _trace(base: Base, effect: Effect, location: str) -> Traces:
         return NotJudged(effect.identifier, location, missing)
     unexcited = NotJudged(effect.identifier, location, "these logs do not excite it")
     if effect.linear:
-        causes = [linearise(base.samples, effect, location, values) for values in _variants(base, effect, location)]
-        return [c for c in causes if c is not None and reach(base.samples, c.columns) >= SHOWN] or unexcited
+        causes = [
+            linearise(base.samples, effect, location, values)
+            for values in _variants(base, effect, location)
+        ]
+        return [
+            c for c in causes if c is not None and reach(base.samples, c.columns) >= SHOWN
+        ] or unexcited
     starts = _starts(base, effect, location)
     columns = base.samples.columns(lambda s: effect.trace(s, location, starts), len(starts))
-    return unexcited if columns is None or reach(base.samples, columns) < SHOWN else (starts, columns)
+    return (
+        unexcited if columns is None or reach(base.samples, columns) < SHOWN else (starts, columns)
+    )
 
 
-def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[Cause]) -> Candidate | NotJudged | _Rough:
+def _tried(
+    base: Base, nothing: Fit, name: str, location: str, beside: Sequence[Cause]
+) -> Candidate | NotJudged | _Rough:
     found = traced(base, EFFECTS[name], location)
     if isinstance(found, NotJudged):
         return found
@@ -251,10 +326,24 @@ def _tried(base: Base, nothing: Fit, name: str, location: str, beside: Sequence[
     gains = []
     none, one = np.zeros(0), np.zeros(1)
     for column in columns:
-        whole = Cause(name, location, one, one, np.ones(1), np.zeros(1), np.full(1, 10.0), np.zeros(1, bool), column[None], none, True)
+        whole = Cause(
+            name,
+            location,
+            one,
+            one,
+            np.ones(1),
+            np.zeros(1),
+            np.full(1, 10.0),
+            np.zeros(1, bool),
+            column[None],
+            none,
+            True,
+        )
         gains.append(_candidate(base, whole, nothing, beside).gain if np.any(column) else -np.inf)
     order = np.argsort(-np.array(gains), kind="stable")
-    return _Rough(name, location, starts[order], gains[order[0]] + at_rest(base.samples, name, location))
+    return _Rough(
+        name, location, starts[order], gains[order[0]] + at_rest(base.samples, name, location)
+    )
 
 
 def _best(base: Base, rough: _Rough, nothing: Fit, beside: Sequence[Cause]) -> Candidate | None:
@@ -267,7 +356,9 @@ def _best(base: Base, rough: _Rough, nothing: Fit, beside: Sequence[Cause]) -> C
 
 
 def _unlike(effect: Effect, starts: np.ndarray) -> np.ndarray:
-    """The first starts of several choices, where there are any: a search does not get from one to another. Best first `(s, k)`."""
+    """The first starts of several choices, where there are any: a search does not get from one to
+    another. Best first `(s, k)`.
+    """
     choices = np.array([bool(p.choices) for p in effect.parameters])
     _, first = np.unique(starts[:, choices], axis=0, return_index=True)
     ahead = np.sort(first)[:KINDS].tolist() if choices.any() else []
@@ -301,12 +392,22 @@ def _starts(base: Base, effect: Effect, location: str) -> np.ndarray:
     return found[np.sort(first)][:MOST_STARTS]
 
 
-def _candidate(base: Base, cause: Cause, nothing: Fit, beside: Sequence[Cause], rounds: int = 1) -> Candidate:
+def _candidate(
+    base: Base, cause: Cause, nothing: Fit, beside: Sequence[Cause], rounds: int = 1
+) -> Candidate:
     fit = Design(base, [*beside, cause]).fit(scale=nothing.scale, rounds=rounds)
     return Candidate(cause, fit, fit.evidence - nothing.evidence)
 
 
-def descend(base: Base, effect: Effect, location: str, start: np.ndarray, nothing: Fit, steps: int, beside: Sequence[Cause] = ()) -> Candidate | None:
+def descend(
+    base: Base,
+    effect: Effect,
+    location: str,
+    start: np.ndarray,
+    nothing: Fit,
+    steps: int,
+    beside: Sequence[Cause] = (),
+) -> Candidate | None:
     """Gauss-Newton steps of a nonlinear effect, halved until they better the fit.
 
     Args:
@@ -322,7 +423,14 @@ def descend(base: Base, effect: Effect, location: str, start: np.ndarray, nothin
     rests = at_rest(base.samples, effect.identifier, location)
     if cause is None:
         return None
-    if not rests and reach(base.samples, np.concatenate([cause.columns, (cause.constant + cause.phi @ cause.columns)[None]])) < SHOWN:
+    if (
+        not rests
+        and reach(
+            base.samples,
+            np.concatenate([cause.columns, (cause.constant + cause.phi @ cause.columns)[None]]),
+        )
+        < SHOWN
+    ):
         return None
     before = sum(len(c.nulls) for c in beside)
     design = Design(base, [*beside, cause])
@@ -355,7 +463,9 @@ def descend(base: Base, effect: Effect, location: str, start: np.ndarray, nothin
 
 
 def _cost(design: Design, weight: np.ndarray, phi: np.ndarray, before: int) -> float:
-    """Squares left over with a cause's values where it is linearised, everything else fitted; prior included."""
+    """Squares left over with a cause's values where it is linearised, everything else fitted; prior
+    included.
+    """
     held = np.full(design.count, np.nan)
     held[before:] = phi
     found, _, errors, _ = design.solve(weight, held=held)

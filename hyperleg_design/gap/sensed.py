@@ -1,8 +1,11 @@
-"""The velocity that controllers see: that of the motion, but the logged one at moments where no position follows it.
+"""The velocity that controllers see: that of the motion, but the logged one at moments where no
+position follows it.
 
-A joint that shakes faster than its sensors sample, at a multiple of their rate, looks as if it moved steadily. It does not, and the
-smoothed motion is right; but whoever damps by the sensor pushes against what the sensor tells. Elsewhere the two differ by noise, which
-need not be that of the controller's own samples: there the motion is what it sees, and no gain is taken for less than it is.
+A joint that shakes faster than its sensors sample, at a multiple of their rate, looks as if it
+moved steadily. It does not, and the smoothed motion is right; but whoever damps by the sensor
+pushes against what the sensor tells. Elsewhere the two differ by noise, which need not be that of
+the controller's own samples: there the motion is what it sees, and no gain is taken for less than
+it is.
 """
 
 from __future__ import annotations
@@ -35,7 +38,9 @@ def sensed_velocity(velocity: np.ndarray, motion: Smooth, step: float) -> np.nda
         step: of the ticks [s].
     """
     found = motion.first.copy()
-    for joint, (logged, speed, second) in enumerate(zip(velocity.T, motion.first.T, motion.second.T, strict=True)):
+    for joint, (logged, speed, second) in enumerate(
+        zip(velocity.T, motion.first.T, motion.second.T, strict=True)
+    ):
         known = np.isfinite(logged) & np.isfinite(speed) & np.isfinite(second)
         if not known.any():
             continue

@@ -1,7 +1,9 @@
-"""Shapes of residuals that no effect of the catalogue has: how an unknown gap is told, and what the report says of it.
+"""Shapes of residuals that no effect of the catalogue has: how an unknown gap is told, and what the
+report says of it.
 
-Each shape is a block of smooth functions of what one row may depend on. They are fitted as ridge regressions, beside the
-calibration errors and the causes found. One that closes more on held-out data than the catalogue does speaks against the catalogue.
+Each shape is a block of smooth functions of what one row may depend on. They are fitted as ridge
+regressions, beside the calibration errors and the causes found. One that closes more on held-out
+data than the catalogue does speaks against the catalogue.
 """
 
 from __future__ import annotations
@@ -97,7 +99,9 @@ def shapes(samples: Samples, rows: np.ndarray) -> list[Shape]:
 
 
 def columns(base: Base, nothing: Fit, shape: Shape) -> np.ndarray | None:
-    """Weighted columns of a shape `(k, S)`, each of the size of what is left in its row; None where it has none."""
+    """Weighted columns of a shape `(k, S)`, each of the size of what is left in its row; None where
+    it has none.
+    """
     samples = base.samples
     if shape.row < 0:
         traces = samples.columns(_gravity, 3)
@@ -123,11 +127,17 @@ def columns(base: Base, nothing: Fit, shape: Shape) -> np.ndarray | None:
         return None
     weighted = traces * samples.weight
     level = float(np.sqrt(np.mean(nothing.rss)))
-    norm = np.sqrt((weighted**2).sum(1) / max(float(samples.share[np.any(weighted != 0, 0)].sum()), 1e-9))
+    norm = np.sqrt(
+        (weighted**2).sum(1) / max(float(samples.share[np.any(weighted != 0, 0)].sum()), 1e-9)
+    )
     kept = norm > 1e-9
     if not kept.any():
         return None
-    size = max(float(np.sqrt(np.max(nothing.scale[samples.group_row == shape.row], initial=0.0))), 1.0) if shape.row >= 0 else max(level, 1.0)
+    size = (
+        max(float(np.sqrt(np.max(nothing.scale[samples.group_row == shape.row], initial=0.0))), 1.0)
+        if shape.row >= 0
+        else max(level, 1.0)
+    )
     return np.asarray(weighted[kept] / norm[kept, None] * size)
 
 
@@ -142,9 +152,17 @@ class _Basis:
         subject = logs[0].subject
         of_motor = self.row.balance in OF_MOTORS
         self.motor = (
-            self.row.column if of_motor else int(np.argmax(np.abs(subject.joint_from_motor[self.row.column]))) if self.row.balance == "motion" else 0
+            self.row.column
+            if of_motor
+            else int(np.argmax(np.abs(subject.joint_from_motor[self.row.column])))
+            if self.row.balance == "motion"
+            else 0
         )
-        self.joint = self.row.column if self.row.balance == "motion" else int(np.argmax(np.abs(subject.joint_from_motor[:, self.motor])))
+        self.joint = (
+            self.row.column
+            if self.row.balance == "motion"
+            else int(np.argmax(np.abs(subject.joint_from_motor[:, self.motor])))
+        )
         position = np.concatenate([s.position[:, self.joint] for s in logs])
         self.low, self.high = np.percentile(position, [1, 99])
         speed = np.abs(np.concatenate([s.velocity[:, self.joint] for s in logs]))
@@ -167,27 +185,43 @@ class _Basis:
         if name == "friction_over_position":
             return self._pieces(q) * sliding(signals)[:, self.joint]
         if name == "friction_over_time":
-            return (2 * time / self.longest - 1) ** np.arange(4)[:, None] * sliding(signals)[:, self.joint]
+            return (2 * time / self.longest - 1) ** np.arange(4)[:, None] * sliding(signals)[
+                :, self.joint
+            ]
         if name == "time":
             x = 2 * time / self.longest - 1
             return np.stack([x, x**2, x**3, (x - 0.3) * (x > 0.3), (x + 0.3) * (x < -0.3)])
         if name == "memory":
             return np.stack([stop(q, width) for width in STOPS])
         if name == OF_LOAD:
-            # of the torque that the motion needs: of the measured one, its own errors would come along
+            # of the torque that the motion needs: of the measured one, its own errors would come
+            # along
             needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)[:, self.motor]
             angle = signals.position @ signals.subject.joint_from_motor[:, self.motor]
             pieces = self._pieces(q)
-            waves = np.concatenate([[np.cos(k * angle), np.sin(k * angle)] for k in RIPPLES] + [pieces[1:] - pieces[:-1]])
+            waves = np.concatenate(
+                [[np.cos(k * angle), np.sin(k * angle)] for k in RIPPLES]
+                + [pieces[1:] - pieces[:-1]]
+            )
             return np.asarray(np.nan_to_num(needed) * waves)
         if name == "other_joints":
             others = [j for j in range(signals.position.shape[1]) if j != self.joint]
-            return np.concatenate([signals.position[:, others].T - signals.subject.default[others, None], signals.velocity[:, others].T])
+            return np.concatenate(
+                [
+                    signals.position[:, others].T - signals.subject.default[others, None],
+                    signals.velocity[:, others].T,
+                ]
+            )
         if name == "rhythm":
             if not self.frequency:
                 return np.zeros((0, len(time)))
             # the phase starts anew in every log
-            return np.concatenate([[np.cos(w * time), np.sin(w * time)] for w in 2 * np.pi * self.frequency * np.arange(1, RHYTHMS + 1)])
+            return np.concatenate(
+                [
+                    [np.cos(w * time), np.sin(w * time)]
+                    for w in 2 * np.pi * self.frequency * np.arange(1, RHYTHMS + 1)
+                ]
+            )
         if name == "ratio_over_position":
             return self._pieces(q) * motor_velocity(signals, self.motor)
         if name == "encoder_over_time":
@@ -199,11 +233,18 @@ class _Basis:
         return np.zeros((0, len(time)))
 
     def of_encoder(self, signals: Signals) -> dict[str, np.ndarray]:
-        """Errors of a position that go with it as waves, or with time, in all balances `(k, t, columns)` each."""
+        """Errors of a position that go with it as waves, or with time, in all balances `(k, t,
+        columns)` each.
+        """
         from hyperleg_design.gap.effects import EFFECTS
 
-        found = EFFECTS["encoder_offset"].trace(signals, signals.subject.joints[self.joint], np.array([[SMALL]]))
-        return {balance: self.of(signals)[..., None] * (one[0] / SMALL) for balance, one in found.items()}
+        found = EFFECTS["encoder_offset"].trace(
+            signals, signals.subject.joints[self.joint], np.array([[SMALL]])
+        )
+        return {
+            balance: self.of(signals)[..., None] * (one[0] / SMALL)
+            for balance, one in found.items()
+        }
 
     def _pieces(self, position: np.ndarray) -> np.ndarray:
         """Overlapping bumps over the range of a joint `(PIECES, t)`."""
@@ -212,7 +253,9 @@ class _Basis:
 
 
 def _rhythm(base: Base, row: int) -> float:
-    """Strongest frequency in a row's residual beyond that of its motion [Hz], 0 where none stands out."""
+    """Strongest frequency in a row's residual beyond that of its motion [Hz], 0 where none stands
+    out.
+    """
     samples = base.samples
     one = samples.rows[row]
     total, frequency = None, None
@@ -220,8 +263,13 @@ def _rhythm(base: Base, row: int) -> float:
     for sieve in samples.sieves:
         if one.balance not in sieve.signals.residual:
             continue
-        values = np.nan_to_num(np.where(sieve.signals.valid, sieve.signals.residual[one.balance][:, one.column], 0.0))
-        power = np.abs(np.fft.rfft(np.hanning(len(values)) * (values - values.mean()), 4 * longest)) ** 2
+        values = np.nan_to_num(
+            np.where(sieve.signals.valid, sieve.signals.residual[one.balance][:, one.column], 0.0)
+        )
+        power = (
+            np.abs(np.fft.rfft(np.hanning(len(values)) * (values - values.mean()), 4 * longest))
+            ** 2
+        )
         total = power if total is None else total + power
         frequency = np.fft.rfftfreq(4 * longest, sieve.signals.step)
     if total is None or frequency is None:
@@ -231,7 +279,9 @@ def _rhythm(base: Base, row: int) -> float:
 
 
 def _gravity(signals: Signals) -> dict[str, np.ndarray]:
-    """Torque that gravity needs more when it points 0.01 further along each axis of the base `(3, t, n)`."""
+    """Torque that gravity needs more when it points 0.01 further along each axis of the base `(3,
+    t, n)`.
+    """
     from hyperleg_design.gap import rigid
 
     subject = signals.subject
@@ -243,6 +293,10 @@ def _gravity(signals: Signals) -> dict[str, np.ndarray]:
 
     here = rigid.inverse_dynamics(subject, signals.position, still, still, rotors=False)
     for axis in range(3):
-        tilted = dataclasses.replace(subject, gravity=np.asarray(subject.gravity, float) + 0.1 * np.eye(3)[axis])
-        found[axis] = here - rigid.inverse_dynamics(tilted, signals.position, still, still, rotors=False)
+        tilted = dataclasses.replace(
+            subject, gravity=np.asarray(subject.gravity, float) + 0.1 * np.eye(3)[axis]
+        )
+        found[axis] = here - rigid.inverse_dynamics(
+            tilted, signals.position, still, still, rotors=False
+        )
     return {"motion": found}

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 JUDGED_SHAPES = 5
 """Shapes that are judged on held-out data."""
 TURNING = ("coulomb_friction", "stribeck_friction", "load_dependent_friction")
-"""Effects whose trace turns over with the motion; how, nobody knows better than of the model's own friction."""
+"""Effects whose trace turns over with the motion; how, nobody knows better than of the model's own
+friction."""
 GENTLE = 0.05
 """Least speed over which it may do so [rad/s]."""
 PASSES = 2.0
@@ -48,10 +49,17 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
     """Shapes beside the chosen causes, in the rows with most excess left or before."""
     base = judge.base
     before = judge.rows(chosen.held.bare)
-    shaken = unsettled(base.samples)  # friction that is averaged over a swing of doubtful size has shapes of its own
+    shaken = unsettled(
+        base.samples
+    )  # friction that is averaged over a swing of doubtful size has shapes of its own
     order = np.argsort(-before, kind="stable")
-    order = order[[base.samples.rows[row % len(base.samples.rows)].name not in shaken for row in order]]
-    looked = np.array(list(dict.fromkeys((order[rows[order]] % len(base.samples.rows)).tolist()))[:SHAPED_ROWS], int)
+    order = order[
+        [base.samples.rows[row % len(base.samples.rows)].name not in shaken for row in order]
+    ]
+    looked = np.array(
+        list(dict.fromkeys((order[rows[order]] % len(base.samples.rows)).tolist()))[:SHAPED_ROWS],
+        int,
+    )
 
     companions = _companions(judge, chosen)
     plain = Design(base, chosen.causes, ridge=companions) if companions is not None else None
@@ -67,7 +75,11 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
         columns = shape.columns(base, judge.nothing.fit, one)
         if columns is None:
             return None
-        design = Design(base, chosen.causes, ridge=columns if companions is None else np.concatenate([columns, companions]))
+        design = Design(
+            base,
+            chosen.causes,
+            ridge=columns if companions is None else np.concatenate([columns, companions]),
+        )
         return one, design, design.fit(scale=chosen.fit.scale, rounds=1).evidence
 
     def judged(found: tuple[shape.Shape, Design, float]) -> Told:
@@ -75,22 +87,34 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
         fit = design.fit(scale=chosen.fit.scale, rounds=ROUNDS)
         held = predict(design, fit=fit)
         closed = _beyond(judge, known, held, rows)
-        return Told(one, judge.gain(fit, held) - start, closed, closed * left <= PRECISE**2 * explained)
+        return Told(
+            one, judge.gain(fit, held) - start, closed, closed * left <= PRECISE**2 * explained
+        )
 
-    first = [t for t in screen.spread(rough, shape.shapes(base.samples, looked), judge.threads) if t is not None]
+    first = [
+        t
+        for t in screen.spread(rough, shape.shapes(base.samples, looked), judge.threads)
+        if t is not None
+    ]
     first.sort(key=lambda t: (-t[2], t[0].name, t[0].row))
     found = screen.spread(judged, first[:JUDGED_SHAPES], judge.threads)
     return tuple(sorted(found, key=lambda t: (t.faint, -t.gain, t.shape.name, t.shape.row)))
 
 
 def of_base(judge: Judge) -> tuple[Told, ...]:
-    """Rhythms in the balance of a floating base, in which no joint's friction and no drive has a part: small pushes show there."""
+    """Rhythms in the balance of a floating base, in which no joint's friction and no drive has a
+    part: small pushes show there.
+    """
     base = judge.base
     found = []
     for row, one in enumerate(base.samples.rows):
         if one.balance != "base":
             continue
-        rhythm = shape.Shape("rhythm", row, f"{one.name} of the base: a push that repeats in time, whatever the motion")
+        rhythm = shape.Shape(
+            "rhythm",
+            row,
+            f"{one.name} of the base: a push that repeats in time, whatever the motion",
+        )
         columns = shape.columns(base, judge.nothing.fit, rhythm)
         if columns is None:
             continue
@@ -98,12 +122,16 @@ def of_base(judge: Judge) -> tuple[Told, ...]:
         fit = design.fit(scale=judge.nothing.fit.scale, rounds=ROUNDS)
         held = predict(design, fit=fit)
         own = np.arange(2 * len(base.samples.rows)) == row
-        found.append(Told(rhythm, judge.gain(fit, held), _beyond(judge, judge.nothing.held, held, own)))
+        found.append(
+            Told(rhythm, judge.gain(fit, held), _beyond(judge, judge.nothing.held, held, own))
+        )
     return tuple(sorted(found, key=lambda t: (-t.gain, t.shape.row)))
 
 
 def _companions(judge: Judge, chosen: Model) -> np.ndarray | None:
-    """Ways on which the friction of causes may turn over, as that of the model, weighted `(k, S)`."""
+    """Ways on which the friction of causes may turn over, as that of the model, weighted `(k,
+    S)`.
+    """
     samples = judge.base.samples
     subject = samples.sieves[0].signals.subject
     found = []
@@ -116,8 +144,15 @@ def _companions(judge: Judge, chosen: Model) -> np.ndarray | None:
         def trace(signals: Signals, joint: int = joint) -> dict[str, np.ndarray]:
             rows = np.zeros((len(nuisance.WAYS) + 1, *signals.position.shape))
             at_once = sliding(signals)[:, joint]
-            rows[:-1, :, joint] = [nuisance.stop(signals.position[:, joint], way) - at_once for way in nuisance.WAYS]
-            rows[-1, :, joint] = np.tanh(signals.velocity[:, joint] / max(float(subject.friction_speed[joint]), GENTLE)) - at_once
+            rows[:-1, :, joint] = [
+                nuisance.stop(signals.position[:, joint], way) - at_once for way in nuisance.WAYS
+            ]
+            rows[-1, :, joint] = (
+                np.tanh(
+                    signals.velocity[:, joint] / max(float(subject.friction_speed[joint]), GENTLE)
+                )
+                - at_once
+            )
             return {"motion": rows}
 
         columns = samples.columns(trace, len(nuisance.WAYS) + 1)
@@ -136,16 +171,20 @@ def _only(signals: Signals, joint: int) -> np.ndarray:
 
 
 def _beyond(judge: Judge, known: Held, held: Held, rows: np.ndarray) -> float:
-    """Share of what the chosen causes leave, in squares over the rows with excess, that something further closes."""
+    """Share of what the chosen causes leave, in squares over the rows with excess, that something
+    further closes.
+    """
     after, further = float(judge.gap(known.square, rows)), float(judge.gap(held.square, rows))
     return 1 - (further / max(after, 1e-12)) ** 2
 
 
 def instead(judge: Judge, chosen: Model, rows: np.ndarray, single: float) -> tuple[Told, ...]:
-    """Shapes that predict more than the chosen causes do, without them: then the causes only stood for the shape.
+    """Shapes that predict more than the chosen causes do, without them: then the causes only stood
+    for the shape.
 
-    Several causes must each be worth it beside a shape, as they must beside each other; a shape must be worth more than one cause.
-    Causes that scale believed torques pay for it (`endogenous`), a share of the needed one does not: between these it does not count.
+    Several causes must each be worth it beside a shape, as they must beside each other; a shape
+    must be worth more than one cause. Causes that scale believed torques pay for it (`endogenous`),
+    a share of the needed one does not: between these it does not count.
 
     Args:
         judge: of the models.
@@ -156,7 +195,9 @@ def instead(judge: Judge, chosen: Model, rows: np.ndarray, single: float) -> tup
     if not chosen.causes:
         return ()
     rules = judge.thresholds
-    needed = max(chosen.gain - rules.second_evident * (len(chosen.causes) - 1), single + rules.beyond_evident)
+    needed = max(
+        chosen.gain - rules.second_evident * (len(chosen.causes) - 1), single + rules.beyond_evident
+    )
     paid = max(0.0, -Design(judge.base, chosen.causes).scaled(chosen.fit.phi))
     return tuple(
         t._replace(gain=max(t.gain - chosen.gain, PASSES * rules.beyond_evident))
@@ -169,4 +210,6 @@ def tells(rules: Thresholds, chosen: Model, shaped: Sequence[Told]) -> bool:
     """Whether the best shape speaks against causes, or against none."""
     if not shaped or shaped[0].faint:
         return False
-    return shaped[0].gain > rules.beyond_evident and shaped[0].closed > rules.beyond * max(len(chosen.causes), 1)
+    return shaped[0].gain > rules.beyond_evident and shaped[0].closed > rules.beyond * max(
+        len(chosen.causes), 1
+    )

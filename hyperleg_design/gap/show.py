@@ -1,9 +1,11 @@
-"""One effect alone: the trace it leaves in a log of a standard motion, and how the closed loop moves with and without it.
+"""One effect alone: the trace it leaves in a log of a standard motion, and how the closed loop
+moves with and without it.
 
-The standard motion is a chirp on one joint, its base fixed; or, for effects of the ground and of the inertial sensor, a biped that
-bends its knees and presses its feet apart. It is simulated with the effect, conditioned as any log, and the trace set beside the
-residual. Temperature and battery voltage, which no simulation here has, are made up as stated below, so that effects which need
-them have something to show.
+The standard motion is a chirp on one joint, its base fixed; or, for effects of the ground and of
+the inertial sensor, a biped that bends its knees and presses its feet apart. It is simulated with
+the effect, conditioned as any log, and the trace set beside the residual. Temperature and battery
+voltage, which no simulation here has, are made up as stated below, so that effects which need them
+have something to show.
 """
 
 from __future__ import annotations
@@ -45,7 +47,8 @@ KNEE_BEND, SPREAD = 0.15, 0.55
 BALANCE = (2.0, 0.3)
 """Ankle angle over tilt and over its rate [-, s]."""
 LATERAL = (1.0, 0.2)
-"""Hip and ankle roll, mirrored from side to side, over sideways place and speed of the base [rad/m, rad s/m]."""
+"""Hip and ankle roll, mirrored from side to side, over sideways place and speed of the base [rad/m,
+rad s/m]."""
 COLD, HOT = 25.0, 90.0
 """Made-up temperature of the motors: it rises evenly [degC]."""
 FULL, EMPTY = 1.0, 0.8
@@ -87,7 +90,8 @@ class Shown:
     """`(t,)` [rad]."""
     before: np.ndarray
     after: np.ndarray
-    """Position that the simulation reaches without and with the effect, as the sensor tells `(t,)` [rad]."""
+    """Position that the simulation reaches without and with the effect, as the sensor tells `(t,)`
+    [rad]."""
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -96,7 +100,9 @@ class Shown:
 
 
 def effects_table() -> list[dict[str, Any]]:
-    """The catalogue, one entry an effect: identifier, kind of place, summary and parameters with magnitudes and sources."""
+    """The catalogue, one entry an effect: identifier, kind of place, summary and parameters with
+    magnitudes and sources.
+    """
     return [
         {
             "effect": one.identifier,
@@ -108,12 +114,19 @@ def effects_table() -> list[dict[str, Any]]:
     ]
 
 
-def show(identifier: str, robot: str | None = None, *, location: str | None = None, settings: Sequence[str] = ()) -> Shown:
+def show(
+    identifier: str,
+    robot: str | None = None,
+    *,
+    location: str | None = None,
+    settings: Sequence[str] = (),
+) -> Shown:
     """Show an effect alone.
 
     Args:
         identifier: of the effect.
-        robot: a design, MJCF or URDF; by default one joint on a servo, or the biped for effects that need the ground.
+        robot: a design, MJCF or URDF; by default one joint on a servo, or the biped for effects
+            that need the ground.
         location: where it sits; the first place that it can by default.
         settings: `PARAMETER=VALUE` each; the usual magnitude by default.
 
@@ -126,7 +139,12 @@ def show(identifier: str, robot: str | None = None, *, location: str | None = No
     places = one.locations(subject)
     if location is None:
         if not places:
-            raise InputError(identifier, "robot", subject.name, f"has no {one.kind} for it; choose another --robot")
+            raise InputError(
+                identifier,
+                "robot",
+                subject.name,
+                f"has no {one.kind} for it; choose another --robot",
+            )
         location = places[-1] if one.kind == "link" and not standing else places[0]
     location = one.place(location, subject)
     values = _values(one, location, subject, settings)
@@ -136,7 +154,9 @@ def show(identifier: str, robot: str | None = None, *, location: str | None = No
     before, _ = _simulated(subject, target, time, ())
     after, log = _simulated(subject, target, time, (one.alteration(location, values, subject),))
     signals = condition(_told(one, log, values), subject)
-    balance, row, unit, trace, residual = _largest(one.trace(signals, location, values[None]), signals)
+    balance, row, unit, trace, residual = _largest(
+        one.trace(signals, location, values[None]), signals
+    )
     return Shown(
         effect=one,
         robot=subject.name,
@@ -159,13 +179,20 @@ def show(identifier: str, robot: str | None = None, *, location: str | None = No
 
 
 def _subject(robot: str | None, standing: bool) -> Subject:
-    name = robot or ("hyperleg" if standing else str(resources.content_folder("sim") / "servo_rig.xml"))
+    name = robot or (
+        "hyperleg" if standing else str(resources.content_folder("sim") / "servo_rig.xml")
+    )
     subject = load_subject(name)
     if subject.floating == standing:
         return subject
     blank = np.zeros(2)
     joints = {f"position/{name}": blank for name in subject.joints}
-    base = Log("standard motion", np.array([0.0, 1.0]), joints, Metadata(base="floating" if standing else "fixed"))
+    base = Log(
+        "standard motion",
+        np.array([0.0, 1.0]),
+        joints,
+        Metadata(base="floating" if standing else "fixed"),
+    )
     return load_subject(name, [base])
 
 
@@ -175,14 +202,21 @@ def _values(one: Effect, location: str, subject: Subject, settings: Sequence[str
     for setting in settings:
         name, sign, text = setting.partition("=")
         if not sign or name not in known:
-            raise InputError("set", name, None, f"expects PARAMETER=VALUE, with one of {', '.join(known)}")
+            raise InputError(
+                "set", name, None, f"expects PARAMETER=VALUE, with one of {', '.join(known)}"
+            )
         try:
             values[known[name]] = float(text)
         except ValueError:
             raise InputError("set", name, text, "expects a number") from None
         parameter = one.parameters[known[name]]
         if not parameter.low <= values[known[name]] <= parameter.high:
-            raise InputError("set", name, text, f"expects {parameter.low:g} .. {parameter.high:g} {parameter.unit}".rstrip())
+            raise InputError(
+                "set",
+                name,
+                text,
+                f"expects {parameter.low:g} .. {parameter.high:g} {parameter.unit}".rstrip(),
+            )
     return values
 
 
@@ -215,7 +249,9 @@ def _chirp(subject: Subject, joint: int, time: np.ndarray) -> np.ndarray:
 
 
 def _stand_targets(subject: Subject, time: np.ndarray) -> np.ndarray:
-    """Targets `(t, n)` of a biped that bends its knees once in two seconds and pushes its feet apart and together."""
+    """Targets `(t, n)` of a biped that bends its knees once in two seconds and pushes its feet
+    apart and together.
+    """
     target = np.tile(subject.default, (len(time), 1))
     bend = KNEE_BEND * (1 - np.cos(np.pi * time)) / 2
     apart = SPREAD * np.sin(1.3 * np.pi * time)
@@ -229,7 +265,9 @@ def _stand_targets(subject: Subject, time: np.ndarray) -> np.ndarray:
     return target
 
 
-def _simulated(subject: Subject, target: np.ndarray, time: np.ndarray, alterations: Sequence[Alteration]) -> tuple[np.ndarray, Log]:
+def _simulated(
+    subject: Subject, target: np.ndarray, time: np.ndarray, alterations: Sequence[Alteration]
+) -> tuple[np.ndarray, Log]:
     """Joint positions as told `(t, n)`, and the log of the run."""
     import mujoco
 
@@ -237,13 +275,20 @@ def _simulated(subject: Subject, target: np.ndarray, time: np.ndarray, alteratio
     pose = np.array(plant.model.qpos0[None, :7]) if subject.floating else None
     if pose is not None:
         pose[0, 2] += _lift(plant.model, subject, target[0])
-    plant.start(target[:1], np.zeros((1, len(subject.joints))), pose, np.zeros((1, 6)) if subject.floating else None)
+    plant.start(
+        target[:1],
+        np.zeros((1, len(subject.joints))),
+        pose,
+        np.zeros((1, 6)) if subject.floating else None,
+    )
     model = plant.batch.get_model(0)
     data = mujoco.MjData(model)
     warmth, battery = _conditions(subject, time)
     ticks, target = len(time), np.array(target)
     onward = np.diff(target, axis=0, append=target[-1:])
-    rows: dict[str, list[np.ndarray]] = {k: [] for k in ("position", "velocity", "torque", "pose", "base_velocity", "force")}
+    rows: dict[str, list[np.ndarray]] = {
+        k: [] for k in ("position", "velocity", "torque", "pose", "base_velocity", "force")
+    }
     for tick in range(ticks):
         position, velocity = plant.measured()
         rows["position"].append(position[0].copy())
@@ -267,7 +312,9 @@ def _simulated(subject: Subject, target: np.ndarray, time: np.ndarray, alteratio
 
 
 def _balance(subject: Subject, pose: np.ndarray, moving: np.ndarray) -> np.ndarray:
-    """Added to the targets so that the biped stays on its feet `(n,)` [rad]; pose `(7,)` and velocity `(6,)` as MuJoCo has them."""
+    """Added to the targets so that the biped stays on its feet `(n,)` [rad]; pose `(7,)` and
+    velocity `(6,)` as MuJoCo has them.
+    """
     w, x, y, z = pose[3:]
     sideways = LATERAL[0] * pose[1] + LATERAL[1] * moving[1]
     pitch = BALANCE[0] * 2 * (w * y - z * x) + BALANCE[1] * moving[4]
@@ -298,7 +345,9 @@ def _lift(model: Any, subject: Subject, position: np.ndarray) -> float:
 
 
 def _pad_forces(plant: Plant, model: Any, data: Any, subject: Subject) -> np.ndarray:
-    """Forces of the floor on each pad, world frame `(3 P,)` [N]; a contact counts for the nearest pad of its link."""
+    """Forces of the floor on each pad, world frame `(3 P,)` [N]; a contact counts for the nearest
+    pad of its link.
+    """
     import mujoco
 
     plant.batch.get_model(0, model)  # with the friction that a step writes into it
@@ -308,7 +357,9 @@ def _pad_forces(plant: Plant, model: Any, data: Any, subject: Subject) -> np.nda
     wrench = np.zeros(6)
     bodies = np.array([model.body(subject.tree.links[p.link]).id for p in subject.pads])
     places = np.array([p.position for p in subject.pads])
-    points = data.xpos[bodies] + np.einsum("pij,pj->pi", data.xmat[bodies].reshape(-1, 3, 3), places)
+    points = data.xpos[bodies] + np.einsum(
+        "pij,pj->pi", data.xmat[bodies].reshape(-1, 3, 3), places
+    )
     for index in range(data.ncon):
         contact = data.contact[index]
         for geom, sign in ((int(contact.geom1), -1.0), (int(contact.geom2), 1.0)):
@@ -320,10 +371,15 @@ def _pad_forces(plant: Plant, model: Any, data: Any, subject: Subject) -> np.nda
     return total.ravel()
 
 
-def _log(subject: Subject, target: np.ndarray, time: np.ndarray, found: dict[str, np.ndarray]) -> Log:
+def _log(
+    subject: Subject, target: np.ndarray, time: np.ndarray, found: dict[str, np.ndarray]
+) -> Log:
     columns: dict[str, np.ndarray] = {}
     for place, joint in enumerate(subject.joints):
-        columns[f"position/{joint}"], columns[f"velocity/{joint}"] = found["position"][:, place], found["velocity"][:, place]
+        columns[f"position/{joint}"], columns[f"velocity/{joint}"] = (
+            found["position"][:, place],
+            found["velocity"][:, place],
+        )
         columns[f"position_target/{joint}"] = target[:, place]
     warmth, columns["battery_voltage"] = _conditions(subject, time)
     for place, motor in enumerate(subject.motors):
@@ -331,8 +387,14 @@ def _log(subject: Subject, target: np.ndarray, time: np.ndarray, found: dict[str
         columns[f"motor_temperature/{motor}"] = warmth[:, place]
     if subject.floating:
         columns |= _base_columns(subject, time, found)
-    gains = {j: (float(k), float(d)) for j, (k, d) in zip(subject.joints, subject.gains, strict=True) if np.isfinite(k + d)}
-    metadata = Metadata(robot=subject.path, base=subject.base, gains=gains, notes="standard motion, simulated")
+    gains = {
+        j: (float(k), float(d))
+        for j, (k, d) in zip(subject.joints, subject.gains, strict=True)
+        if np.isfinite(k + d)
+    }
+    metadata = Metadata(
+        robot=subject.path, base=subject.base, gains=gains, notes="standard motion, simulated"
+    )
     return Log("standard motion", time, columns, metadata)
 
 
@@ -342,10 +404,14 @@ def _conditions(subject: Subject, time: np.ndarray) -> tuple[np.ndarray, np.ndar
 
     nominal, progress = machine_of(subject).voltage, time / time[-1]
     warmth = np.tile((COLD + (HOT - COLD) * progress)[:, None], (1, len(subject.motors)))
-    return warmth, (nominal if np.isfinite(nominal) else NOMINAL_VOLTAGE) * (FULL + (EMPTY - FULL) * progress)
+    return warmth, (nominal if np.isfinite(nominal) else NOMINAL_VOLTAGE) * (
+        FULL + (EMPTY - FULL) * progress
+    )
 
 
-def _base_columns(subject: Subject, time: np.ndarray, found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _base_columns(
+    subject: Subject, time: np.ndarray, found: dict[str, np.ndarray]
+) -> dict[str, np.ndarray]:
     from hyperleg_design.gap.mechanism import quaternion_rotation
 
     pose, moving = found["pose"], found["base_velocity"]
@@ -359,9 +425,16 @@ def _base_columns(subject: Subject, time: np.ndarray, found: dict[str, np.ndarra
         "gyro": (moving[:, 3:] @ subject.imu_rotation, "xyz"),
         "accelerometer": (np.einsum("tij,ti->tj", into, acceleration), "xyz"),
     }
-    columns = {f"{kind}/{axis}": values[:, i] for kind, (values, axes) in named.items() for i, axis in enumerate(axes)}
+    columns = {
+        f"{kind}/{axis}": values[:, i]
+        for kind, (values, axes) in named.items()
+        for i, axis in enumerate(axes)
+    }
     for index, pad in enumerate(subject.pads):
-        columns |= {f"contact_force/{pad.name}_{axis}": found["force"][:, 3 * index + i] for i, axis in enumerate("xyz")}
+        columns |= {
+            f"contact_force/{pad.name}_{axis}": found["force"][:, 3 * index + i]
+            for i, axis in enumerate("xyz")
+        }
     return columns
 
 
@@ -369,15 +442,30 @@ def _told(one: Effect, log: Log, values: np.ndarray) -> Log:
     """The log as the robot's own inertial sensor would have told it."""
     if one.kind != "sensor":
         return log
-    bias = {f"{kind}/{axis}": values[3 * k + i] for k, kind in enumerate(("gyro", "accelerometer")) for i, axis in enumerate("xyz")}
-    return dataclasses.replace(log, signals={name: column + bias.get(name, 0.0) for name, column in log.signals.items()})
+    bias = {
+        f"{kind}/{axis}": values[3 * k + i]
+        for k, kind in enumerate(("gyro", "accelerometer"))
+        for i, axis in enumerate("xyz")
+    }
+    return dataclasses.replace(
+        log, signals={name: column + bias.get(name, 0.0) for name, column in log.signals.items()}
+    )
 
 
-def _largest(traces: dict[str, np.ndarray], signals: Signals) -> tuple[str, str, str, np.ndarray, np.ndarray]:
-    """The first of the balances in which there is a trace, its row with the largest, its unit, that trace, and the residual."""
+def _largest(
+    traces: dict[str, np.ndarray], signals: Signals
+) -> tuple[str, str, str, np.ndarray, np.ndarray]:
+    """The first of the balances in which there is a trace, its row with the largest, its unit, that
+    trace, and the residual.
+    """
     subject = signals.subject
     wrench = ("force x", "force y", "force z", "moment x", "moment y", "moment z")
-    names = {"motion": subject.joints, "drive": subject.motors, "transmission": subject.motors, "base": wrench}
+    names = {
+        "motion": subject.joints,
+        "drive": subject.motors,
+        "transmission": subject.motors,
+        "base": wrench,
+    }
     names["ground"] = tuple(f"{foot} {axis}" for foot in subject.feet for axis in "xyz")
     for balance in ("motion", "drive", "ground", "base", "transmission"):
         if balance not in traces:
@@ -389,7 +477,9 @@ def _largest(traces: dict[str, np.ndarray], signals: Signals) -> tuple[str, str,
         place = int(np.argmax(size))
         if size[place] > NOTHING:
             unit = ("N" if place < 3 else "Nm") if balance == "base" else BALANCES[balance][1]
-            residual = np.where(np.isfinite(rows[:, place]), signals.residual[balance][:, place], np.nan)
+            residual = np.where(
+                np.isfinite(rows[:, place]), signals.residual[balance][:, place], np.nan
+            )
             return balance, names[balance][place], unit, rows[:, place], residual
     unknown = np.full(len(signals.time), np.nan)
     return "", "", "Nm", unknown, unknown

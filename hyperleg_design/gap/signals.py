@@ -1,4 +1,6 @@
-"""A log made ready for the balances: one even time base, smooth motion, believed torques, inverse dynamics."""
+"""A log made ready for the balances: one even time base, smooth motion, believed torques, inverse
+dynamics.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +19,13 @@ if TYPE_CHECKING:
 
 
 BALANCES = {
-    "motion": ("joint", "Nm"), "drive": ("motor", "Nm"), "control": ("motor", "Nm"), "transmission": ("motor", "rad/s"),
-    "base": ("robot", "N, Nm"), "ground": ("foot", "N"),
-}  # fmt: skip
+    "motion": ("joint", "Nm"),
+    "drive": ("motor", "Nm"),
+    "control": ("motor", "Nm"),
+    "transmission": ("motor", "rad/s"),
+    "base": ("robot", "N, Nm"),
+    "ground": ("foot", "N"),
+}
 """Kind of place and unit of the rows of each of `Signals.residual`."""
 OF_MOTORS = tuple(balance for balance, (kind, _) in BALANCES.items() if kind == "motor")
 """Balances with a row for each motor."""
@@ -45,16 +51,20 @@ class BaseMotion:
 
 @dataclass(frozen=True, eq=False)
 class Signals:
-    """One log on an even time base, `t` ticks, `n` joints, `m` motors, `f` feet; motion smoothed without delay.
+    """One log on an even time base, `t` ticks, `n` joints, `m` motors, `f` feet; motion smoothed
+    without delay.
 
     Balances, each what the log shows minus what the nominal model explains:
         motion: believed joint torque minus the torque that the logged motion needs `(t, n)` [Nm];
-        drive: measured motor torque minus the torque that the controller asks for, within nominal limits `(t, m)` [Nm], where
-            both are known;
-        control: logged command of the motors minus the one that the declared gains make of the logged targets and state `(t, m)`
-            [Nm], where both are known and the controller is of that form;
-        base: of a floating base whose contact forces are logged, the six rows of the base `(t, 6)` [N, Nm];
-        transmission: logged speed of the motors minus that of the joints' motion `(t, m)` [rad/s], where both are known;
+        drive: measured motor torque minus the torque that the controller asks for, within nominal
+            limits `(t, m)` [Nm], where both are known;
+        control: logged command of the motors minus the one that the declared gains make of the
+            logged targets and state `(t, m)` [Nm], where both are known and the controller is of
+            that form;
+        base: of a floating base whose contact forces are logged, the six rows of the base `(t, 6)`
+            [N, Nm];
+        transmission: logged speed of the motors minus that of the joints' motion `(t, m)` [rad/s],
+            where both are known;
         ground: logged contact force minus the nominal ground's at the logged motion `(t, 3 f)` [N].
     """
 
@@ -74,13 +84,17 @@ class Signals:
     target: np.ndarray | None
     """Position target `(t, n)` [rad]."""
     command: np.ndarray | None
-    """Motor torque that the controller asks for `(t, m)` [Nm]: logged, or from targets and gains; before any limit."""
+    """Motor torque that the controller asks for `(t, m)` [Nm]: logged, or from targets and gains;
+    before any limit."""
     measured: np.ndarray | None
-    """Motor torque that the log measured, or current times the declared torque constant `(t, m)` [Nm]."""
+    """Motor torque that the log measured, or current times the declared torque constant `(t, m)`
+    [Nm]."""
     believed: np.ndarray
-    """Motor torque that the balance of motion trusts: measured, else command within the nominal limits `(t, m)` [Nm]."""
+    """Motor torque that the balance of motion trusts: measured, else command within the nominal
+    limits `(t, m)` [Nm]."""
     rigid: np.ndarray
-    """Joint torque that the logged motion needs: inverse dynamics, rotors, nominal friction, contact forces `(t, n)` [Nm]."""
+    """Joint torque that the logged motion needs: inverse dynamics, rotors, nominal friction,
+    contact forces `(t, n)` [Nm]."""
     temperature: np.ndarray | None
     """`(t, m)` [degC]."""
     voltage: np.ndarray | None
@@ -92,13 +106,16 @@ class Signals:
     residual: dict[str, np.ndarray]
     """By balance that this log allows."""
     pad_force: np.ndarray | None = None
-    """Force of the ground on each of `subject.pads`, world frame `(t, P, 3)` [N], where the place of the force is known."""
+    """Force of the ground on each of `subject.pads`, world frame `(t, P, 3)` [N], where the place
+    of the force is known."""
     touching: np.ndarray | None = None
     """Of a floating base: whether each foot touches the ground, or may `(t, f)`."""
     bandwidth: np.ndarray | None = None
-    """Frequency above which smoothing takes motion for noise `(n,)` [Hz]; NaN for joints that this log lacks."""
+    """Frequency above which smoothing takes motion for noise `(n,)` [Hz]; NaN for joints that this
+    log lacks."""
     noise: np.ndarray | None = None
-    """Standard deviation of the noise of a position sample, as the log itself tells `(n,)` [rad]."""
+    """Standard deviation of the noise of a position sample, as the log itself tells `(n,)`
+    [rad]."""
     chatter: Chatter | None = None
     """Of joints that swing to and fro above all that was commanded; None where none does."""
     notes: tuple[str, ...] = ()
@@ -106,5 +123,7 @@ class Signals:
 
     @cached_property
     def supplied(self) -> np.ndarray:
-        """Voltage over the nominal one of motors that follow it, 1 of others `(t, m)`, or `(1, m)`; see `supply`."""
+        """Voltage over the nominal one of motors that follow it, 1 of others `(t, m)`, or `(1, m)`;
+        see `supply`.
+        """
         return over_nominal(self.subject, self.voltage)

@@ -1,7 +1,8 @@
 """Ground that gives, seen without any balance: how much lower pads stand under more load.
 
-Where the floor lies, no log tells to a millimetre, and what errors of encoders and links make of a foot's height is about the same
-at all loads. But the slope of height over load is the compliance of ground and sole, in series, whatever masses and drives are.
+Where the floor lies, no log tells to a millimetre, and what errors of encoders and links make of a
+foot's height is about the same at all loads. But the slope of height over load is the compliance of
+ground and sole, in series, whatever masses and drives are.
 """
 
 from __future__ import annotations
@@ -28,9 +29,11 @@ UNUSUAL = 1.5
 CERTAIN = 3.0
 """Its standard errors beyond that of no finding, at least."""
 PADS = 0.1
-"""Of a compliance, that pads of one foot have in common unknown (assumed: their heights are off alike)."""
+"""Of a compliance, that pads of one foot have in common unknown (assumed: their heights are off
+alike)."""
 LEAST_TICKS, LEAST_CONTACTS = 200, 4
-"""Of a pad under load in a log; pads, each log's for itself, whose scatter gives the standard error."""
+"""Of a pad under load in a log; pads, each log's for itself, whose scatter gives the standard
+error."""
 VARIED = 4.0
 """Standard deviation of a pad's load, at least [N]."""
 DEEPEST = 0.05
@@ -70,13 +73,21 @@ def sinks(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tup
 
     Args:
         signals: logs to be diagnosed.
-        references: logs of the healthy robot; a ground that gave as much under it, too, is none of these.
+        references: logs of the healthy robot; a ground that gave as much under it, too, is none of
+            these.
     """
-    found = [_sink(foot, place, signals, references) for place, foot in enumerate(signals[0].subject.feet)]
-    return tuple(sorted((one for one in found if one is not None), key=lambda one: (-one.size, one.foot)))
+    found = [
+        _sink(foot, place, signals, references)
+        for place, foot in enumerate(signals[0].subject.feet)
+    ]
+    return tuple(
+        sorted((one for one in found if one is not None), key=lambda one: (-one.size, one.foot))
+    )
 
 
-def _sink(foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]) -> Underfoot | None:
+def _sink(
+    foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]
+) -> Underfoot | None:
     logs = [bearings(one, place) for one in signals]
     pads = [pad for own in logs for pad in own]
     given = _compliance(pads)
@@ -85,25 +96,39 @@ def _sink(foot: str, place: int, signals: Sequence[Signals], references: Sequenc
         return None
     scale, error = given
     if healthy is not None and healthy[0] > 0:
-        scale, error = scale / healthy[0], float(np.hypot(error, scale * healthy[1] / healthy[0])) / healthy[0]
+        scale, error = (
+            scale / healthy[0],
+            float(np.hypot(error, scale * healthy[1] / healthy[0])) / healthy[0],
+        )
     if scale - CERTAIN * error < 1 or scale < 1 + UNUSUAL * BEARING:
         return None
-    nominal = float(np.average([pad.nominal_slope for pad in pads], weights=[pad.weight for pad in pads]))
+    nominal = float(
+        np.average([pad.nominal_slope for pad in pads], weights=[pad.weight for pad in pads])
+    )
     usual = nominal * (given[0] / scale)
     slope = nominal * given[0]
-    spread = float(np.sqrt(np.mean(np.concatenate([(pad.load - pad.load.mean()) ** 2 for pad in pads]))))
+    spread = float(
+        np.sqrt(np.mean(np.concatenate([(pad.load - pad.load.mean()) ** 2 for pad in pads])))
+    )
     parts = (
         logs
         if len(logs) > 1 and all(len(own) >= LEAST_CONTACTS for own in logs)
         else [[half for pad in pads if (half := _half(pad, late))] for late in (False, True)]
     )
     others = [_compliance([pad for o in parts if o is not part for pad in o]) for part in parts]
-    off = [abs(nominal * other[0] - slope) if other is not None else slope - usual for other in others]
+    off = [
+        abs(nominal * other[0] - slope) if other is not None else slope - usual for other in others
+    ]
     size, left = spread * (slope - usual), spread * float(np.sqrt(np.mean(np.square(off))))
     reach = INTERVAL * float(np.hypot(error, PADS * scale))
-    says = f"sinks by {1e3 * slope * spread:.2g} mm with the usual changes of its pads' load, {scale:.2g} times as much as it should"
+    says = (
+        f"sinks by {1e3 * slope * spread:.2g} mm with the usual changes of its pads' load, "
+        f"{scale:.2g} times as much as it should"
+    )
     value = Value(scale, max(scale - reach, 0.0), scale + reach, "")
-    return Underfoot(EFFECT, foot, {"scale": value}, SINKS, says, float(len(pads)), size, min(left, size), "m")
+    return Underfoot(
+        EFFECT, foot, {"scale": value}, SINKS, says, float(len(pads)), size, min(left, size), "m"
+    )
 
 
 def bearings(signals: Signals, place: int) -> list[Bearing]:
@@ -120,9 +145,16 @@ def bearings(signals: Signals, place: int) -> list[Bearing]:
     found = []
     for pad in range(foot.height.shape[1]):
         load = foot.pad_force[:, pad, 2]
-        used = signals.valid & foot.settled & np.isfinite(foot.height[:, pad]) & (np.nan_to_num(load) > LOADED)
+        used = (
+            signals.valid
+            & foot.settled
+            & np.isfinite(foot.height[:, pad])
+            & (np.nan_to_num(load) > LOADED)
+        )
         if used.sum() >= LEAST_TICKS and float(load[used].std()) >= VARIED:
-            found.append(Bearing(load[used], foot.height[used, pad], -_depth(foot, pad, load[used])))
+            found.append(
+                Bearing(load[used], foot.height[used, pad], -_depth(foot, pad, load[used]))
+            )
     return found
 
 
@@ -135,7 +167,9 @@ def _depth(foot: Footing, pad: int, load: np.ndarray) -> np.ndarray:
 
 
 def _compliance(pads: Sequence[Bearing]) -> tuple[float, float] | None:
-    """Slope over the nominal one of some pads together, and its standard error; None where they are few."""
+    """Slope over the nominal one of some pads together, and its standard error; None where they are
+    few.
+    """
     if len(pads) < LEAST_CONTACTS:
         return None
     weight = np.array([pad.weight for pad in pads])

@@ -1,13 +1,16 @@
-"""Position, velocity and acceleration from noisy samples, without delay: a smoothing spline whose noise the samples tell.
+"""Position, velocity and acceleration from noisy samples, without delay: a smoothing spline whose
+noise the samples tell.
 
 The spline minimises, over quintic splines p,
 
     sum (y_i - p(t_i))^2 / s_p^2 + sum (w_i - p'(t_i))^2 / s_v^2 + 1/Q integral p'''(t)^2 dt,
 
-which is the fixed-interval (Rauch-Tung-Striebel) smoother of a joint whose jerk is white noise of density Q: it looks both ways
-in time, so nothing is late. In frequency it passes 1 / (1 + (omega / omega_c)^6) with the crossover Q = s_p^2 h omega_c^6, where
-h is the time between samples. Noise and crossover are those of largest likelihood (Whittle's) given the periodogram of the log
-itself, modelled as s_p^2 (1 + (omega_c / omega)^6) or steeper: quantisation, sensor noise and bandwidth need not be declared.
+which is the fixed-interval (Rauch-Tung-Striebel) smoother of a joint whose jerk is white noise of
+density Q: it looks both ways in time, so nothing is late. In frequency it passes 1 / (1 + (omega /
+omega_c)^6) with the crossover Q = s_p^2 h omega_c^6, where h is the time between samples. Noise and
+crossover are those of largest likelihood (Whittle's) given the periodogram of the log itself,
+modelled as s_p^2 (1 + (omega_c / omega)^6) or steeper: quantisation, sensor noise and bandwidth
+need not be declared.
 """
 
 from __future__ import annotations
@@ -18,7 +21,8 @@ from functools import cache
 import numpy as np
 
 KNOTS_PER_RADIAN = 2.0
-"""Knots in a radian of the crossover: a spline this dense follows all that the crossover lets pass."""
+"""Knots in a radian of the crossover: a spline this dense follows all that the crossover lets
+pass."""
 LOWEST_CROSSOVER = 1.0
 """[Hz] Below this a log would say nothing about accelerations; assumed."""
 CROSSOVERS = 48
@@ -26,12 +30,13 @@ CROSSOVERS = 48
 STEEPER = (0, 1, 3)
 """Further integrations of white noise that are tried as the signal's spectrum."""
 BEYOND = 1.5
-"""Crossover of the spline over that of a steeper spectrum, so that it still passes all but a thousandth of what lies below half."""
+"""Crossover of the spline over that of a steeper spectrum, so that it still passes all but a
+thousandth of what lies below half."""
 MOST_PER_SAMPLE = 0.9
 """Highest crossover over the Nyquist frequency: above it, samples are interpolated."""
 CONSISTENT = 0.03
-"""Largest difference between a logged velocity and the derivative of the logged position, over its size, at which the logged one
-is believed; filtered or late velocities differ by more."""
+"""Largest difference between a logged velocity and the derivative of the logged position, over its
+size, at which the logged one is believed; filtered or late velocities differ by more."""
 LATEST = 0.01
 """By how much a logged velocity is late at most, or early [s] (assumed)."""
 
@@ -60,14 +65,17 @@ class Smooth:
     """Standard deviation of the samples' noise `(n,)`."""
 
 
-def smooth(time: np.ndarray, value: np.ndarray, ticks: np.ndarray, rate: np.ndarray | None = None) -> Smooth:
+def smooth(
+    time: np.ndarray, value: np.ndarray, ticks: np.ndarray, rate: np.ndarray | None = None
+) -> Smooth:
     """Smooth channels sampled at any rising times.
 
     Args:
         time: of the samples `(s,)` [s].
         value: `(s, n)`, NaN where unknown.
         ticks: evenly spaced, where the result is wanted `(t,)` [s].
-        rate: logged first derivatives `(s, n)`, NaN where unknown; used where they agree with the values.
+        rate: logged first derivatives `(s, n)`, NaN where unknown; used where they agree with the
+            values.
 
     Returns:
         NaN for channels with fewer than 8 samples.
@@ -85,14 +93,23 @@ def smooth(time: np.ndarray, value: np.ndarray, ticks: np.ndarray, rate: np.ndar
         jerk = noise.level**2 * step * noise.crossover**6
         fitted = _fit(at, samples, ticks, noise.crossover, jerk / max(noise.level**2, 1e-300))
         if rate is not None:
-            fitted, noise = _with_rate(time, value[:, channel], rate[:, channel], ticks, step, noise, jerk, fitted)
+            fitted, noise = _with_rate(
+                time, value[:, channel], rate[:, channel], ticks, step, noise, jerk, fitted
+            )
         out.value[:, channel], out.first[:, channel], out.second[:, channel] = fitted
         out.crossover[channel], out.level[channel] = noise.crossover, noise.level
     return out
 
 
 def _with_rate(
-    time: np.ndarray, value: np.ndarray, rate: np.ndarray, ticks: np.ndarray, step: float, noise: Noise, jerk: float, fitted: np.ndarray
+    time: np.ndarray,
+    value: np.ndarray,
+    rate: np.ndarray,
+    ticks: np.ndarray,
+    step: float,
+    noise: Noise,
+    jerk: float,
+    fitted: np.ndarray,
 ) -> tuple[np.ndarray, Noise]:
     """Fit with logged derivatives too, where they are there and agree."""
     known = np.isfinite(rate)
@@ -110,14 +127,24 @@ def _with_rate(
     if of_rate.crossover > noise.crossover:
         jerk = jerk_of_rate
     weight = (noise.level / max(of_rate.level, 1e-12 * noise.level, 1e-300)) ** 2
-    crossover = _joint_crossover(jerk, noise.level**2 * step, weight, np.pi / step * MOST_PER_SAMPLE)
+    crossover = _joint_crossover(
+        jerk, noise.level**2 * step, weight, np.pi / step * MOST_PER_SAMPLE
+    )
     both = np.isfinite(value)
-    fitted = _fit(time[both], value[both], ticks, crossover, jerk / max(noise.level**2, 1e-300), (time[known] - late, rate[known], weight))
+    fitted = _fit(
+        time[both],
+        value[both],
+        ticks,
+        crossover,
+        jerk / max(noise.level**2, 1e-300),
+        (time[known] - late, rate[known], weight),
+    )
     return fitted, Noise(noise.level, crossover)
 
 
 def lateness(beyond: np.ndarray, second: np.ndarray) -> float:
-    """How much later a logged derivative is than its log says [s]: drives filter and difference, simulators step speeds before places.
+    """How much later a logged derivative is than its log says [s]: drives filter and difference,
+    simulators step speeds before places.
 
     Args:
         beyond: what it has over the derivative of the values `(t,)`.
@@ -127,7 +154,9 @@ def lateness(beyond: np.ndarray, second: np.ndarray) -> float:
 
 
 def _joint_crossover(jerk: float, density: float, weight: float, most: float) -> float:
-    """Where signal equals noise when value and derivative are both measured: omega^6 / Q = (1 + weight omega^2) / density."""
+    """Where signal equals noise when value and derivative are both measured: omega^6 / Q = (1 +
+    weight omega^2) / density.
+    """
     low, high = 1e-3, most
     for _ in range(60):
         middle = np.sqrt(low * high)
@@ -139,7 +168,9 @@ def _joint_crossover(jerk: float, density: float, weight: float, most: float) ->
 
 
 def bridged(values: np.ndarray) -> np.ndarray:
-    """A signal `(t,)` whose unknown ticks are bridged by straight lines; one tick at least must be known."""
+    """A signal `(t,)` whose unknown ticks are bridged by straight lines; one tick at least must be
+    known.
+    """
     known = np.isfinite(values)
     ticks = np.arange(len(values))
     return values if known.all() else np.interp(ticks, ticks[known], values[known])
@@ -147,7 +178,13 @@ def bridged(values: np.ndarray) -> np.ndarray:
 
 def filled(values: np.ndarray) -> np.ndarray:
     """Signals `(t, k)`, each `bridged`; 0 where nothing is known of one."""
-    return np.stack([bridged(column) if np.isfinite(column).any() else np.zeros(len(column)) for column in values.T], -1)
+    return np.stack(
+        [
+            bridged(column) if np.isfinite(column).any() else np.zeros(len(column))
+            for column in values.T
+        ],
+        -1,
+    )
 
 
 def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: int) -> Noise:
@@ -157,14 +194,18 @@ def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: in
         time: of the samples `(s,)`.
         samples: `(s,)`.
         step: median time between them [s].
-        order: how many times white noise is integrated to give the signal: spectrum omega^(-2 order).
+        order: how many times white noise is integrated to give the signal: spectrum omega^(-2
+            order).
     """
     even = np.arange(time[0], time[-1] + step / 2, step)
     signal = np.interp(even, time, samples)
     length = len(signal)
     line = np.linspace(-1, 1, length)
-    signal = signal - np.polynomial.polynomial.polyval(line, np.polynomial.polynomial.polyfit(line, signal, 3))
-    # A window whose side lobes fall faster than the signal's own spectrum, so that none of it leaks into the noise.
+    signal = signal - np.polynomial.polynomial.polyval(
+        line, np.polynomial.polynomial.polyfit(line, signal, 3)
+    )
+    # A window whose side lobes fall faster than the signal's own spectrum, so that none of it leaks
+    # into the noise.
     window = np.sin(np.pi * (np.arange(length) + 0.5) / length) ** 4
     power = np.abs(np.fft.rfft(signal * window)) ** 2 / np.sum(window**2)
     omega = 2 * np.pi * np.fft.rfftfreq(length, step)
@@ -176,14 +217,22 @@ def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: in
     lowest = min(2 * np.pi * LOWEST_CROSSOVER, 0.3 * nyquist)
     crossovers = np.geomspace(lowest, MOST_PER_SAMPLE * nyquist, CROSSOVERS)
     best, found = -np.inf, Noise(float(np.std(samples)), float(crossovers[-1]))
-    for steeper in STEEPER:  # commanded motion ends in a band of its own, more steeply than white jerk
+    for (
+        steeper
+    ) in STEEPER:  # commanded motion ends in a band of its own, more steeply than white jerk
         shape = 1 + (crossovers[:, None] / omega) ** (2 * (order + steeper))
         level = np.mean(power / shape, 1)
         likelihood = -np.sum(np.log(shape), 1) - len(omega) * np.log(level)
         top = int(np.argmax(likelihood))
         if likelihood[top] > best:
             beyond = 1.0 if steeper == 0 else BEYOND
-            best, found = float(likelihood[top]), Noise(float(np.sqrt(level[top])), min(beyond * float(crossovers[top]), float(crossovers[-1])))
+            best, found = (
+                float(likelihood[top]),
+                Noise(
+                    float(np.sqrt(level[top])),
+                    min(beyond * float(crossovers[top]), float(crossovers[-1])),
+                ),
+            )
     return found
 
 
@@ -195,7 +244,9 @@ def _fit(
     jerk: float,
     rate: tuple[np.ndarray, np.ndarray, float] | None = None,
 ) -> np.ndarray:
-    """Value and two derivatives at the ticks `(3, t)`; `jerk` is Q over the variance of a sample."""
+    """Value and two derivatives at the ticks `(3, t)`; `jerk` is Q over the variance of a
+    sample.
+    """
     from scipy.linalg import solveh_banded
 
     first, last = min(time[0], ticks[0]), max(time[-1], ticks[-1])
@@ -223,12 +274,21 @@ def _fit(
     out = np.empty((3, len(ticks)))
     for order in range(3):
         cell, basis = _basis((ticks - first) / spacing, cells, order)
-        out[order] = scale * np.sum(basis * coefficients[cell[:, None] + np.arange(6)], 1) / spacing**order
+        out[order] = (
+            scale * np.sum(basis * coefficients[cell[:, None] + np.arange(6)], 1) / spacing**order
+        )
     out[0] += offset
     return out
 
 
-def _add_rows(band: np.ndarray, right: np.ndarray, cell: np.ndarray, basis: np.ndarray, samples: np.ndarray, weight: float) -> None:
+def _add_rows(
+    band: np.ndarray,
+    right: np.ndarray,
+    cell: np.ndarray,
+    basis: np.ndarray,
+    samples: np.ndarray,
+    weight: float,
+) -> None:
     size = band.shape[1]
     for i in range(6):
         right += weight * np.bincount(cell + i, basis[:, i] * samples, size)
@@ -237,7 +297,9 @@ def _add_rows(band: np.ndarray, right: np.ndarray, cell: np.ndarray, basis: np.n
 
 
 def _basis(place: np.ndarray, cells: int, order: int) -> tuple[np.ndarray, np.ndarray]:
-    """Cell of each place and the values of the six quintic B-splines, or of their derivatives, there `(k, 6)`."""
+    """Cell of each place and the values of the six quintic B-splines, or of their derivatives,
+    there `(k, 6)`.
+    """
     cell = np.clip(np.floor(place).astype(int), 0, cells - 1)
     inside = place - cell
     powers = _cell_polynomials(order)
@@ -246,7 +308,9 @@ def _basis(place: np.ndarray, cells: int, order: int) -> tuple[np.ndarray, np.nd
 
 @cache
 def _cell_polynomials(order: int) -> tuple[np.ndarray, ...]:
-    """The six pieces of the uniform quintic B-spline within one cell, differentiated `order` times, highest power first."""
+    """The six pieces of the uniform quintic B-spline within one cell, differentiated `order` times,
+    highest power first.
+    """
     from math import comb, factorial
 
     pieces = []
@@ -255,7 +319,12 @@ def _cell_polynomials(order: int) -> tuple[np.ndarray, ...]:
         total = np.zeros(6)
         start = 5 - piece
         for k in range(start + 1):
-            total += (-1) ** k * comb(6, k) / factorial(5) * np.array([comb(5, p) * float(start - k) ** (5 - p) for p in range(5, -1, -1)])
+            total += (
+                (-1) ** k
+                * comb(6, k)
+                / factorial(5)
+                * np.array([comb(5, p) * float(start - k) ** (5 - p) for p in range(5, -1, -1)])
+            )
         pieces.append(np.polyder(total, order) if order else total)
     return tuple(pieces)
 

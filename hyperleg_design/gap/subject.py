@@ -1,4 +1,6 @@
-"""The robot that logs are diagnosed against: its nominal model, from a design of ours or from anybody's MJCF or URDF."""
+"""The robot that logs are diagnosed against: its nominal model, from a design of ours or from
+anybody's MJCF or URDF.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,9 @@ class Pad:
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """Nominal robot: `n` joints, `m` motors; tau_joint = joint_from_motor tau_motor, motor speed = its transpose times joint speed."""
+    """Nominal robot: `n` joints, `m` motors; tau_joint = joint_from_motor tau_motor, motor speed =
+    its transpose times joint speed.
+    """
 
     name: str
     path: str
@@ -63,13 +67,15 @@ class Subject:
     motor_aliases: tuple[str, ...]
     """Other names under which logs may know the motors, those of the file's actuators `(m,)`."""
     gear: np.ndarray
-    """Of each motor over its joint in the file, where they are one to one: motors count at the joint; 1 of others `(m,)`."""
+    """Of each motor over its joint in the file, where they are one to one: motors count at the
+    joint; 1 of others `(m,)`."""
     feet: tuple[str, ...]
     pads: tuple[Pad, ...]
     joint_from_motor: np.ndarray
     """`(n, m)` [-]."""
     gains: np.ndarray
-    """Stiffness and damping of the joint controllers, NaN where unknown `(n, 2)` [Nm/rad, Nms/rad]."""
+    """Stiffness and damping of the joint controllers, NaN where unknown `(n, 2)` [Nm/rad,
+    Nms/rad]."""
     torque_limit: np.ndarray
     """Largest motor torque, infinite where unknown `(m,)` [Nm]."""
     stall_torque: np.ndarray
@@ -82,7 +88,8 @@ class Subject:
     """Inertia that rotors add at the joints, coupling included `(n, n)` [kg m^2]."""
     coulomb: np.ndarray
     viscous: np.ndarray
-    """Nominal friction of the joints `(n,)` [Nm, Nms/rad]: coulomb tanh(v / friction_speed) + viscous v."""
+    """Nominal friction of the joints `(n,)` [Nm, Nms/rad]: coulomb tanh(v / friction_speed) +
+    viscous v."""
     friction_speed: np.ndarray
     """`(n,)` [rad/s]."""
     spring: np.ndarray
@@ -91,7 +98,8 @@ class Subject:
     torque_constant: np.ndarray
     """NaN where unknown `(m,)` [Nm/A]."""
     supply: np.ndarray
-    """Nominal supply of motors without current control, whose torques follow the battery's voltage; NaN of all others `(m,)` [V]."""
+    """Nominal supply of motors without current control, whose torques follow the battery's voltage;
+    NaN of all others `(m,)` [V]."""
     passive: np.ndarray
     """Joints without a drive `(n,)`."""
     position_low: np.ndarray
@@ -100,7 +108,8 @@ class Subject:
     default: np.ndarray
     """Posture at rest `(n,)` [rad]."""
     model: mujoco.MjModel
-    """Of the same robot without actuators and friction; torques go in through `qfrc_applied`. Rotors are in it."""
+    """Of the same robot without actuators and friction; torques go in through `qfrc_applied`.
+    Rotors are in it."""
     tree: Mechanism
     imu_rotation: np.ndarray
     imu_position: np.ndarray
@@ -115,7 +124,8 @@ class Subject:
     voltage: float = float("nan")
     """Of the battery when all is well, where a design or reference logs tell [V]."""
     motor_scale: Mapping[str, np.ndarray] = field(default_factory=dict)
-    """By kind of signal, what turns logged values into those of `motors`; see `gearing` `(m,)` each."""
+    """By kind of signal, what turns logged values into those of `motors`; see `gearing` `(m,)`
+    each."""
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -135,7 +145,10 @@ class Subject:
     @cached_property
     def motor_from_joint(self) -> np.ndarray:
         """Motor torques that give joint torques with the least sum of squares `(m, n)`."""
-        if self.design is not None and self.joint_from_motor.shape[0] != self.joint_from_motor.shape[1]:
+        if (
+            self.design is not None
+            and self.joint_from_motor.shape[0] != self.joint_from_motor.shape[1]
+        ):
             return _least_heat(self)
         return np.asarray(np.linalg.pinv(self.joint_from_motor))
 
@@ -145,28 +158,40 @@ class Subject:
         return pinocchio_model(self.tree, self.gravity)
 
     def declare(self, metadata: Metadata) -> Subject:
-        """The same robot with the gains, torque constants, supplies, payload and gravity that one log declares.
+        """The same robot with the gains, torque constants, supplies, payload and gravity that one
+        log declares.
 
         Raises:
             InputError: a joint, motor or link that the robot does not have.
         """
         keys = ("gains", "torque_constant", "supply", "payload", "gravity")
-        if all(getattr(self.declared, k) == getattr(metadata, k) for k in keys) and self.bare is not None:
+        if (
+            all(getattr(self.declared, k) == getattr(metadata, k) for k in keys)
+            and self.bare is not None
+        ):
             return self
         return _declared(self.bare or self, metadata)
 
 
-def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, overrides: Iterable[str] | None = None) -> Subject:
+def load_subject(
+    robot: str | Path | None = None,
+    logs: Sequence[Log] = (),
+    *,
+    overrides: Iterable[str] | None = None,
+) -> Subject:
     """Nominal model of a robot, made to fit logs.
 
     Args:
-        robot: a design of ours (`hyperleg`, or a YAML file), or any MJCF or URDF file; by default what the logs' metadata name.
-        logs: whose metadata say what holds the base, gains, torque constants and payload; joints that none of them knows are
-            held still. What differs between logs is taken from the first here, and from each in `conditioning.condition`.
+        robot: a design of ours (`hyperleg`, or a YAML file), or any MJCF or URDF file; by default
+            what the logs' metadata name.
+        logs: whose metadata say what holds the base, gains, torque constants and payload; joints
+            that none of them knows are held still. What differs between logs is taken from the
+            first here, and from each in `conditioning.condition`.
         overrides: of our design, `path=value` each; by default those of the logs.
 
     Raises:
-        InputError: no such robot, a joint or motor of a log that it does not have, logs that contradict each other, a file that
+        InputError: no such robot, a joint or motor of a log that it does not have, logs that
+        contradict each other, a file that
             cannot be understood.
     """
     metadata = [log.metadata for log in logs]
@@ -174,8 +199,18 @@ def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, o
     robot = str(robot) if robot else _agreed([m.robot for m in metadata], "robot", logs)
     base = _agreed([m.base for m in metadata], "base", logs)
     if not robot:
-        raise InputError("robot", "", None, "is not named: give --robot a design, an MJCF or a URDF, or name it in the logs' metadata")
-    chosen = tuple(overrides) if overrides is not None else next((m.overrides for m in metadata if m.overrides), ())
+        raise InputError(
+            "robot",
+            "",
+            None,
+            "is not named: give --robot a design, an MJCF or a URDF, or name it in the logs' "
+            "metadata",
+        )
+    chosen = (
+        tuple(overrides)
+        if overrides is not None
+        else next((m.overrides for m in metadata if m.overrides), ())
+    )
     from hyperleg_design.gap.gearing import on_the_joints_side
     from hyperleg_design.gap.subject_build import of_design, of_file
     from hyperleg_design.robot.design import load_design
@@ -186,11 +221,17 @@ def load_subject(robot: str | Path | None = None, logs: Sequence[Log] = (), *, o
         bare = of_design(load_design(path, overrides=chosen), path, base or "floating", known)
     else:
         if chosen:
-            raise InputError(robot, "overrides", chosen[0], "belong to designs of ours; edit the file instead")
+            raise InputError(
+                robot, "overrides", chosen[0], "belong to designs of ours; edit the file instead"
+            )
         bare = of_file(path, base or None, known)
     for log in logs:
         _check_names(log, bare)
-    bare = dataclasses.replace(bare, voltage=_healthy_voltage(logs)) if np.isnan(bare.voltage) else bare
+    bare = (
+        dataclasses.replace(bare, voltage=_healthy_voltage(logs))
+        if np.isnan(bare.voltage)
+        else bare
+    )
     bare = on_the_joints_side(bare, logs)
     return bare.declare(metadata[0]) if metadata else dataclasses.replace(bare, bare=bare)
 
@@ -223,7 +264,9 @@ def _agreed(values: Sequence[str], field: str, logs: Sequence[Log]) -> str:
 
 
 def _find(robot: str, logs: Sequence[Log], named: bool) -> Path:
-    """File of a robot: as it stands, beside the logs, which come first where it is they that `named` it, or a shipped design."""
+    """File of a robot: as it stands, beside the logs, which come first where it is they that
+    `named` it, or a shipped design.
+    """
     path = Path(robot)
     beside = [Path(log.folder) / path for log in logs if log.folder]
     for place in (*beside, path) if named else (path, *beside):
@@ -242,11 +285,20 @@ def _declared(bare: Subject, metadata: Metadata) -> Subject:
         gains[_index(joint, bare.joints, "gains", "joint")] = pair
     for motor, value in metadata.torque_constant.items():
         constant[motor_index(bare, motor, "torque_constant")] = value
-    supply, stall, free = np.array(bare.supply), np.array(bare.stall_torque), np.array(bare.no_load_speed)
+    supply, stall, free = (
+        np.array(bare.supply),
+        np.array(bare.stall_torque),
+        np.array(bare.no_load_speed),
+    )
     for motor, line in metadata.supply.items():
         index = motor_index(bare, motor, "supply")
         supply[index], stall[index], free[index] = line
-    values: dict[str, Any] = {"gains": gains, "torque_constant": constant, "declared": metadata, "bare": bare}
+    values: dict[str, Any] = {
+        "gains": gains,
+        "torque_constant": constant,
+        "declared": metadata,
+        "bare": bare,
+    }
     values |= {"supply": supply, "stall_torque": stall, "no_load_speed": free}
     moved = metadata.gravity != STANDARD_GRAVITY
     if metadata.payload or moved:
@@ -298,5 +350,8 @@ def _least_heat(subject: Subject) -> np.ndarray:
 
     assert subject.design is not None
     names = motor_names(subject.design)
-    cost = [motor_arrays(subject.design).power_constant[names.index(m.split("_", 1)[1])] for m in subject.motors]
+    cost = [
+        motor_arrays(subject.design).power_constant[names.index(m.split("_", 1)[1])]
+        for m in subject.motors
+    ]
     return motor_from_joint(subject.joint_from_motor, np.array(cost))

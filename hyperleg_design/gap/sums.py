@@ -1,7 +1,8 @@
-"""Sums of products of the columns that fits are made of, by group of samples; columns that a row does not show are left out.
+"""Sums of products of the columns that fits are made of, by group of samples; columns that a row
+does not show are left out.
 
-A robot's row shows few of all calibration errors, so that most of these products are nothing: kept whole, they would fill the memory,
-and reading them would be most of a diagnosis.
+A robot's row shows few of all calibration errors, so that most of these products are nothing: kept
+whole, they would fill the memory, and reading them would be most of a diagnosis.
 """
 
 from __future__ import annotations
@@ -34,7 +35,13 @@ class Layout:
 
     def empty(self) -> Sums:
         """All 0."""
-        return Sums(self, tuple(np.zeros((len(g), len(s), len(s))) for g, s in zip(self.groups, self.shown, strict=True)))
+        return Sums(
+            self,
+            tuple(
+                np.zeros((len(g), len(s), len(s)))
+                for g, s in zip(self.groups, self.shown, strict=True)
+            ),
+        )
 
     def add(self, sums: Iterable[Sums], columns: np.ndarray, piece: Piece) -> None:
         """Add the products of a piece of the columns `(p, S)` to some sums, in place."""
@@ -54,15 +61,21 @@ class Sums:
     """Of each row `(g, n, n)`."""
 
     def __add__(self, other: Sums) -> Sums:
-        return Sums(self.layout, tuple(a + b for a, b in zip(self.blocks, other.blocks, strict=True)))
+        return Sums(
+            self.layout, tuple(a + b for a, b in zip(self.blocks, other.blocks, strict=True))
+        )
 
     def __sub__(self, other: Sums) -> Sums:
-        return Sums(self.layout, tuple(a - b for a, b in zip(self.blocks, other.blocks, strict=True)))
+        return Sums(
+            self.layout, tuple(a - b for a, b in zip(self.blocks, other.blocks, strict=True))
+        )
 
     def weighed(self, weight: np.ndarray) -> np.ndarray:
         """Sum over the groups `(p, p)`, each times its weight `(G,)`."""
         found = np.zeros((self.layout.size, self.layout.size))
-        for groups, shown, block in zip(self.layout.groups, self.layout.shown, self.blocks, strict=True):
+        for groups, shown, block in zip(
+            self.layout.groups, self.layout.shown, self.blocks, strict=True
+        ):
             if len(groups):
                 found[np.ix_(shown, shown)] += np.tensordot(weight[groups], block, 1)
         return found
@@ -70,7 +83,9 @@ class Sums:
     def square(self, combination: np.ndarray) -> np.ndarray:
         """Sum of squares of a combination of the columns `(p,)`, by group `(G,)`."""
         found = np.zeros(len(self.layout.row))
-        for groups, shown, block in zip(self.layout.groups, self.layout.shown, self.blocks, strict=True):
+        for groups, shown, block in zip(
+            self.layout.groups, self.layout.shown, self.blocks, strict=True
+        ):
             if len(groups):
                 own = combination[shown]
                 found[groups] = (block @ own) @ own
@@ -79,7 +94,9 @@ class Sums:
     def whole(self) -> np.ndarray:
         """Of all columns `(G, p, p)`."""
         found = np.zeros((len(self.layout.row), self.layout.size, self.layout.size))
-        for groups, shown, block in zip(self.layout.groups, self.layout.shown, self.blocks, strict=True):
+        for groups, shown, block in zip(
+            self.layout.groups, self.layout.shown, self.blocks, strict=True
+        ):
             for group, one in zip(groups.tolist(), block, strict=True):
                 found[group][np.ix_(shown, shown)] = one
         return found

@@ -1,9 +1,11 @@
-"""Motors without current control: their duty cycle follows the position error, so their torque follows the battery's voltage.
+"""Motors without current control: their duty cycle follows the position error, so their torque
+follows the battery's voltage.
 
     torque = V / V_n K (q* - q) - D q_dot    within the DC-motor line of V
 
-V is the logged voltage, V_n the nominal one at which stiffness K, stall torque and no-load speed are declared; D is mostly the
-motor's own (kt^2 / R), which no voltage changes. So are hobby servos (Dynamixel XL, Feetech STS) in position mode.
+V is the logged voltage, V_n the nominal one at which stiffness K, stall torque and no-load speed
+are declared; D is mostly the motor's own (kt^2 / R), which no voltage changes. So are hobby servos
+(Dynamixel XL, Feetech STS) in position mode.
 """
 
 from __future__ import annotations
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
 
 
 def over_nominal(subject: Subject, voltage: np.ndarray | None) -> np.ndarray:
-    """Voltage over the nominal one, by motor `(t, m)`; `(1, m)` where nothing changes. 1 for motors with current control.
+    """Voltage over the nominal one, by motor `(t, m)`; `(1, m)` where nothing changes. 1 for motors
+    with current control.
 
     Args:
         subject: the robot.
@@ -35,7 +38,9 @@ def over_nominal(subject: Subject, voltage: np.ndarray | None) -> np.ndarray:
 
 
 def followed(subject: Subject) -> tuple[Alteration, ...]:
-    """What makes a simulation of a robot follow its battery's measured voltage; nothing where its motors do not."""
+    """What makes a simulation of a robot follow its battery's measured voltage; nothing where its
+    motors do not.
+    """
     return (FollowsBattery(subject.supply),) if np.isfinite(subject.supply).any() else ()
 
 
@@ -63,7 +68,9 @@ class _Follows(Live):
         return np.asarray((command - damper) * self.ratio + damper)
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:
-        return Limits(limits.no_load_speed * self.ratio, limits.stall_torque * self.ratio, limits.peak_torque)
+        return Limits(
+            limits.no_load_speed * self.ratio, limits.stall_torque * self.ratio, limits.peak_torque
+        )
 
 
 FollowsBattery.live = _Follows

@@ -64,11 +64,20 @@ def load_thresholds(path: str | Path | None = None) -> Thresholds:
     names = [f.name for f in fields(Thresholds)]
     for name in content:
         if name not in names:
-            raise InputError(short_name(place), name, None, f"is no rule: expects {', '.join(names)}")
+            raise InputError(
+                short_name(place), name, None, f"is no rule: expects {', '.join(names)}"
+            )
     values = {}
     for name in names:
         value = content.get(name)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value) or value < 0:
-            raise InputError(short_name(place), name, value, "expects a finite number, not negative")
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, int | float)
+            or not math.isfinite(value)
+            or value < 0
+        ):
+            raise InputError(
+                short_name(place), name, value, "expects a finite number, not negative"
+            )
         values[name] = float(value)
     return Thresholds(**values)

@@ -1,4 +1,6 @@
-"""What feet tell of their ground without any balance, foot by foot; see `slipping` and `sinking`."""
+"""What feet tell of their ground without any balance, foot by foot; see `slipping` and
+`sinking`.
+"""
 
 from __future__ import annotations
 

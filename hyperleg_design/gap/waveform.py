@@ -1,9 +1,11 @@
-"""Whether joints that swing by themselves knock about: between the ends of their play they move at constant speed.
+"""Whether joints that swing by themselves knock about: between the ends of their play they move at
+constant speed.
 
-A joint on a spring swings as a sine. One in its play is hit at the ends of each swing and is free between: its angle is about a
-triangle, whose third harmonic, 1 / 9 of the first, peaks where the first does. So z = <a_3 conj(a_1)^3> / <|a_1|^4> of the
-amplitudes of both, which no shift in time changes, is positive; noise averages out. Limits of torque round the triangle off, and
-friction that holds a joint at its turns makes z negative. Only lines that the targets do not have count.
+A joint on a spring swings as a sine. One in its play is hit at the ends of each swing and is free
+between: its angle is about a triangle, whose third harmonic, 1 / 9 of the first, peaks where the
+first does. So z = <a_3 conj(a_1)^3> / <|a_1|^4> of the amplitudes of both, which no shift in time
+changes, is positive; noise averages out. Limits of torque round the triangle off, and friction that
+holds a joint at its turns makes z negative. Only lines that the targets do not have count.
 """
 
 from __future__ import annotations
@@ -23,7 +25,8 @@ if TYPE_CHECKING:
 THIRD = 3
 """The harmonic by which play differs from a spring."""
 WINDOW, PADDED = 1.0, 8
-"""In which a swing is looked at [s], and zeros after it, in windows: lines between the frequencies of a window are seen."""
+"""In which a swing is looked at [s], and zeros after it, in windows: lines between the frequencies
+of a window are seen."""
 LOWEST, HIGHEST = 6.0, 0.15
 """Of a swing [Hz], and over the log's rate: its third harmonic must be seen."""
 NEAR, ALOOF = 1.5, 4.0
@@ -45,7 +48,9 @@ def sharpness(first: np.ndarray, third: np.ndarray) -> complex:
 
 
 def knocks(signals: Sequence[Signals], motor: int) -> bool:
-    """Whether the joints of a motor swing by themselves as in play, in logs of which the sum of all such swings counts."""
+    """Whether the joints of a motor swing by themselves as in play, in logs of which the sum of all
+    such swings counts.
+    """
     found = np.concatenate([_swings(one, motor) for one in signals], 1)
     if found.shape[1] < WINDOWS:
         return False
@@ -56,7 +61,9 @@ def knocks(signals: Sequence[Signals], motor: int) -> bool:
 
 
 def _swings(signals: Signals, motor: int) -> np.ndarray:
-    """Of each window with a swing: amplitudes of the line, of its third harmonic, and of the noise beside that `(3, w)`, complex."""
+    """Of each window with a swing: amplitudes of the line, of its third harmonic, and of the noise
+    beside that `(3, w)`, complex.
+    """
     kept = _SWINGS.setdefault(signals, {})
     if motor not in kept:
         kept[motor] = _looked(signals, motor)
@@ -71,16 +78,25 @@ def _looked(signals: Signals, motor: int) -> np.ndarray:
     if signals.target is None or not able.any() or len(signals.time) < size:
         return np.zeros((3, 0), complex)
     weights = subject.joint_from_motor[:, motor]
-    way = filled(resampled(signals.log.time, signals.log.stack("position", subject.joints), signals.time)) @ weights
+    way = (
+        filled(
+            resampled(signals.log.time, signals.log.stack("position", subject.joints), signals.time)
+        )
+        @ weights
+    )
     wanted = np.nan_to_num(signals.target) @ weights
-    turn = np.exp(2j * np.pi * frequency * (size - 1) / 2 * step)  # amplitudes in the middle of the window
+    turn = np.exp(
+        2j * np.pi * frequency * (size - 1) / 2 * step
+    )  # amplitudes in the middle of the window
     found = []
     for start in range(0, len(way) - size + 1, size // 2):
         moved, asked = (_spectrum(values[start : start + size]) for values in (way, wanted))
         power = np.abs(moved * frequency) ** 2
         place = int(np.argmax(np.where(able, power, 0.0)))
         line = frequency[place]
-        share = power[np.abs(frequency - line) <= NEAR / WINDOW].sum() / max(float(power[frequency > LOWEST - 1 / WINDOW].sum()), 1e-300)
+        share = power[np.abs(frequency - line) <= NEAR / WINDOW].sum() / max(
+            float(power[frequency > LOWEST - 1 / WINDOW].sum()), 1e-300
+        )
         if share < LINE or abs(asked[place]) > COMMANDED * abs(moved[place]):
             continue
         apart = np.abs(frequency - THIRD * line)

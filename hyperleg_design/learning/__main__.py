@@ -1,4 +1,6 @@
-"""`python -m hyperleg_design.learning --task=walk --design=toe --seed=0 --preset=laptop --out=FOLDER`: one training."""
+"""`python -m hyperleg_design.learning --task=walk --design=toe --seed=0 --preset=laptop
+--out=FOLDER`: one training.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,11 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alterations
 
 
-def main(arguments: Sequence[str] | None = None, alterations: Alterations | None = None, overlay: Mapping[str, Any] | None = None) -> int:
+def main(
+    arguments: Sequence[str] | None = None,
+    alterations: Alterations | None = None,
+    overlay: Mapping[str, Any] | None = None,
+) -> int:
     """Exit status: 0 done, 3 stopped with a checkpoint, 2 an error.
 
     Args:
@@ -22,9 +28,15 @@ def main(arguments: Sequence[str] | None = None, alterations: Alterations | None
         alterations: as `train` takes them.
         overlay: as `train` takes it.
     """
-    parser = argparse.ArgumentParser(prog="python -m hyperleg_design.learning", description="One training, or the rest of one.")
+    parser = argparse.ArgumentParser(
+        prog="python -m hyperleg_design.learning", description="One training, or the rest of one."
+    )
     for name in ("task", "design", "preset", "out"):
-        parser.add_argument(f"--{name}", required=name == "out", default={"task": "walk", "design": "toe", "preset": "laptop"}.get(name))
+        parser.add_argument(
+            f"--{name}",
+            required=name == "out",
+            default={"task": "walk", "design": "toe", "preset": "laptop"}.get(name),
+        )
     parser.add_argument("--start")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--threads", type=int, default=1)
@@ -35,9 +47,17 @@ def main(arguments: Sequence[str] | None = None, alterations: Alterations | None
 
     try:
         done = train(
-            given.task, given.design, given.seed, given.preset, given.out, start=given.start, threads=given.threads,
-            alterations=alterations, overlay=overlay, show=_show,
-        )  # fmt: skip
+            given.task,
+            given.design,
+            given.seed,
+            given.preset,
+            given.out,
+            start=given.start,
+            threads=given.threads,
+            alterations=alterations,
+            overlay=overlay,
+            show=_show,
+        )
     except HyperlegError as error:
         sys.stderr.write(f"{error}\n")
         return 2

@@ -22,16 +22,19 @@ if TYPE_CHECKING:
 FACTOR = 1.5
 """On the learning rate when it is adapted (as rsl-rl has it)."""
 QUIET = 0.01
-"""On the actor's last layer at the start: all robots begin about their default posture, and the policy is its own mirror
-image, without which the probability ratios of mirrored samples are mostly clipped and nothing is learnt from them."""
+"""On the actor's last layer at the start: all robots begin about their default posture, and the
+policy is its own mirror image, without which the probability ratios of mirrored samples are mostly
+clipped and nothing is learnt from them."""
 GROUPS = {"actor": ["policy"], "critic": ["critic"]}
 """Observation groups of each network."""
 
 
 class IterationPPO(PPO):  # type: ignore[misc]
-    """PPO whose learning rate is adapted once an iteration, on the divergence in the last epoch, of unmirrored samples.
+    """PPO whose learning rate is adapted once an iteration, on the divergence in the last epoch, of
+    unmirrored samples.
 
-    Adapting on every minibatch, or on mirrored samples, crushed the rate to its floor on this biped.
+    Adapting on every minibatch, or on mirrored samples, crushed the rate to its floor on this
+    biped.
     """
 
     bounds = (5e-5, 2e-3)
@@ -68,12 +71,18 @@ def make_algorithm(preset: Preset, environment: Environment, observations: Tenso
     if settings.mixed_precision and not multiplies_bfloat16():
         round_layers(actor)
         round_layers(critic)
-    storage = RolloutStorage("rl", environment.simulations, int(preset.rollout), observations, [environment.action_size])
+    storage = RolloutStorage(
+        "rl", environment.simulations, int(preset.rollout), observations, [environment.action_size]
+    )
     mirrors = Mirrors(environment.mirror_maps())
     once = settings.adapted == "iteration"
     symmetry: dict[str, Any] | None = None
     if settings.mirror == "append":
-        symmetry = {"env": environment, "data_augmentation_func": mirrors.append_mirrored, "use_data_augmentation": True}
+        symmetry = {
+            "env": environment,
+            "data_augmentation_func": mirrors.append_mirrored,
+            "use_data_augmentation": True,
+        }
     algorithm = (IterationPPO if once else PPO)(
         actor,
         critic,
@@ -102,7 +111,11 @@ def make_algorithm(preset: Preset, environment: Environment, observations: Tenso
 
 def make_network(network: Network, observations: TensorDict, kind: str, outputs: int) -> MLPModel:
     """Actor or critic."""
-    distribution = {"class_name": "GaussianDistribution", "init_std": network.deviation, "std_type": "log"} if kind == "actor" else None
+    distribution = (
+        {"class_name": "GaussianDistribution", "init_std": network.deviation, "std_type": "log"}
+        if kind == "actor"
+        else None
+    )
     with contextlib.redirect_stdout(io.StringIO()):
         made = MLPModel(
             observations,

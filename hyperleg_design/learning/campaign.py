@@ -1,4 +1,6 @@
-"""Campaigns: all trainings that a comparison needs, listed in one file, run side by side, killed and resumed at will."""
+"""Campaigns: all trainings that a comparison needs, listed in one file, run side by side, killed
+and resumed at will.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ LOG = "training.log"
 """What a training's process printed, in its folder."""
 STATES = ("done", "shipped", "running", "stopped", "missing")
 FINISHED = ("done", "shipped")
-"""States in which nothing is left to train; a shipped policy stands in `sim/policies/` with the training's name."""
+"""States in which nothing is left to train; a shipped policy stands in `sim/policies/` with the
+training's name."""
 POLICIES = "policies"
 """Folder of the shipped policies in `sim/`."""
 POLL = 2.0
@@ -85,7 +88,8 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
         name: a shipped name or a YAML file.
 
     Raises:
-        InputError: names file, field, value and remedy; also for a task, design or preset that does not exist.
+        InputError: names file, field, value and remedy; also for a task, design or preset that does
+        not exist.
     """
     path = resources.find("sim", name)
     data, where = read_yaml(path), short_name(path)
@@ -108,13 +112,27 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
         task = load_task(str(group["task"])).name
         load_preset(str(data["preset"])).stages(task)
         if not isinstance(group["designs"], list) or not group["designs"]:
-            raise InputError(where, f"groups.{g}.designs", group["designs"], "expects a list of designs")
+            raise InputError(
+                where, f"groups.{g}.designs", group["designs"], "expects a list of designs"
+            )
         for d, design in enumerate(group["designs"]):
             load_design(str(design))
             for seed in range(_whole(group["seeds"], where, f"groups.{g}.seeds")):
                 if start and (str(design), seed) not in before:
-                    raise InputError(where, f"groups.{g}.start", start, f"expects a group before it that has {design}, seed {seed}")
-                run = Run(str(group["name"]), str(group["task"]), str(design), seed, str(data["preset"]), start)
+                    raise InputError(
+                        where,
+                        f"groups.{g}.start",
+                        start,
+                        f"expects a group before it that has {design}, seed {seed}",
+                    )
+                run = Run(
+                    str(group["name"]),
+                    str(group["task"]),
+                    str(design),
+                    seed,
+                    str(data["preset"]),
+                    start,
+                )
                 runs.append((seed, g, d, run))
     # by seed first, so that whatever is done when time is out can be compared
     ordered = tuple(run for *_, run in sorted(runs, key=lambda entry: entry[:3]))
@@ -128,17 +146,27 @@ def campaign_status(campaign: Campaign, out: str | Path) -> list[RunStatus]:
 
 def status_table(statuses: list[RunStatus]) -> str:
     """The status as text: a line a training, and a sum."""
-    lines = [f"{'training':<34} {'state':<8} {'M steps':>12} {'speed':>6} {'falls/min':>9} {'CoT':>5} {'assist':>6} {'left':>8}"]
+    lines = [
+        f"{'training':<34} {'state':<8} {'M steps':>12} {'speed':>6} {'falls/min':>9} {'CoT':>5} "
+        f"{'assist':>6} {'left':>8}"
+    ]
     for status in statuses:
         found = status.measures or {}
         share = f"{status.steps / 1e6:.2f}/{status.total / 1e6:.1f}"
         left = f"{found['left'] / 60:.0f} min" if found.get("left") else ""
-        numbers = [_shown(found.get(key), width) for key, width in (("speed", 6), ("falls", 9), ("cost_of_transport", 5), ("assist", 6))]
-        lines.append(f"{status.run.name:<34} {status.state:<8} {share:>12} {' '.join(numbers)} {left:>8}")
+        numbers = [
+            _shown(found.get(key), width)
+            for key, width in (("speed", 6), ("falls", 9), ("cost_of_transport", 5), ("assist", 6))
+        ]
+        lines.append(
+            f"{status.run.name:<34} {status.state:<8} {share:>12} {' '.join(numbers)} {left:>8}"
+        )
     done = sum(s.state in FINISHED for s in statuses)
     steps = sum(s.total if s.state in FINISHED else s.steps for s in statuses)
     total = sum(s.total for s in statuses)
-    lines.append(f"{done} of {len(statuses)} done; {steps / 1e6:.1f} of {total / 1e6:.1f} M policy steps")
+    lines.append(
+        f"{done} of {len(statuses)} done; {steps / 1e6:.1f} of {total / 1e6:.1f} M policy steps"
+    )
     return "\n".join(lines)
 
 
@@ -160,8 +188,8 @@ def run_campaign(
         show_every: seconds between.
 
     Returns:
-        Whether all is done. False after an interrupt, which stops the trainings with checkpoints, or when a training failed;
-        the others go on then, and its log says why.
+        Whether all is done. False after an interrupt, which stops the trainings with checkpoints,
+        or when a training failed; the others go on then, and its log says why.
 
     Raises:
         InputError: bad input.
@@ -169,7 +197,9 @@ def run_campaign(
     """
     folder = check_output_folder(out)
     write_text(folder / MARKER, "made by hyperleg\n")
-    waiting = [s.run for s in campaign_status(campaign, folder) if s.state in ("missing", "stopped")]
+    waiting = [
+        s.run for s in campaign_status(campaign, folder) if s.state in ("missing", "stopped")
+    ]
     working: dict[str, subprocess.Popen[bytes]] = {}
     failed, shown = [], 0.0
     try:
@@ -186,7 +216,13 @@ def run_campaign(
                 place = folder / run.name
                 place.mkdir(parents=True, exist_ok=True)
                 write_text(place / MARKER, "made by hyperleg\n")
-                arguments: dict[str, object] = {"task": run.task, "design": run.design, "seed": run.seed, "preset": run.preset, "out": place}
+                arguments: dict[str, object] = {
+                    "task": run.task,
+                    "design": run.design,
+                    "seed": run.seed,
+                    "preset": run.preset,
+                    "out": place,
+                }
                 if run.start:
                     arguments["start"] = _start_file(run, folder)
                 working[run.name] = launch.start(arguments, place / LOG)
@@ -224,7 +260,9 @@ def shipped_folder() -> Path:
 
 
 def _is_shipped(run: Run) -> bool:
-    """Whether this very training is shipped: same task, design, seed and preset as they stand today."""
+    """Whether this very training is shipped: same task, design, seed and preset as they stand
+    today.
+    """
     place = shipped_folder() / run.name
     try:
         found = json.loads((place / RUN).read_text())
@@ -237,7 +275,9 @@ def _is_shipped(run: Run) -> bool:
         "seed": run.seed,
         "preset": preset_mapping(load_preset(run.preset), task.name),
     }
-    return (place / POLICY).exists() and all(found.get(key) == json.loads(json.dumps(value)) for key, value in today.items())
+    return (place / POLICY).exists() and all(
+        found.get(key) == json.loads(json.dumps(value)) for key, value in today.items()
+    )
 
 
 def _stop(processes: list[subprocess.Popen[bytes]]) -> None:
@@ -256,10 +296,18 @@ def _status(run: Run, folder: Path) -> RunStatus:
     if found is None and _is_shipped(run):
         return RunStatus(run, "shipped", total, total)
     if found is None:
-        return RunStatus(run, "stopped" if (folder / CHECKPOINT).exists() else "missing", 0.0, total)
+        return RunStatus(
+            run, "stopped" if (folder / CHECKPOINT).exists() else "missing", 0.0, total
+        )
     if found.get("done") and (folder / POLICY).exists():
         return RunStatus(run, "done", total, total, found)
-    return RunStatus(run, "running" if _alive(found.get("pid")) else "stopped", float(found.get("steps") or 0.0), total, found)
+    return RunStatus(
+        run,
+        "running" if _alive(found.get("pid")) else "stopped",
+        float(found.get("steps") or 0.0),
+        total,
+        found,
+    )
 
 
 def _alive(pid: int | None) -> bool:

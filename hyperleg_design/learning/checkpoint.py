@@ -1,4 +1,6 @@
-"""Checkpoints: all that a training's future depends on, in one file that is written whole or not at all."""
+"""Checkpoints: all that a training's future depends on, in one file that is written whole or not at
+all.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
     """Write a checkpoint.
 
     Raises:
-        OutputError: the disk is full or the place cannot be written; the old file, if any, is untouched.
+        OutputError: the disk is full or the place cannot be written; the old file, if any, is
+        untouched.
     """
     stream = io.BytesIO()
     torch.save({"format": FORMAT, **_to_tensors(content)}, stream)
@@ -40,10 +43,23 @@ def load_checkpoint(path: Path) -> dict[str, Any]:
         raise InputError(where, "", None, "no such checkpoint") from None
     except Exception as error:  # torch raises whatever its readers meet
         reason = in_short(error)
-        raise InputError(where, "", None, f"is no checkpoint, or is truncated ({reason}); delete it to start anew, or copy it back") from None
+        raise InputError(
+            where,
+            "",
+            None,
+            f"is no checkpoint, or is truncated ({reason}); delete it to start anew, or copy it "
+            f"back",
+        ) from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise InputError(where, "format", content.get("format") if isinstance(content, dict) else None, f"expects {FORMAT}")
-    return {key: value if key == "networks" else _to_arrays(value) for key, value in content.items()}
+        raise InputError(
+            where,
+            "format",
+            content.get("format") if isinstance(content, dict) else None,
+            f"expects {FORMAT}",
+        )
+    return {
+        key: value if key == "networks" else _to_arrays(value) for key, value in content.items()
+    }
 
 
 def _to_tensors(value: Any) -> Any:

@@ -1,7 +1,8 @@
-"""Policies as ONNX files that say by themselves what they are: normaliser, layout, design, task, seed and commit inside.
+"""Policies as ONNX files that say by themselves what they are: normaliser, layout, design, task,
+seed and commit inside.
 
-Input `observation` `(n, size)`, output `action` `(n, J)`, both single precision. Metadata (`metadata_props`), JSON texts
-where not plain:
+Input `observation` `(n, size)`, output `action` `(n, J)`, both single precision. Metadata
+(`metadata_props`), JSON texts where not plain:
 
 | key | holds |
 |---|---|
@@ -50,12 +51,17 @@ def export_policy(path: Path, actor: MLPModel, metadata: dict[str, Any]) -> Path
     content = _as_onnx(actor, {"format": FORMAT, **metadata})
     difference = largest_difference(content, actor)
     if not difference <= TOLERANCE:
-        raise OutputError(f"{path}: the exported policy differs from the trained one by {difference:.2g}; nothing was written")
+        raise OutputError(
+            f"{path}: the exported policy differs from the trained one by {difference:.2g}; "
+            f"nothing was written"
+        )
     return write_bytes(path, content)
 
 
 def largest_difference(content: bytes, actor: MLPModel, count: int = 64) -> float:
-    """Between actions of an ONNX file and of torch, over 1 + |action|, on observations as the normaliser has seen them."""
+    """Between actions of an ONNX file and of torch, over 1 + |action|, on observations as the
+    normaliser has seen them.
+    """
     import onnxruntime
 
     options = onnxruntime.SessionOptions()
@@ -65,7 +71,9 @@ def largest_difference(content: bytes, actor: MLPModel, count: int = 64) -> floa
     normaliser = actor.obs_normalizer
     deviation = normaliser.std.numpy() if actor.obs_normalization else 1.0
     mean = normaliser.mean.numpy() if actor.obs_normalization else 0.0
-    observation = (mean + 2.0 * deviation * rng.normal(size=(count, actor.obs_dim))).astype(np.float32)
+    observation = (mean + 2.0 * deviation * rng.normal(size=(count, actor.obs_dim))).astype(
+        np.float32
+    )
     with torch.inference_mode():
         expected = actor.mlp(actor.obs_normalizer(torch.from_numpy(observation))).numpy()
     (action,) = session.run(["action"], {"observation": observation})
@@ -87,7 +95,11 @@ def _as_onnx(actor: MLPModel, metadata: dict[str, Any]) -> bytes:
         return output
 
     def constant(label: str, values: torch.Tensor) -> str:
-        weights.append(numpy_helper.from_array(np.ascontiguousarray(values.detach().numpy(), np.float32), label))
+        weights.append(
+            numpy_helper.from_array(
+                np.ascontiguousarray(values.detach().numpy(), np.float32), label
+            )
+        )
         return label
 
     if actor.obs_normalization:
@@ -96,7 +108,11 @@ def _as_onnx(actor: MLPModel, metadata: dict[str, Any]) -> bytes:
         name = add("Div", [name, constant("deviation", normaliser._std + normaliser.eps)])
     for i, layer in enumerate(actor.mlp):
         if isinstance(layer, torch.nn.Linear):
-            name = add("Gemm", [name, constant(f"weight_{i}", layer.weight), constant(f"bias_{i}", layer.bias)], transB=1)
+            name = add(
+                "Gemm",
+                [name, constant(f"weight_{i}", layer.weight), constant(f"bias_{i}", layer.bias)],
+                transB=1,
+            )
             outputs = layer.out_features
         else:
             name = add({"ELU": "Elu", "ReLU": "Relu", "Tanh": "Tanh"}[type(layer).__name__], [name])
@@ -108,9 +124,17 @@ def _as_onnx(actor: MLPModel, metadata: dict[str, Any]) -> bytes:
         [helper.make_tensor_value_info("action", TensorProto.FLOAT, ["n", outputs])],
         weights,
     )
-    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], producer_name="hyperleg-design")
+    model = helper.make_model(
+        graph, opset_imports=[helper.make_opsetid("", OPSET)], producer_name="hyperleg-design"
+    )
     model.ir_version = 10
-    helper.set_model_props(model, {key: value if isinstance(value, str) else json.dumps(value) for key, value in metadata.items()})
+    helper.set_model_props(
+        model,
+        {
+            key: value if isinstance(value, str) else json.dumps(value)
+            for key, value in metadata.items()
+        },
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         onnx.checker.check_model(model)

@@ -15,7 +15,8 @@ MALLOC = {
     "MALLOC_TOP_PAD_": "67000000",
     "MALLOC_ARENA_MAX": "2",
 }
-"""Keeps glibc from giving memory back to the system and fetching it anew, a third of the system's time otherwise."""
+"""Keeps glibc from giving memory back to the system and fetching it anew, a third of the system's
+time otherwise."""
 
 
 def surroundings(threads: int = 1) -> dict[str, str]:
@@ -25,16 +26,29 @@ def surroundings(threads: int = 1) -> dict[str, str]:
 
 def command(arguments: Mapping[str, object]) -> list[str]:
     """Command line of a training; arguments as `train` takes them, names and paths only."""
-    return [sys.executable, "-m", "hyperleg_design.learning", *(f"--{key}={value}" for key, value in arguments.items())]
+    return [
+        sys.executable,
+        "-m",
+        "hyperleg_design.learning",
+        *(f"--{key}={value}" for key, value in arguments.items()),
+    ]
 
 
 def start(arguments: Mapping[str, object], log: Path, threads: int = 1) -> subprocess.Popen[bytes]:
     """Start a training in a process of its own, its progress going to a file."""
     with log.open("ab") as stream:
-        return subprocess.Popen(command(arguments), stdout=stream, stderr=stream, stdin=subprocess.DEVNULL, env=surroundings(threads))
+        return subprocess.Popen(
+            command(arguments),
+            stdout=stream,
+            stderr=stream,
+            stdin=subprocess.DEVNULL,
+            env=surroundings(threads),
+        )
 
 
-def run_here(arguments: Sequence[str], threads: int = 1, module: str = "hyperleg_design.learning") -> None:
+def run_here(
+    arguments: Sequence[str], threads: int = 1, module: str = "hyperleg_design.learning"
+) -> None:
     """Replace this process by a training's."""
     os.execve(sys.executable, [sys.executable, "-m", module, *arguments], surroundings(threads))
 

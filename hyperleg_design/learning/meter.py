@@ -1,4 +1,6 @@
-"""What a training shows of itself: reward terms, speed, falls, power and cost of transport, averaged over an iteration."""
+"""What a training shows of itself: reward terms, speed, falls, power and cost of transport,
+averaged over an iteration.
+"""
 
 from __future__ import annotations
 
@@ -44,17 +46,22 @@ class Meter:
         """Means over the iteration, which ends it.
 
         Returns:
-            `reward` and `terms` (each a second, weighted), `speed` [m/s], `falls` (a robot's minute), `power` [W],
-            `cost_of_transport`, `episode` (mean length of late [policy steps]) and `share` (see `Schedule.advance`).
+            `reward` and `terms` (each a second, weighted), `speed` [m/s], `falls` (a robot's
+            minute), `power` [W], `cost_of_transport`, `episode` (mean length of late [policy
+            steps]) and `share` (see `Schedule.advance`).
         """
         environment, duration = self.environment, self.environment.task.physics.policy_step
-        terms = dict(zip(environment.reward_names, self._terms / (self._count * duration), strict=True))
+        terms = dict(
+            zip(environment.reward_names, self._terms / (self._count * duration), strict=True)
+        )
         rewards = environment.chunks[0].rewards
         speed = self._speed / self._looks
         weight = rewards["power"].weight if "power" in rewards else 0.0
         power = terms["power"] / weight if weight else float("nan")
         name = "position_progress" if self.goal else "linear_velocity"
-        share = terms[name] / rewards[name].weight if name in rewards and rewards[name].weight else 0.0
+        share = (
+            terms[name] / rewards[name].weight if name in rewards and rewards[name].weight else 0.0
+        )
         if self.goal:
             share /= speed_cap(environment) * duration  # progress is a distance
         self.steps = MEMORY * self.steps + self._count
@@ -66,7 +73,9 @@ class Meter:
             "speed": float(speed),
             "falls": 60.0 * self._falls / (self._count * duration),
             "power": float(power),
-            "cost_of_transport": float(power / (environment.layout.weight * speed)) if speed > 0.05 else float("nan"),
+            "cost_of_transport": float(power / (environment.layout.weight * speed))
+            if speed > 0.05
+            else float("nan"),
             "episode": float(self.steps / max(self.ends, 1.0)),
             "share": float(self.share),
         }
@@ -89,7 +98,9 @@ def speed_cap(environment: Environment) -> float:
 
 
 def mean_speed(environment: Environment, goal: bool) -> float:
-    """Mean speed of all robots at this moment [m/s]: straight ahead, or, with waypoints, any way."""
+    """Mean speed of all robots at this moment [m/s]: straight ahead, or, with waypoints, any
+    way.
+    """
     speeds = []
     for chunk in environment.chunks:
         velocity = chunk.motion.walking_velocity

@@ -49,7 +49,8 @@ class Algorithm(Checked):
     gradient_norm: Any = number("", 1e-3, 1e6, default=1.0)
     """Largest norm of the gradients of actor and critic, each."""
     mirror: Any = text("half", "append", "never", default="half")
-    """Left-right symmetry: `half` mirrors each sample with probability one half, `append` adds every sample's mirror image."""
+    """Left-right symmetry: `half` mirrors each sample with probability one half, `append` adds
+    every sample's mirror image."""
     mixed_precision: Any = flag(default=True)
     """Whether networks run in bfloat16 during updates."""
 
@@ -103,7 +104,9 @@ class Ramp:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Stage:
-    """A part of a training; settings that it does not name stay as the task and the stages before left them."""
+    """A part of a training; settings that it does not name stay as the task and the stages before
+    left them.
+    """
 
     name: str
     steps: float
@@ -153,7 +156,12 @@ class Preset(Checked):
             InputError: the preset has none for it.
         """
         if task not in self.tasks:
-            raise InputError(self.name, "tasks", task, f"has no stages for this task; it has {', '.join(self.tasks)}")
+            raise InputError(
+                self.name,
+                "tasks",
+                task,
+                f"has no stages for this task; it has {', '.join(self.tasks)}",
+            )
         return self.tasks[task]
 
     def iterations(self, stage: Stage) -> int:
@@ -194,16 +202,29 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
     name, tasks = rest.pop("name", None), rest.pop("tasks", None)
     if not isinstance(name, str):
         raise InputError(where, "name", name, "expects a text")
-    stages = {str(t): _stages(s, where, f"tasks.{t}") for t, s in _mapping(tasks, where, "tasks").items()}
+    stages = {
+        str(t): _stages(s, where, f"tasks.{t}") for t, s in _mapping(tasks, where, "tasks").items()
+    }
     network = dict(_mapping(rest.pop("network", {}), where, "network"))
     hidden = network.pop("hidden", [512, 256, 128])
-    if not isinstance(hidden, list) or not hidden or not all(isinstance(h, int) and not isinstance(h, bool) and 0 < h <= 65536 for h in hidden):
+    if (
+        not isinstance(hidden, list)
+        or not hidden
+        or not all(
+            isinstance(h, int) and not isinstance(h, bool) and 0 < h <= 65536 for h in hidden
+        )
+    ):
         raise InputError(where, "network.hidden", hidden, "expects a list of widths")
     made = parameters.from_mapping(Network, network, where, "network")
     warm = parameters.from_mapping(WarmStart, rest.pop("warm_start", {}), where, "warm_start")
     algorithm = parameters.from_mapping(Algorithm, rest.pop("algorithm", {}), where, "algorithm")
     if (algorithm.mirror, algorithm.adapted) in (("half", "minibatch"), ("append", "iteration")):
-        raise InputError(where, "algorithm.adapted", algorithm.adapted, f"with mirror: {algorithm.mirror} would judge mirrored samples")
+        raise InputError(
+            where,
+            "algorithm.adapted",
+            algorithm.adapted,
+            f"with mirror: {algorithm.mirror} would judge mirrored samples",
+        )
     sizes = ("simulations", "rollout", "checkpoint_every", "trial_every", "late", "late_apart")
     for key in rest:
         if key not in sizes:
@@ -212,7 +233,9 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
     values = {key: _whole(rest[key], where, key) for key in rest}
     try:
         shape = dataclasses.replace(made, hidden=tuple(hidden))
-        return Preset(name=name, algorithm=algorithm, network=shape, warm_start=warm, tasks=stages, **values)
+        return Preset(
+            name=name, algorithm=algorithm, network=shape, warm_start=warm, tasks=stages, **values
+        )
     except InputError as error:
         raise InputError(where, error.field, error.value, error.remedy) from None
 
@@ -228,7 +251,9 @@ def _stage(data: Any, where: str, path: str) -> Stage:
     data = _mapping(data, where, path)
     for key in data:
         if key not in known:
-            raise InputError(where, f"{path}.{key}", data[key], parameters.unknown(str(key), list(known)))
+            raise InputError(
+                where, f"{path}.{key}", data[key], parameters.unknown(str(key), list(known))
+            )
     for key in ("name", "steps"):
         if key not in data:
             raise InputError(where, f"{path}.{key}", None, "is missing")
@@ -236,16 +261,25 @@ def _stage(data: Any, where: str, path: str) -> Stage:
     for term, entry in _mapping(data.get("rewards", {}), where, f"{path}.rewards").items():
         values = entry if isinstance(entry, Mapping) else {"weight": entry}
         _check_term(str(term), [str(k) for k in values], where, f"{path}.rewards.{term}")
-        rewards[str(term)] = {str(k): _number(v, where, f"{path}.rewards.{term}.{k}") for k, v in values.items()}
-    commands = {str(k): _number(v, where, f"{path}.commands.{k}") for k, v in _mapping(data.get("commands", {}), where, f"{path}.commands").items()}
+        rewards[str(term)] = {
+            str(k): _number(v, where, f"{path}.rewards.{term}.{k}") for k, v in values.items()
+        }
+    commands = {
+        str(k): _number(v, where, f"{path}.commands.{k}")
+        for k, v in _mapping(data.get("commands", {}), where, f"{path}.commands").items()
+    }
     ramps = data.get("ramps", [])
     if not isinstance(ramps, list):
         raise InputError(where, f"{path}.ramps", ramps, "expects a list of ramps")
     return Stage(
         name=str(data["name"]),
         steps=_number(data["steps"], where, f"{path}.steps", 1, 1e12),
-        assist=None if data.get("assist") is None else _number(data["assist"], where, f"{path}.assist", 0, 1),
-        assist_gone_by=_number(data.get("assist_gone_by", 1.0), where, f"{path}.assist_gone_by", 0, 1),
+        assist=None
+        if data.get("assist") is None
+        else _number(data["assist"], where, f"{path}.assist", 0, 1),
+        assist_gone_by=_number(
+            data.get("assist_gone_by", 1.0), where, f"{path}.assist_gone_by", 0, 1
+        ),
         rewards=rewards,
         commands=commands,
         ramps=tuple(_ramp(entry, where, f"{path}.ramps.{i}") for i, entry in enumerate(ramps)),
@@ -256,7 +290,12 @@ def _ramp(data: Any, where: str, path: str) -> Ramp:
     data = _mapping(data, where, path)
     for key in data:
         if key not in ("set", "from", "to", "steps", "begins"):
-            raise InputError(where, f"{path}.{key}", data[key], parameters.unknown(str(key), ["set", "from", "to", "steps", "begins"]))
+            raise InputError(
+                where,
+                f"{path}.{key}",
+                data[key],
+                parameters.unknown(str(key), ["set", "from", "to", "steps", "begins"]),
+            )
     for key in ("set", "from", "to", "steps"):
         if key not in data:
             raise InputError(where, f"{path}.{key}", None, "is missing")
@@ -266,24 +305,41 @@ def _ramp(data: Any, where: str, path: str) -> Ramp:
         parameter = parameter or "weight"
         _check_term(name, [parameter], where, f"{path}.set")
     elif kind != "commands" or not name or parameter:
-        raise InputError(where, f"{path}.set", data["set"], "expects rewards.TERM, rewards.TERM.PARAMETER or commands.SETTING")
+        raise InputError(
+            where,
+            f"{path}.set",
+            data["set"],
+            "expects rewards.TERM, rewards.TERM.PARAMETER or commands.SETTING",
+        )
     begins = data.get("begins", "stage")
     if begins not in BEGINS:
         raise InputError(where, f"{path}.begins", begins, f"expects one of {', '.join(BEGINS)}")
     low, high = (_number(data[key], where, f"{path}.{key}") for key in ("from", "to"))
-    return Ramp((kind, name, parameter), low, high, _number(data["steps"], where, f"{path}.steps", 1, 1e12), begins)
+    return Ramp(
+        (kind, name, parameter),
+        low,
+        high,
+        _number(data["steps"], where, f"{path}.steps", 1, 1e12),
+        begins,
+    )
 
 
 def _check_term(term: str, settings: list[str], where: str, path: str) -> None:
     if term not in TERMS:
-        raise InputError(where, path, term, parameters.unknown(term, sorted(TERMS)).replace("field", "term"))
+        raise InputError(
+            where, path, term, parameters.unknown(term, sorted(TERMS)).replace("field", "term")
+        )
     for name in settings:
         if name != "weight" and name not in TERMS[term].parameters:
-            raise InputError(where, path, name, parameters.unknown(name, ["weight", *TERMS[term].parameters]))
+            raise InputError(
+                where, path, name, parameters.unknown(name, ["weight", *TERMS[term].parameters])
+            )
 
 
 def _number(value: Any, where: str, path: str, low: float = -1e12, high: float = 1e12) -> float:
-    return float(parameters.checked(value, parameters.Rule("number", low=low, high=high), where, path))
+    return float(
+        parameters.checked(value, parameters.Rule("number", low=low, high=high), where, path)
+    )
 
 
 def _whole(value: Any, where: str, path: str) -> float:

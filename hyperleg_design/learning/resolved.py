@@ -1,4 +1,6 @@
-"""Tasks and presets as plain mappings, every value written out, so that a file says by itself what was trained."""
+"""Tasks and presets as plain mappings, every value written out, so that a file says by itself what
+was trained.
+"""
 
 from __future__ import annotations
 
@@ -17,10 +19,14 @@ if TYPE_CHECKING:
 
 def task_mapping(task: Task) -> dict[str, Any]:
     """A task such that `task_from_mapping` gives it back."""
-    commands: dict[str, Any] = {"kind": "waypoints" if isinstance(task.commands, WaypointCommands) else "velocity"}
+    commands: dict[str, Any] = {
+        "kind": "waypoints" if isinstance(task.commands, WaypointCommands) else "velocity"
+    }
     commands.update(parameters.leaves(task.commands))
     if isinstance(task.commands, WaypointCommands):
-        commands["courses"] = [[list(point) for point in course] for course in task.commands.courses]
+        commands["courses"] = [
+            [list(point) for point in course] for course in task.commands.courses
+        ]
     return {
         "name": task.name,
         "commands": commands,
@@ -44,7 +50,11 @@ def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:
 
 
 def _stage(stage: Stage) -> dict[str, Any]:
-    found: dict[str, Any] = {"name": stage.name, "steps": stage.steps, "assist_gone_by": stage.assist_gone_by}
+    found: dict[str, Any] = {
+        "name": stage.name,
+        "steps": stage.steps,
+        "assist_gone_by": stage.assist_gone_by,
+    }
     if stage.assist is not None:
         found["assist"] = stage.assist
     found["rewards"] = {term: _plain(values) for term, values in stage.rewards.items()}
@@ -55,7 +65,13 @@ def _stage(stage: Stage) -> dict[str, Any]:
 
 def _ramp(ramp: Ramp) -> dict[str, Any]:
     target = ".".join(part for part in ramp.target if part)
-    return {"set": target, "from": ramp.low, "to": ramp.high, "steps": ramp.steps, "begins": ramp.begins}
+    return {
+        "set": target,
+        "from": ramp.low,
+        "to": ramp.high,
+        "steps": ramp.steps,
+        "begins": ramp.begins,
+    }
 
 
 def _plain(values: Mapping[str, float]) -> dict[str, float]:

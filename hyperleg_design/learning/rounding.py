@@ -1,7 +1,9 @@
-"""Mixed precision on processors that cannot multiply bfloat16: the same roundings, multiplied in float32, about three times as fast.
+"""Mixed precision on processors that cannot multiply bfloat16: the same roundings, multiplied in
+float32, about three times as fast.
 
-A product of two bfloat16 numbers is exact in float32, so layers that round what they take and what they give differ from native
-ones only in the order of their sums. Trainings are then alike on any processor.
+A product of two bfloat16 numbers is exact in float32, so layers that round what they take and what
+they give differ from native ones only in the order of their sums. Trainings are then alike on any
+processor.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""What changes while a policy is trained: stages, ramps and the assist that goes away, as a function of steps and progress."""
+"""What changes while a policy is trained: stages, ramps and the assist that goes away, as a
+function of steps and progress.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,8 @@ DECAY_EVERY = 5
 LONG_ENOUGH = 350.0
 """Mean episode from which the assist decays [policy steps]; assumed."""
 FAST_ENOUGH = 0.6
-"""Share of the best velocity reward, or of the speed cap, from which the assist decays [-]; assumed."""
+"""Share of the best velocity reward, or of the speed cap, from which the assist decays [-];
+assumed."""
 
 
 class Schedule:
@@ -28,7 +31,8 @@ class Schedule:
         self.gain = 0.0
         """Of the assist."""
         self.gone: list[int | None] = []
-        """For each stage begun, its iteration from which there was no assist; None while there is."""
+        """For each stage begun, its iteration from which there was no assist; None while there
+        is."""
         self._update_assist()
 
     @property
@@ -38,7 +42,9 @@ class Schedule:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Index of the present stage, and iterations done in it; the last one's end when all is done."""
+        """Index of the present stage, and iterations done in it; the last one's end when all is
+        done.
+        """
         left = self.iteration
         for index, stage in enumerate(self.stages):
             length = self.preset.iterations(stage)
@@ -53,16 +59,24 @@ class Schedule:
         return self.stages[self.place[0]]
 
     def apply(self, environment: Environment) -> None:
-        """Set what the next iteration runs with; stages before the present one leave their last values."""
+        """Set what the next iteration runs with; stages before the present one leave their last
+        values.
+        """
         environment.assist = Assist(self.gain) if self.gain > 0.0 else None
         index, done = self.place
         for i, stage in enumerate(self.stages[: index + 1]):
             for term, values in stage.rewards.items():
-                environment.set_reward(term, values.get("weight"), **{k: v for k, v in values.items() if k != "weight"})
+                environment.set_reward(
+                    term, values.get("weight"), **{k: v for k, v in values.items() if k != "weight"}
+                )
             if stage.commands:
                 environment.set_commands(**stage.commands)
             for ramp in stage.ramps:
-                set_value(environment, ramp, self._progress(ramp, i, done if i == index else self.preset.iterations(stage)))
+                set_value(
+                    environment,
+                    ramp,
+                    self._progress(ramp, i, done if i == index else self.preset.iterations(stage)),
+                )
 
     def advance(self, mean_episode: float, share: float) -> None:
         """An iteration is done.
@@ -72,7 +86,12 @@ class Schedule:
             share: of the best velocity reward or of the speed cap reached of late [-].
         """
         done = self.place[1] + 1
-        if self.gain > 0.0 and done % DECAY_EVERY == 0 and mean_episode > LONG_ENOUGH and share > FAST_ENOUGH:
+        if (
+            self.gain > 0.0
+            and done % DECAY_EVERY == 0
+            and mean_episode > LONG_ENOUGH
+            and share > FAST_ENOUGH
+        ):
             assist = Assist(self.gain)
             assist.decay()
             self.gain = assist.gain
@@ -85,7 +104,11 @@ class Schedule:
 
     def put(self, state: dict[str, Any]) -> None:
         """Back to a state."""
-        self.iteration, self.gain, self.gone = state["iteration"], state["gain"], list(state["gone"])
+        self.iteration, self.gain, self.gone = (
+            state["iteration"],
+            state["gain"],
+            list(state["gone"]),
+        )
 
     def _update_assist(self) -> None:
         index, done = self.place

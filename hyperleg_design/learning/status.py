@@ -6,7 +6,13 @@ import json
 from pathlib import Path
 from typing import Any
 
-RUN, CHECKPOINT, STATUS, PROGRESS, POLICY = "run.json", "checkpoint.pt", "status.json", "progress.jsonl", "policy.onnx"
+RUN, CHECKPOINT, STATUS, PROGRESS, POLICY = (
+    "run.json",
+    "checkpoint.pt",
+    "status.json",
+    "progress.jsonl",
+    "policy.onnx",
+)
 
 
 def read_status(folder: Path) -> dict[str, Any] | None:
@@ -19,6 +25,8 @@ def read_status(folder: Path) -> dict[str, Any] | None:
 
 
 def policies(folder: Path) -> list[Path]:
-    """ONNX files of a training, earliest first; the last one is the final policy if the training is done."""
+    """ONNX files of a training, earliest first; the last one is the final policy if the training is
+    done.
+    """
     final = folder / POLICY
     return [*sorted(folder.glob("late_*.onnx")), *([final] if final.exists() else [])]

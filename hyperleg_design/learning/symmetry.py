@@ -1,8 +1,9 @@
-"""Left-right symmetry of the robot as augmentation for `rsl-rl`, from the mirror maps of the simulation.
+"""Left-right symmetry of the robot as augmentation for `rsl-rl`, from the mirror maps of the
+simulation.
 
-Two ways: `append_mirrored` is rsl-rl's own augmentation, which doubles every minibatch; `HalfMirrored` mirrors each
-sample with probability one half, which costs nothing, and measures how far an update moved the policy on those that it
-left alone.
+Two ways: `append_mirrored` is rsl-rl's own augmentation, which doubles every minibatch;
+`HalfMirrored` mirrors each sample with probability one half, which costs nothing, and measures how
+far an update moved the policy on those that it left alone.
 """
 
 from __future__ import annotations
@@ -37,9 +38,13 @@ class Mirrors:
 
     def __init__(self, maps: dict[str, MirrorMap]) -> None:
         self.action = TorchMirror(maps["action"])
-        self.groups = {name: TorchMirror(mirror) for name, mirror in maps.items() if name != "action"}
+        self.groups = {
+            name: TorchMirror(mirror) for name, mirror in maps.items() if name != "action"
+        }
 
-    def append_mirrored(self, env: Any, obs: TensorDict | None, actions: torch.Tensor | None) -> tuple[TensorDict | None, torch.Tensor | None]:
+    def append_mirrored(
+        self, env: Any, obs: TensorDict | None, actions: torch.Tensor | None
+    ) -> tuple[TensorDict | None, torch.Tensor | None]:
         """Samples followed by their mirror images, as rsl-rl asks for; `(n, k)` -> `(2 n, k)`."""
         if obs is not None:
             image = obs.clone()
@@ -52,7 +57,8 @@ class Mirrors:
 
 
 class HalfMirrored(Symmetry):  # type: ignore[misc]
-    """Mirrors each sample of a minibatch with probability one half, in place of appending all mirror images.
+    """Mirrors each sample of a minibatch with probability one half, in place of appending all
+    mirror images.
 
     Args:
         mirrors: of the robot.
@@ -60,7 +66,9 @@ class HalfMirrored(Symmetry):  # type: ignore[misc]
     """
 
     def __init__(self, mirrors: Mirrors, share: float = 0.5) -> None:
-        super().__init__(env=None, data_augmentation_func=mirrors.append_mirrored, use_data_augmentation=True)
+        super().__init__(
+            env=None, data_augmentation_func=mirrors.append_mirrored, use_data_augmentation=True
+        )
         self.mirrors, self.share = mirrors, share
         self.mirrored = torch.zeros(0, dtype=torch.bool)
         """Samples of the latest minibatch that are mirrored, `(n,)`."""
@@ -78,8 +86,12 @@ class HalfMirrored(Symmetry):  # type: ignore[misc]
             observations[name] = torch.where(where, mirror(observations[name]), observations[name])
         batch.actions = torch.where(where, self.mirrors.action(batch.actions), batch.actions)
 
-    def compute_loss(self, actor: MLPModel, batch: RolloutStorage.Batch, original_batch_size: int) -> torch.Tensor:
-        """No loss; notes the divergence of the policy on unmirrored samples from the forward pass just made."""
+    def compute_loss(
+        self, actor: MLPModel, batch: RolloutStorage.Batch, original_batch_size: int
+    ) -> torch.Tensor:
+        """No loss; notes the divergence of the policy on unmirrored samples from the forward pass
+        just made.
+        """
         alone = ~self.mirrored
         with torch.no_grad():
             new = tuple(p[alone].float() for p in actor.output_distribution_params)

@@ -4,12 +4,11 @@ A training lives in a folder:
 
 | file | holds |
 |---|---|
-| `run.json` | what is trained: task, design, preset (all resolved), seed, command, versions, commit |
-| `checkpoint.pt` | all that its future depends on; written whole or not at all |
-| `status.json` | how far it is, with the latest measures |
-| `progress.jsonl` | measures of every iteration, and trials |
-| `late_*.onnx`, `policy.onnx` | late policies, and the last one; `policy.onnx` is there when the training is done |
-| `events.*` | the same for TensorBoard |
+| `run.json` | what is trained: task, design, preset (all resolved), seed, command, versions, commit
+| | `checkpoint.pt` | all that its future depends on; written whole or not at all | | `status.json`
+| how far it is, with the latest measures | | `progress.jsonl` | measures of every iteration, and
+trials | | `late_*.onnx`, `policy.onnx` | late policies, and the last one; `policy.onnx` is there
+when the training is done | | `events.*` | the same for TensorBoard |
 """
 
 from __future__ import annotations
@@ -76,12 +75,14 @@ def train(
         seed: of all randomness.
         preset: a preset, its shipped name or file.
         out: folder of the training.
-        start: ONNX policy of another task to start from, of the same robot; from scratch by default.
-        threads: of physics and learning. One by default: trainings side by side use processors best. Resuming is bit for
-            bit with the same number only.
+        start: ONNX policy of another task to start from, of the same robot; from scratch by
+            default.
+        threads: of physics and learning. One by default: trainings side by side use processors
+            best. Resuming is bit for bit with the same number only.
         iterations: stop, with a checkpoint, after so many more; all by default.
         alterations: of the simulated robot, or what makes them for a design.
-        overlay: what they are, as JSON takes it: written down, and compared when the training goes on.
+        overlay: what they are, as JSON takes it: written down, and compared when the training goes
+            on.
         show: takes lines of progress.
 
     Returns:
@@ -91,7 +92,10 @@ def train(
         InputError: bad input, or `out` holds another training or is at work already.
         OutputError: something cannot be written; the training can go on from its last checkpoint.
     """
-    command = f"hyperleg train --task {_name(task)} --design {_name(design)} --seed {seed} --preset {_name(preset)}"
+    command = (
+        f"hyperleg train --task {_name(task)} --design {_name(design)} --seed {seed} "
+        f"--preset {_name(preset)}"
+    )
     started = None if start is None else read_start(start)
     if started is not None:
         command += f" --start {Path(str(start)).parent.name}/{Path(str(start)).name}"
@@ -100,14 +104,20 @@ def train(
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     folder = check_output_folder(out)
-    origin = {"start": started and started.source, "overlay": overlay and dict(overlay), "command": command}
+    origin = {
+        "start": started and started.source,
+        "overlay": overlay and dict(overlay),
+        "command": command,
+    }
     description = {**describe(task, design, seed, preset), **origin}
     _check_same(folder, description)
     write_text(folder / MARKER, "made by hyperleg\n")
     with _alone(folder), _limited_threads(threads):
         if not (folder / RUN).exists():
             write_json(folder / RUN, description)
-        training = Training(task, design, seed, preset, folder, threads, description, started, alterations)
+        training = Training(
+            task, design, seed, preset, folder, threads, description, started, alterations
+        )
         return training.run(iterations, show or (lambda line: None))
 
 
@@ -140,14 +150,28 @@ class Training:
         start: StartPolicy | None = None,
         alterations: Alterations | None = None,
     ) -> None:
-        self.task, self.design, self.preset, self.folder, self.description = task, design, preset, folder, description
+        self.task, self.design, self.preset, self.folder, self.description = (
+            task,
+            design,
+            preset,
+            folder,
+            description,
+        )
         self.schedule, self.alterations = Schedule(preset, task.name), alterations
-        self.environment = Environment(design, task, simulations=int(preset.simulations), seed=seed, threads=threads, alterations=alterations)
+        self.environment = Environment(
+            design,
+            task,
+            simulations=int(preset.simulations),
+            seed=seed,
+            threads=threads,
+            alterations=alterations,
+        )
         self.schedule.apply(self.environment)
         torch.manual_seed(seed)
         self.observations = as_tensors(self.environment.reset())
         self.environment.episode_step = np.random.default_rng(seed).integers(
-            round(task.limits.duration / task.physics.policy_step), size=self.environment.simulations
+            round(task.limits.duration / task.physics.policy_step),
+            size=self.environment.simulations,
         )  # so that not all episodes end together
         self.algorithm = make_algorithm(preset, self.environment, self.observations)
         self.algorithm.train_mode()
@@ -175,7 +199,10 @@ class Training:
                 started = time.monotonic()
                 measures = self._iterate()
                 self.seconds += time.monotonic() - started
-                if schedule.iteration % int(preset.trial_every) == 0 or preset.trial_every < schedule.iteration == schedule.total:
+                if (
+                    schedule.iteration % int(preset.trial_every) == 0
+                    or preset.trial_every < schedule.iteration == schedule.total
+                ):
                     self._try()
                     measures["trial"] = self.latest_trial
                 self._log(writer, measures)
@@ -185,14 +212,23 @@ class Training:
                     self.save()
                 if time.monotonic() - shown > SHOW_EVERY or schedule.iteration == last:
                     shown = time.monotonic()
-                    left = (shown - began) / (schedule.iteration - first) * (schedule.total - schedule.iteration)
-                    write_json(self.folder / STATUS, _finite({**measures, "left": left, "pid": os.getpid(), "done": False}))
+                    left = (
+                        (shown - began)
+                        / (schedule.iteration - first)
+                        * (schedule.total - schedule.iteration)
+                    )
+                    write_json(
+                        self.folder / STATUS,
+                        _finite({**measures, "left": left, "pid": os.getpid(), "done": False}),
+                    )
                     show(self.line(measures, left))
         done = schedule.iteration >= schedule.total
         self.save()
         if done:
             self._export(POLICY)
-            write_json(self.folder / STATUS, _finite({**measures, "left": 0.0, "pid": None, "done": True}))
+            write_json(
+                self.folder / STATUS, _finite({**measures, "left": 0.0, "pid": None, "done": True})
+            )
         writer.close()
         self.environment.close()
         return done
@@ -210,7 +246,9 @@ class Training:
             {
                 "networks": self.algorithm.save(),
                 "environment": take_snapshot(self.environment),
-                "observations": {name: values.numpy() for name, values in self.observations.items()},
+                "observations": {
+                    name: values.numpy() for name, values in self.observations.items()
+                },
                 "schedule": self.schedule.state(),
                 "meter": self.meter.state(),
                 "trial": self.latest_trial,
@@ -222,13 +260,16 @@ class Training:
     def line(self, measures: dict[str, Any], left: float) -> str:
         """One line of progress."""
         total = self.schedule.total * self.preset.steps_per_iteration
-        terms = " ".join(f"{name} {value:+.2f}" for name, value in measures["terms"].items() if value)
+        terms = " ".join(
+            f"{name} {value:+.2f}" for name, value in measures["terms"].items() if value
+        )
         parts = [
             f"{self.task.name} {self.design.variant} seed {self.description['seed']}",
             f"{measures['steps'] / 1e6:.2f}/{total / 1e6:.1f} M steps, {measures['rate']:.0f}/s",
             f"stage {measures['stage']}, assist {measures['assist']:.2f}",
             f"reward {measures['reward']:.2f} ({terms})",
-            f"speed {measures['speed']:.2f} m/s, falls {measures['falls']:.1f}/min, CoT {measures['cost_of_transport']:.2f}",
+            f"speed {measures['speed']:.2f} m/s, falls {measures['falls']:.1f}/min, CoT "
+            f"{measures['cost_of_transport']:.2f}",
             f"rate {measures['learning_rate']:.1e}",
         ]
         if self.latest_trial:
@@ -248,7 +289,9 @@ class Training:
                 reward = torch.from_numpy(step.reward.astype(np.float32))
                 self._bootstrap(step, reward)
                 self.observations = as_tensors(step.observations)
-                algorithm.process_env_step(self.observations, reward, torch.from_numpy(step.ending != 0), {})
+                algorithm.process_env_step(
+                    self.observations, reward, torch.from_numpy(step.ending != 0), {}
+                )
             algorithm.compute_returns(self.observations)
         losses = self._update()
         measures = self.meter.read()
@@ -263,8 +306,12 @@ class Training:
             **measures,
             "rate": steps / (time.monotonic() - began),
             "learning_rate": algorithm.learning_rate,
-            "divergence": algorithm.divergence if isinstance(algorithm, IterationPPO) else float("nan"),
-            "deviation": float(algorithm.get_policy().distribution.log_std_param.detach().exp().mean()),
+            "divergence": algorithm.divergence
+            if isinstance(algorithm, IterationPPO)
+            else float("nan"),
+            "deviation": float(
+                algorithm.get_policy().distribution.log_std_param.detach().exp().mean()
+            ),
             "losses": losses,
             "diverged": environment.divergence_count,
         }
@@ -284,19 +331,42 @@ class Training:
 
     def _start_from(self, start: StartPolicy) -> None:
         warm, columns = self.preset.warm_start, list(self.environment.observation_columns["policy"])
-        command, first = np.array([float(warm.forward), 0.0, 0.0]), self.observations["policy"].numpy()
-        start_actor(self.algorithm.actor, start, columns, list(self.environment.layout.joints), command, first, float(warm.deviation))
+        command, first = (
+            np.array([float(warm.forward), 0.0, 0.0]),
+            self.observations["policy"].numpy(),
+        )
+        start_actor(
+            self.algorithm.actor,
+            start,
+            columns,
+            list(self.environment.layout.joints),
+            command,
+            first,
+            float(warm.deviation),
+        )
 
     def _bootstrap(self, step: Any, reward: torch.Tensor) -> None:
-        """An episode that was cut, not lost, goes on in value: add what the critic expects of its last state."""
+        """An episode that was cut, not lost, goes on in value: add what the critic expects of its
+        last state.
+        """
         cut = step.truncated[step.ended]
         if cut.any():
-            final = as_tensors({name: values[cut] for name, values in step.final_observations.items()})
-            reward[torch.from_numpy(step.ended[cut])] += self.preset.algorithm.discount * self.algorithm.critic(final).squeeze(-1)
+            final = as_tensors(
+                {name: values[cut] for name, values in step.final_observations.items()}
+            )
+            reward[torch.from_numpy(step.ended[cut])] += (
+                self.preset.algorithm.discount * self.algorithm.critic(final).squeeze(-1)
+            )
 
     def _try(self) -> None:
         commands = self.environment.chunks[0].commander.settings
-        self.latest_trial = trial(self.design, self.task.changed(commands=commands), self.policy, seed=TRIAL_SEED, alterations=self.alterations)
+        self.latest_trial = trial(
+            self.design,
+            self.task.changed(commands=commands),
+            self.policy,
+            seed=TRIAL_SEED,
+            alterations=self.alterations,
+        )
 
     def _is_late(self) -> bool:
         """Whether the policy is one of the last to be kept besides the very last."""
@@ -305,12 +375,29 @@ class Training:
         return left > 0 and left % apart == 0 and left // apart < int(self.preset.late)
 
     def _export(self, name: str) -> None:
-        chosen: tuple[str, ...] = ("variant", "seed", "task", "design", "preset", "deviations", "start", "command", "commit", "versions")
+        chosen: tuple[str, ...] = (
+            "variant",
+            "seed",
+            "task",
+            "design",
+            "preset",
+            "deviations",
+            "start",
+            "command",
+            "commit",
+            "versions",
+        )
         if self.description.get("overlay"):
             chosen += ("overlay",)
         metadata = {key: self.description[key] for key in chosen}
-        metadata |= {"seed": str(self.description["seed"]), "steps": str(self.schedule.iteration * self.preset.steps_per_iteration)}
-        metadata |= {"columns": self.environment.observation_columns["policy"], "joints": list(self.environment.layout.joints)}
+        metadata |= {
+            "seed": str(self.description["seed"]),
+            "steps": str(self.schedule.iteration * self.preset.steps_per_iteration),
+        }
+        metadata |= {
+            "columns": self.environment.observation_columns["policy"],
+            "joints": list(self.environment.layout.joints),
+        }
         export_policy(self.folder / name, self.algorithm.get_policy(), metadata)
 
     def _load(self) -> None:
@@ -319,7 +406,12 @@ class Training:
             self.algorithm.load(content["networks"], None, True)
         except (RuntimeError, KeyError, ValueError) as error:
             reason = in_short(error)
-            raise InputError(f"{self.folder.name}/{CHECKPOINT}", "networks", None, f"do not fit this task, design and preset ({reason})") from None
+            raise InputError(
+                f"{self.folder.name}/{CHECKPOINT}",
+                "networks",
+                None,
+                f"do not fit this task, design and preset ({reason})",
+            ) from None
         self.schedule.put(content["schedule"])
         self.schedule.apply(self.environment)
         put_snapshot(self.environment, content["environment"])
@@ -334,9 +426,13 @@ class Training:
 
         path = self.folder / PROGRESS
         if path.exists():
-            kept = [line for line in path.read_text().splitlines() if line and _iteration(line) <= first]
+            kept = [
+                line for line in path.read_text().splitlines() if line and _iteration(line) <= first
+            ]
             write_text(path, "".join(f"{line}\n" for line in kept))
-        return SummaryWriter(str(self.folder), purge_step=(first + 1) * self.preset.steps_per_iteration)
+        return SummaryWriter(
+            str(self.folder), purge_step=(first + 1) * self.preset.steps_per_iteration
+        )
 
     def _log(self, writer: Any, measures: dict[str, Any]) -> None:
         for name, value in _flat(measures):
@@ -374,11 +470,18 @@ def _check_same(folder: Path, description: dict[str, Any]) -> None:
     try:
         found = json.loads(path.read_text())
     except (OSError, ValueError):
-        raise InputError(f"{folder.name}/{RUN}", "", None, "cannot be read; choose another folder, or delete this one") from None
+        raise InputError(
+            f"{folder.name}/{RUN}",
+            "",
+            None,
+            "cannot be read; choose another folder, or delete this one",
+        ) from None
     for key in ("variant", "seed", "task", "design", "preset", "start", "overlay"):
         if found.get(key) != json.loads(json.dumps(description[key])):
             remedy = "the folder holds another training; choose another, or delete it"
-            raise InputError(str(folder), key, found.get(key) if key in ("variant", "seed") else None, remedy)
+            raise InputError(
+                str(folder), key, found.get(key) if key in ("variant", "seed") else None, remedy
+            )
 
 
 @contextlib.contextmanager
@@ -388,7 +491,12 @@ def _alone(folder: Path) -> Iterator[None]:
         try:
             fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
-            raise InputError(str(folder), "", None, "a training is at work in this folder; wait for it or stop it") from None
+            raise InputError(
+                str(folder),
+                "",
+                None,
+                "a training is at work in this folder; wait for it or stop it",
+            ) from None
         yield
 
 

@@ -32,7 +32,13 @@ COURSE = 30.0
 
 
 def trial(
-    design: Design, task: Task, policy: Policy, *, simulations: int = 32, seed: int = 0, alterations: Alterations | None = None
+    design: Design,
+    task: Task,
+    policy: Policy,
+    *,
+    simulations: int = 32,
+    seed: int = 0,
+    alterations: Alterations | None = None,
 ) -> dict[str, float]:
     """Try a policy: on the test's speed, or on the task's courses.
 
@@ -45,19 +51,28 @@ def trial(
         alterations: of the simulated robot, or what makes them for a design.
 
     Returns:
-        Walking: `survival`, `speed` [m/s], `speed_error` (RMS over robots and time [m/s]), `cost_of_transport`,
-        `cadence` [steps/s], `double_support` and `flight` (fractions of time). Courses: `finished` (fraction), `time`
-        (mean of the finished [s]), `survival`, `speed`.
+        Walking: `survival`, `speed` [m/s], `speed_error` (RMS over robots and time [m/s]),
+        `cost_of_transport`, `cadence` [steps/s], `double_support` and `flight` (fractions of time).
+        Courses: `finished` (fraction), `time` (mean of the finished [s]), `survival`, `speed`.
     """
     goal = isinstance(task.commands, WaypointCommands)
     return (_course if goal else _walk)(design, task, policy, simulations, seed, alterations)
 
 
-def _walk(design: Design, task: Task, policy: Policy, simulations: int, seed: int, alterations: Alterations | None) -> dict[str, float]:
+def _walk(
+    design: Design,
+    task: Task,
+    policy: Policy,
+    simulations: int,
+    seed: int,
+    alterations: Alterations | None,
+) -> dict[str, float]:
     given: Any = task.commands
     commands = dataclasses.replace(given, test_share=1.0, standing_share=0.0)
     task = task.changed(commands=commands, rewards={**task.rewards, "power": Reward(1.0)})
-    environment = Environment(design, task, simulations=simulations, seed=seed, threads=1, alterations=alterations)
+    environment = Environment(
+        design, task, simulations=simulations, seed=seed, threads=1, alterations=alterations
+    )
     duration, steps = task.physics.policy_step, round(WALK / task.physics.policy_step)
     observations, alive = environment.reset(), np.ones(simulations, bool)
     speeds, powers, stands = [], [], []
@@ -70,16 +85,27 @@ def _walk(design: Design, task: Task, policy: Policy, simulations: int, seed: in
         stands.append(_stands(environment))
     environment.close()
     second = slice(steps // 2, None)
-    speed, power, stand = (np.array(values)[second][:, alive] for values in (speeds, powers, stands))
+    speed, power, stand = (
+        np.array(values)[second][:, alive] for values in (speeds, powers, stands)
+    )
     if not alive.any():
-        nothing = ("speed", "speed_error", "cost_of_transport", "cadence", "double_support", "flight")
+        nothing = (
+            "speed",
+            "speed_error",
+            "cost_of_transport",
+            "cadence",
+            "double_support",
+            "flight",
+        )
         return {"survival": 0.0, **dict.fromkeys(nothing, float("nan"))}
     touchdowns = (stand[1:] & ~stand[:-1]).sum((0, 2))
     return {
         "survival": float(alive.mean()),
         "speed": float(speed.mean()),
         "speed_error": float(np.sqrt(np.mean((speed - commands.test_speed) ** 2))),
-        "cost_of_transport": float(power.mean() / (environment.layout.weight * max(speed.mean(), 1e-3))),
+        "cost_of_transport": float(
+            power.mean() / (environment.layout.weight * max(speed.mean(), 1e-3))
+        ),
         "cadence": float(touchdowns.mean() / (len(stand) * duration)),
         "double_support": float(stand.all(-1).mean()),
         "flight": float((~stand.any(-1)).mean()),
@@ -93,11 +119,20 @@ def _stands(environment: Environment) -> np.ndarray:
     return np.stack([load[:, left].sum(-1), load[:, ~left].sum(-1)], -1) > TOUCH
 
 
-def _course(design: Design, task: Task, policy: Policy, simulations: int, seed: int, alterations: Alterations | None) -> dict[str, float]:
+def _course(
+    design: Design,
+    task: Task,
+    policy: Policy,
+    simulations: int,
+    seed: int,
+    alterations: Alterations | None,
+) -> dict[str, float]:
     limits = dataclasses.replace(task.limits, duration=2 * COURSE)
     given: Any = task.commands
     task = task.changed(commands=dataclasses.replace(given, course_share=1.0), limits=limits)
-    environment = Environment(design, task, simulations=simulations, seed=seed, threads=1, alterations=alterations)
+    environment = Environment(
+        design, task, simulations=simulations, seed=seed, threads=1, alterations=alterations
+    )
     duration = task.physics.policy_step
     observations, running = environment.reset(), np.ones(simulations, bool)
     times, finished = np.full(simulations, np.nan), np.zeros(simulations, bool)

@@ -1,7 +1,8 @@
 """Starting a training from another task's policy: the columns that both observe keep their weights.
 
-The old command becomes part of the first layer's bias, so that the new policy begins by doing what the old one did under
-that command; columns that only the new task has begin without weight. The critic starts anew, alone for some iterations.
+The old command becomes part of the first layer's bias, so that the new policy begins by doing what
+the old one did under that command; columns that only the new task has begin without weight. The
+critic starts anew, alone for some iterations.
 """
 
 from __future__ import annotations
@@ -61,17 +62,37 @@ def read_start(path: str | Path) -> StartPolicy:
         content = path.read_bytes()
         model = onnx.load_from_string(content)
     except OSError as error:
-        raise InputError(where, "", None, f"cannot be read ({error.strerror}); train it first, or name another policy") from None
+        raise InputError(
+            where,
+            "",
+            None,
+            f"cannot be read ({error.strerror}); train it first, or name another policy",
+        ) from None
     except Exception as error:  # protobuf's own kinds
-        raise InputError(where, "", None, f"is no ONNX file, or is truncated ({in_short(error, 80)})") from None
+        raise InputError(
+            where, "", None, f"is no ONNX file, or is truncated ({in_short(error, 80)})"
+        ) from None
     told = {entry.key: entry.value for entry in model.metadata_props}
     if told.get("format") != FORMAT:
-        raise InputError(where, "format", told.get("format"), f"expects a policy made by `hyperleg train` ({FORMAT})")
-    arrays = {entry.name: numpy_helper.to_array(entry).astype(np.float64) for entry in model.graph.initializer}
-    layers = sorted(int(name.removeprefix("weight_")) for name in arrays if name.startswith("weight_"))
+        raise InputError(
+            where,
+            "format",
+            told.get("format"),
+            f"expects a policy made by `hyperleg train` ({FORMAT})",
+        )
+    arrays = {
+        entry.name: numpy_helper.to_array(entry).astype(np.float64)
+        for entry in model.graph.initializer
+    }
+    layers = sorted(
+        int(name.removeprefix("weight_")) for name in arrays if name.startswith("weight_")
+    )
     columns = tuple(json.loads(told["columns"]))
     source = {key: told[key] for key in ("variant", "seed", "steps", "commit") if key in told}
-    source |= {"task": json.loads(told["task"])["name"], "sha256": hashlib.sha256(content).hexdigest()}
+    source |= {
+        "task": json.loads(told["task"])["name"],
+        "sha256": hashlib.sha256(content).hexdigest(),
+    }
     return StartPolicy(
         columns=columns,
         joints=tuple(json.loads(told["joints"])),
@@ -100,31 +121,52 @@ def start_actor(
         columns: names of the new observation's numbers.
         joints: names of the new action's numbers.
         command: that the old policy is to follow, in its own columns `(3,)`.
-        observation: first observations of the new task `(n, size)`: scale of the columns that the policy did not have.
+        observation: first observations of the new task `(n, size)`: scale of the columns that the
+            policy did not have.
         deviation: of the actions to begin with.
 
     Raises:
         InputError: other joints, or other layers.
     """
     if start.joints != tuple(joints):
-        raise InputError("start", "joints", ", ".join(start.joints), f"expects a policy for {', '.join(joints)}")
+        raise InputError(
+            "start", "joints", ", ".join(start.joints), f"expects a policy for {', '.join(joints)}"
+        )
     linear = [layer for layer in actor.mlp if isinstance(layer, torch.nn.Linear)]
     shapes = [tuple(layer.weight.shape) for layer in linear]
     if [w.shape[0] for w in start.weights] != [s[0] for s in shapes]:
         found = [int(w.shape[0]) for w in start.weights]
-        raise InputError("start", "layers", found, f"expects a policy with layers of {[s[0] for s in shapes]}")
+        raise InputError(
+            "start", "layers", found, f"expects a policy with layers of {[s[0] for s in shapes]}"
+        )
     old = {name: i for i, name in enumerate(start.columns)}
     folded = [i for name, i in old.items() if name.startswith(COMMAND)]
-    shared = [(new, old[name]) for new, name in enumerate(columns) if name in old and not name.startswith(COMMAND)]
+    shared = [
+        (new, old[name])
+        for new, name in enumerate(columns)
+        if name in old and not name.startswith(COMMAND)
+    ]
     if len(folded) != len(command):
-        raise InputError("start", "columns", len(folded), f"expects a policy with {len(command)} numbers of a command")
+        raise InputError(
+            "start",
+            "columns",
+            len(folded),
+            f"expects a policy with {len(command)} numbers of a command",
+        )
     mean, scale = np.zeros(len(columns)), np.maximum(observation.std(0), 0.1)
     first, to, of = np.zeros(shapes[0]), [n for n, _ in shared], [o for _, o in shared]
     first[:, to], mean[to], scale[to] = start.weights[0][:, of], start.mean[of], start.deviation[of]
     unseen = [o for name, o in old.items() if o not in of and not name.startswith(COMMAND)]
     if unseen:
-        raise InputError("start", "columns", start.columns[unseen[0]], "the new task does not observe this; the policy would miss it")
-    bias = start.biases[0] + start.weights[0][:, folded] @ ((command - start.mean[folded]) / start.deviation[folded])
+        raise InputError(
+            "start",
+            "columns",
+            start.columns[unseen[0]],
+            "the new task does not observe this; the policy would miss it",
+        )
+    bias = start.biases[0] + start.weights[0][:, folded] @ (
+        (command - start.mean[folded]) / start.deviation[folded]
+    )
     values = [(first, bias), *zip(start.weights[1:], start.biases[1:], strict=True)]
     with torch.no_grad():
         for layer, (weight, offset) in zip(linear, values, strict=True):

@@ -16,24 +16,57 @@ from hyperleg_design.report.page import Cell, Details, Table
 
 SUMMARY = {
     WALK: (
-        "power", "joule_power", "mechanical_power", "battery_power", "cost_of_transport", "steady_cost_of_transport",
-        "steady_battery_cost_of_transport", "time", "steady_speed", "grf_peak", "grf_loading_rate", "grf_impulse", "cadence", "step_length",
-        "duty_factor", "double_support", "slip_per_step", "foot_drift", "thermal_peak", "limit_share",
+        "power",
+        "joule_power",
+        "mechanical_power",
+        "battery_power",
+        "cost_of_transport",
+        "steady_cost_of_transport",
+        "steady_battery_cost_of_transport",
+        "time",
+        "steady_speed",
+        "grf_peak",
+        "grf_loading_rate",
+        "grf_impulse",
+        "cadence",
+        "step_length",
+        "duty_factor",
+        "double_support",
+        "slip_per_step",
+        "foot_drift",
+        "thermal_peak",
+        "limit_share",
     ),
     T_TEST: (
-        "time", "mean_speed", "peak_speed", "mean_deviation", "peak_deviation", "mean_leg_deviation", "peak_leg_deviation", "power",
-        "cost_of_transport", "grf_peak", "slip_per_step", "thermal_peak", "limit_share",
+        "time",
+        "mean_speed",
+        "peak_speed",
+        "mean_deviation",
+        "peak_deviation",
+        "mean_leg_deviation",
+        "peak_leg_deviation",
+        "power",
+        "cost_of_transport",
+        "grf_peak",
+        "slip_per_step",
+        "thermal_peak",
+        "limit_share",
     ),
-}  # fmt: skip
+}
 """Measures of the table of differences, by kind of protocol."""
 _MARK = {AGREES: "good", DIFFERS: "bad", statistics.NOT_TOLD_APART: "note", NOT_REPRODUCED: "bad"}
 _ONE_SEED = "Rests on fewer than three trainings a side, so it tells nothing about the toe."
 
 
 def rows_beside_paper(found: Evaluated) -> dict[str, list[PaperRow]]:
-    """Every printed number beside ours, by table and group; tables of groups that lack one of the paper's two robots are left out."""
+    """Every printed number beside ours, by table and group; tables of groups that lack one of the
+    paper's two robots are left out.
+    """
     made = {}
-    for kind, place, printed in ((WALK, "Table III", (*paper.TABLE_THREE, *paper.RIGHT_LEG_POWER)), (T_TEST, "Table IV", paper.TABLE_FOUR)):
+    for kind, place, printed in (
+        (WALK, "Table III", (*paper.TABLE_THREE, *paper.RIGHT_LEG_POWER)),
+        (T_TEST, "Table IV", paper.TABLE_FOUR),
+    ):
         for group in found.groups(kind):
             if set(VARIANTS) <= set(found.designs(group)):
                 made[f"{place}, {group}"] = paper_rows(found.table(group), printed)
@@ -51,16 +84,28 @@ def row_facts(row: PaperRow) -> dict[str, Any]:
         return {**numbers, "seeds": one.seeds, "trials": one.trials, "missing": one.missing}
 
     return {
-        "place": row.printed.place, "quantity": row.printed.quantity, "unit": row.printed.unit, "measure": row.printed.measure,
+        "place": row.printed.place,
+        "quantity": row.printed.quantity,
+        "unit": row.printed.unit,
+        "measure": row.printed.measure,
         "toe": {"paper": row.printed.toe, **side(row.toe), "verdict": row.toe_verdict},
-        "ablation": {"paper": row.printed.ablation, **side(row.ablation), "verdict": row.ablation_verdict},
+        "ablation": {
+            "paper": row.printed.ablation,
+            **side(row.ablation),
+            "verdict": row.ablation_verdict,
+        },
         "change": {
-            "paper": row.printed.change, "mean": plain(row.difference.relative), "low": plain(row.difference.relative_low),
-            "high": plain(row.difference.relative_high), "verdict": row.change_verdict, "ours": row.difference.verdict,
-            "hedges_g": plain(row.difference.hedges_g), "cliffs_delta": plain(row.difference.cliffs_delta),
+            "paper": row.printed.change,
+            "mean": plain(row.difference.relative),
+            "low": plain(row.difference.relative_low),
+            "high": plain(row.difference.relative_high),
+            "verdict": row.change_verdict,
+            "ours": row.difference.verdict,
+            "hedges_g": plain(row.difference.hedges_g),
+            "cliffs_delta": plain(row.difference.cliffs_delta),
         },
         "why": row.why,
-    }  # fmt: skip
+    }
 
 
 def beside(rows: Sequence[PaperRow], caption: str) -> list[Any]:
@@ -70,20 +115,46 @@ def beside(rows: Sequence[PaperRow], caption: str) -> list[Any]:
         printed, change = row.printed, row.difference
         words = {"toe": row.toe_verdict, "ablation": row.ablation_verdict, "Δ": row.change_verdict}
         same = set(words.values())
-        cells.append([
-            f"{printed.quantity} [{printed.unit}]" if printed.unit else printed.quantity,
-            printed.toe, Cell(short(row.toe), _MARK.get(row.toe_verdict, "note")),
-            printed.ablation, Cell(short(row.ablation), _MARK.get(row.ablation_verdict, "note")),
-            f"{100 * printed.change:+.1f} %",
-            Cell(percent(change.relative, change.relative_low, change.relative_high), _MARK.get(row.change_verdict, "note")),
-            same.pop() if len(same) == 1 else "; ".join(f"{side} {word}" for side, word in words.items()),
-        ])  # fmt: skip
+        cells.append(
+            [
+                f"{printed.quantity} [{printed.unit}]" if printed.unit else printed.quantity,
+                printed.toe,
+                Cell(short(row.toe), _MARK.get(row.toe_verdict, "note")),
+                printed.ablation,
+                Cell(short(row.ablation), _MARK.get(row.ablation_verdict, "note")),
+                f"{100 * printed.change:+.1f} %",
+                Cell(
+                    percent(change.relative, change.relative_low, change.relative_high),
+                    _MARK.get(row.change_verdict, "note"),
+                ),
+                same.pop()
+                if len(same) == 1
+                else "; ".join(f"{side} {word}" for side, word in words.items()),
+            ]
+        )
     head = ["", "toe: paper", "ours", "ablation: paper", "ours", "Δ paper", "Δ ours", "verdict"]
     one = rows[0]
     trials = [side.trials + side.missing for side in (one.toe, one.ablation)]
-    made: list[Any] = [Table(head, cells, f"{caption}: {one.toe.seeds} and {one.ablation.seeds} seeds, {trials[0]} and {trials[1]} trials.")]
+    made: list[Any] = [
+        Table(
+            head,
+            cells,
+            f"{caption}: {one.toe.seeds} and {one.ablation.seeds} seeds, {trials[0]} and "
+            f"{trials[1]} trials.",
+        )
+    ]
     reasons = [[row.printed.quantity, row.why] for row in rows if row.why]
-    return [*made, Details("Why numbers differ or cannot be reproduced", [Table(["", "known reasons"], reasons)])] if reasons else made
+    return (
+        [
+            *made,
+            Details(
+                "Why numbers differ or cannot be reproduced",
+                [Table(["", "known reasons"], reasons)],
+            ),
+        ]
+        if reasons
+        else made
+    )
 
 
 def toe_sentence(rows: Sequence[PaperRow]) -> str:
@@ -94,7 +165,14 @@ def toe_sentence(rows: Sequence[PaperRow]) -> str:
     same = [r.printed.quantity for r in rows if r.difference.verdict == statistics.NOT_TOLD_APART]
     parts_of = []
     if told:
-        parts_of.append("With the toe " + ", ".join(f"{r.printed.quantity} changes by {100 * r.difference.relative:+.1f} %" for r in told) + ".")
+        parts_of.append(
+            "With the toe "
+            + ", ".join(
+                f"{r.printed.quantity} changes by {100 * r.difference.relative:+.1f} %"
+                for r in told
+            )
+            + "."
+        )
     if same:
         parts_of.append(f"Cannot be told apart: {', '.join(same)}.")
     return " ".join(parts_of)
@@ -111,28 +189,65 @@ def differences(found: Evaluated, group: str, kind: str) -> Details:
         a, b = (statistics.estimate(list(side.values())) for side in (first, second))
         apart = statistics.difference(list(first.values()), list(second.values()))
         common = sorted(set(first) & set(second))
-        paired = statistics.difference([first[s] for s in common], [second[s] for s in common], paired=True) if common else None
-        rows.append([
-            name.replace("_", " "), measure_of(name).unit, short(a), short(b), percent(apart.relative, apart.relative_low, apart.relative_high),
-            verdict(apart.verdict), percent(paired.relative, paired.relative_low, paired.relative_high) if paired else "–",
-            verdict(paired.verdict) if paired else "–", apart.hedges_g, apart.cliffs_delta,
-        ])  # fmt: skip
-    head = ["measure", "unit", "toe", "toe removed, equal mass", "Δ", "verdict", "Δ paired by seed", "verdict", "Hedges' g", "Cliff's δ"]
-    return Details(f"Differences in all measures, group {group}", [Table(head, rows, "Δ: toe less ablation, over the ablation.")])
+        paired = (
+            statistics.difference(
+                [first[s] for s in common], [second[s] for s in common], paired=True
+            )
+            if common
+            else None
+        )
+        rows.append(
+            [
+                name.replace("_", " "),
+                measure_of(name).unit,
+                short(a),
+                short(b),
+                percent(apart.relative, apart.relative_low, apart.relative_high),
+                verdict(apart.verdict),
+                percent(paired.relative, paired.relative_low, paired.relative_high)
+                if paired
+                else "–",
+                verdict(paired.verdict) if paired else "–",
+                apart.hedges_g,
+                apart.cliffs_delta,
+            ]
+        )
+    head = [
+        "measure",
+        "unit",
+        "toe",
+        "toe removed, equal mass",
+        "Δ",
+        "verdict",
+        "Δ paired by seed",
+        "verdict",
+        "Hedges' g",
+        "Cliff's δ",
+    ]
+    return Details(
+        f"Differences in all measures, group {group}",
+        [Table(head, rows, "Δ: toe less ablation, over the ablation.")],
+    )
 
 
 def short(one: Estimate) -> str:
     """Mean, interval and how many trials gave no value."""
     if not math.isfinite(one.mean):
         return "–"
-    return interval(one.mean, one.low, one.high, "") + (f" ({one.missing} missing)" if one.missing else "")
+    return interval(one.mean, one.low, one.high, "") + (
+        f" ({one.missing} missing)" if one.missing else ""
+    )
 
 
 def interval(mean: float, low: float, high: float, unit: str) -> str:
     """Mean with its interval, where there is one."""
     if not math.isfinite(mean):
         return "–"
-    text = f"{_digits(mean)} [{_digits(low)}, {_digits(high)}]" if math.isfinite(low) else _digits(mean)
+    text = (
+        f"{_digits(mean)} [{_digits(low)}, {_digits(high)}]"
+        if math.isfinite(low)
+        else _digits(mean)
+    )
     return f"{text} {unit}".rstrip()
 
 
@@ -140,7 +255,9 @@ def percent(mean: float, low: float, high: float) -> str:
     """Relative change with its interval, where there is one."""
     if not math.isfinite(mean):
         return "–"
-    return f"{100 * mean:+.1f} %" + (f" [{100 * low:+.1f}, {100 * high:+.1f}]" if math.isfinite(low) else "")
+    return f"{100 * mean:+.1f} %" + (
+        f" [{100 * low:+.1f}, {100 * high:+.1f}]" if math.isfinite(low) else ""
+    )
 
 
 def verdict(text: str) -> Any:

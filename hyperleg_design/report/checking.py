@@ -25,13 +25,22 @@ def check_paths(paths: Sequence[str]) -> list[dict[str, Any]]:
         InputError: no paths, or one that names nothing.
     """
     if not paths:
-        raise InputError("check", "", None, "expects files, or names of shipped designs, motors or sweeps")
+        raise InputError(
+            "check", "", None, "expects files, or names of shipped designs, motors or sweeps"
+        )
     places = [_find(path) for path in paths]
     found = []
     for path, place in zip(paths, places, strict=True):
         findings = _check(place)
         errors = sum(f.severity == "error" for f in findings)
-        found.append({"path": path, "errors": errors, "warnings": len(findings) - errors, "findings": [asdict(f) for f in findings]})
+        found.append(
+            {
+                "path": path,
+                "errors": errors,
+                "warnings": len(findings) - errors,
+                "findings": [asdict(f) for f in findings],
+            }
+        )
     return found
 
 
@@ -52,14 +61,26 @@ def _find(path: str) -> Path:
     for kind in ("descriptions", "motors", "sweeps"):
         if path in resources.names(kind):
             return resources.find(kind, path)
-    raise InputError(path, "", None, "no such file; a name must be that of a shipped design, motor or sweep (hyperleg list)")
+    raise InputError(
+        path,
+        "",
+        None,
+        "no such file; a name must be that of a shipped design, motor or sweep (hyperleg list)",
+    )
 
 
 def checks_text(found: list[dict[str, Any]]) -> str:
     """The same for a terminal."""
     lines = []
     for entry in found:
-        verdict = "good" if not entry["findings"] else f"{entry['errors']} errors, {entry['warnings']} warnings"
+        verdict = (
+            "good"
+            if not entry["findings"]
+            else f"{entry['errors']} errors, {entry['warnings']} warnings"
+        )
         lines.append(f"{entry['path']}: {verdict}")
-        lines += [f"  {f['severity']}: {f['place']} {f['message']}: {f['remedy']}" for f in entry["findings"]]
+        lines += [
+            f"  {f['severity']}: {f['place']} {f['message']}: {f['remedy']}"
+            for f in entry["findings"]
+        ]
     return "\n".join(lines)

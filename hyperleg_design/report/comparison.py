@@ -20,7 +20,15 @@ AGREES = 1e-3
 """Relative difference up to which a number agrees: what rounding to three or four digits leaves."""
 
 
-WALK_MEASURES = ("cost_of_transport", "cost_of_transport_battery", "motor_side", "joule", "mechanical", "beyond_share", "margin_over_peak")
+WALK_MEASURES = (
+    "cost_of_transport",
+    "cost_of_transport_battery",
+    "motor_side",
+    "joule",
+    "mechanical",
+    "beyond_share",
+    "margin_over_peak",
+)
 """What `compare` shows of the planned walk's demand."""
 
 
@@ -55,23 +63,54 @@ def table_one(design: Design) -> list[Row]:
         Row("Table I", "total mass", "kg", paper.TOTAL_MASS, float(masses.total)),
         Row("Section II.A", "leg mass", "kg", paper.LEG_MASS, float(masses.leg)),
         Row("Section II.A", "leg length", "m", paper.LEG_LENGTH, float(leg_length(design))),
-        Row("Section II.A", "height", "m", paper.HEIGHT, float(leg_length(design) + design.pelvis.height)),
+        Row(
+            "Section II.A",
+            "height",
+            "m",
+            paper.HEIGHT,
+            float(leg_length(design) + design.pelvis.height),
+        ),
     ]
     standing = transmission.joint_from_motor(design, "standing")
     torque = transmission.max_joint_torque(design)
     speed = transmission.single_joint_speed(design, "standing")
     for index, joint in enumerate(transmission.joint_names(design)):
-        ratio = float(abs(standing[index]).max()) if joint != "ankle_pitch" else float(standing[index][4])
-        rows.append(Row("Table I", f"{joint} reduction, standing", "", paper.REDUCTION[joint], ratio))
-        rows.append(Row("Table I", f"{joint} torque, derated", "Nm", paper.MAX_JOINT_TORQUE[joint], float(torque[index])))
+        ratio = (
+            float(abs(standing[index]).max())
+            if joint != "ankle_pitch"
+            else float(standing[index][4])
+        )
+        rows.append(
+            Row("Table I", f"{joint} reduction, standing", "", paper.REDUCTION[joint], ratio)
+        )
+        rows.append(
+            Row(
+                "Table I",
+                f"{joint} torque, derated",
+                "Nm",
+                paper.MAX_JOINT_TORQUE[joint],
+                float(torque[index]),
+            )
+        )
     for index, joint in enumerate(JOINTS[: len(speed)]):
         note = "the paper's is the motor's speed; ours is the joint's, the others standing still"
-        rows.append(Row("Table I", f"{joint} speed", "rad/s", paper.PRINTED_JOINT_SPEED[joint], float(speed[index]), note))
+        rows.append(
+            Row(
+                "Table I",
+                f"{joint} speed",
+                "rad/s",
+                paper.PRINTED_JOINT_SPEED[joint],
+                float(speed[index]),
+                note,
+            )
+        )
     return rows
 
 
 def motor_rows(names: tuple[str, ...] = ("U10", "RI70", "RI60")) -> list[Row]:
-    """The paper's power constants beside those that follow from the catalogue's resistance and torque constant."""
+    """The paper's power constants beside those that follow from the catalogue's resistance and
+    torque constant.
+    """
     rows = []
     for name in names:
         motor = find_motor(name)
@@ -80,7 +119,16 @@ def motor_rows(names: tuple[str, ...] = ("U10", "RI70", "RI60")) -> list[Row]:
             if name.startswith("RI")
             else "catalogue R is derived from the paper's Cp"
         )
-        rows.append(Row("Table I", f"{name} Cp", "W/Nm²", motor.power_constant("paper"), motor.power_constant("vendor"), note))
+        rows.append(
+            Row(
+                "Table I",
+                f"{name} Cp",
+                "W/Nm²",
+                motor.power_constant("paper"),
+                motor.power_constant("vendor"),
+                note,
+            )
+        )
         rows.append(
             Row(
                 "Table I",
@@ -111,10 +159,22 @@ def compare(designs: list[Design], *, demand: bool = False) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for design in designs:
         whole = analyze(design)
-        kept = ("variant", "total_mass", "leg_mass", "leg_length", "height", "max_joint_torque", "single_joint_speed", "torque_alone")
+        kept = (
+            "variant",
+            "total_mass",
+            "leg_mass",
+            "leg_length",
+            "height",
+            "max_joint_torque",
+            "single_joint_speed",
+            "torque_alone",
+        )
         entry = {k: whole[k] for k in (*kept, "zonotope_to_box_volume")}
         inertia = leg_inertia(design)
-        entry |= {k: float(getattr(inertia, k)) for k in ("distal_share", "swing_inertia", "gyration_over_length")}
+        entry |= {
+            k: float(getattr(inertia, k))
+            for k in ("distal_share", "swing_inertia", "gyration_over_length")
+        }
         if demand:
             walk = demand_of(design, "walk").summary()
             entry["walk"] = {k: walk[k] for k in WALK_MEASURES}
@@ -135,5 +195,9 @@ def compare_text(found: dict[str, Any]) -> str:
 def _flat(entry: dict[str, Any], prefix: str = "") -> dict[str, object]:
     flat: dict[str, object] = {}
     for key, value in entry.items():
-        flat |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+        flat |= (
+            _flat(value, f"{prefix}{key}.")
+            if isinstance(value, dict)
+            else {f"{prefix}{key}": value}
+        )
     return flat

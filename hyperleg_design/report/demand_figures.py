@@ -1,4 +1,6 @@
-"""Pictures of what a motion demands: stick figures, angles and torques over the cycle, operating points, margins."""
+"""Pictures of what a motion demands: stick figures, angles and torques over the cycle, operating
+points, margins.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,12 @@ LEG_COLOUR = {"left": "#c8602a", "right": "#2f6db3"}
 _INK, _GREY, _STANCE = "#1d2129", "#6b7280", "#f1f3f5"
 _NEWTONS_PER_METRE = 1100.0
 """Scale of drawn forces."""
-_VARIANT_LABEL = {"toe": "active toe", "toe_locked": "toe locked", "toe_removed_matched": "toe removed, mass kept", "toe_removed": "toe removed"}
+_VARIANT_LABEL = {
+    "toe": "active toe",
+    "toe_locked": "toe locked",
+    "toe_removed_matched": "toe removed, mass kept",
+    "toe_removed": "toe removed",
+}
 
 
 def stick_figure_strip(demand: Demand, frames: int = 9, spacing: float | None = None) -> Figure:
@@ -34,7 +41,8 @@ def stick_figure_strip(demand: Demand, frames: int = 9, spacing: float | None = 
     Args:
         demand: of any motion.
         frames: how many, evenly spaced over the motion.
-        spacing: between snapshots beyond what the robot travels [m]; chosen so that they do not overlap by default.
+        spacing: between snapshots beyond what the robot travels [m]; chosen so that they do not
+            overlap by default.
     """
     import matplotlib.pyplot as plt
 
@@ -52,7 +60,15 @@ def stick_figure_strip(demand: Demand, frames: int = 9, spacing: float | None = 
         _floor(axes, motion, picked, max(gap, 0.0))
         for place, n in enumerate(picked):
             share = f"{100 * n / last:.0f} %"
-            axes.text(motion.q[n, 0] + place * max(gap, 0.0), -0.10, share, ha="center", va="top", fontsize=9, color=_GREY)
+            axes.text(
+                motion.q[n, 0] + place * max(gap, 0.0),
+                -0.10,
+                share,
+                ha="center",
+                va="top",
+                fontsize=9,
+                color=_GREY,
+            )
         for side in SIDES:
             axes.plot([], [], color=LEG_COLOUR[side], lw=3, label=f"{side} leg")
         axes.plot([], [], color=_INK, lw=1.2, label="force of the floor")
@@ -60,8 +76,15 @@ def stick_figure_strip(demand: Demand, frames: int = 9, spacing: float | None = 
         axes.set_aspect("equal")
         axes.set_axis_off()
         name = _VARIANT_LABEL.get(demand.design.variant, demand.design.variant)
-        pace = f", {motion.distance / motion.duration:.2f} m/s" if motion.distance > 0 and motion.periodic else ""
-        axes.set_title(f"{motion.name.capitalize()} ({name}{pace}): a planned motion, not a measured one", loc="left")
+        pace = (
+            f", {motion.distance / motion.duration:.2f} m/s"
+            if motion.distance > 0 and motion.periodic
+            else ""
+        )
+        axes.set_title(
+            f"{motion.name.capitalize()} ({name}{pace}): a planned motion, not a measured one",
+            loc="left",
+        )
     return figure
 
 
@@ -79,10 +102,19 @@ def _stick_figure(axes: Axes, demand: Demand, sample: int, shift: float) -> None
         colour, front = LEG_COLOUR[side], 3 if side == "right" else 2
         joints = np.array([at(f"{side}_{link}") for link in ("thigh", "shank", "foot")])
         rows = {
-            row: np.mean([points[i, [0, 2]] for i, p in enumerate(pads) if p.side == side and p.row == row], 0) + place
+            row: np.mean(
+                [points[i, [0, 2]] for i, p in enumerate(pads) if p.side == side and p.row == row],
+                0,
+            )
+            + place
             for row in ("heel", "ball", "tip")
         }
-        style: dict[str, Any] = {"color": colour, "solid_capstyle": "round", "solid_joinstyle": "round", "zorder": front}
+        style: dict[str, Any] = {
+            "color": colour,
+            "solid_capstyle": "round",
+            "solid_joinstyle": "round",
+            "zorder": front,
+        }
         axes.plot(*joints.T, lw=4, **style)
         axes.plot(*np.array([joints[2], rows["heel"], rows["ball"], joints[2]]).T, lw=2.2, **style)
         axes.plot(*np.array([rows["ball"], rows["tip"]]).T, lw=2.6, **style)
@@ -92,10 +124,20 @@ def _stick_figure(axes: Axes, demand: Demand, sample: int, shift: float) -> None
         if force[:, 2].sum() > 5.0:
             center = (points[mine] * force[:, 2:]).sum(0)[[0, 2]] / force[:, 2].sum() + place
             tip = center + force.sum(0)[[0, 2]] / _NEWTONS_PER_METRE
-            arrow = {"arrowstyle": "-|>", "color": _INK, "lw": 1.2, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 8}
+            arrow = {
+                "arrowstyle": "-|>",
+                "color": _INK,
+                "lw": 1.2,
+                "shrinkA": 0,
+                "shrinkB": 0,
+                "mutation_scale": 8,
+            }
             axes.annotate("", tip, center, arrowprops=arrow, zorder=5)
     pelvis = design.pelvis
-    box = np.array([[-1, 0], [1, 0], [1, 2], [-1, 2], [-1, 0]]) * [pelvis.depth / 2, pelvis.height / 2]
+    box = np.array([[-1, 0], [1, 0], [1, 2], [-1, 2], [-1, 0]]) * [
+        pelvis.depth / 2,
+        pelvis.height / 2,
+    ]
     pitch = 2 * np.arctan2(q[4], q[6])
     turned = box @ np.array([[np.cos(pitch), -np.sin(pitch)], [np.sin(pitch), np.cos(pitch)]])
     axes.fill(*(turned + q[[0, 2]] + place).T, facecolor="#e5e7eb", edgecolor=_GREY, lw=1, zorder=1)
@@ -107,14 +149,24 @@ def _floor(axes: Axes, motion: Motion, picked: np.ndarray, gap: float) -> None:
         for place, n in enumerate(picked):
             edge = motion.feet[0].position[0, -1, 0] - 0.09 + place * gap
             middle = motion.q[n, 0] + place * gap
-            axes.plot([middle - 0.3, edge, edge, edge + 0.3], [0, 0, heights[-1] - heights[0], heights[-1] - heights[0]], color=_GREY, lw=1, zorder=0)
+            axes.plot(
+                [middle - 0.3, edge, edge, edge + 0.3],
+                [0, 0, heights[-1] - heights[0], heights[-1] - heights[0]],
+                color=_GREY,
+                lw=1,
+                zorder=0,
+            )
         return
-    low, high = motion.q[picked[0], 0] - 0.35, motion.q[picked[-1], 0] + gap * (len(picked) - 1) + 0.35
+    low, high = (
+        motion.q[picked[0], 0] - 0.35,
+        motion.q[picked[-1], 0] + gap * (len(picked) - 1) + 0.35,
+    )
     axes.plot([low, high], [0, 0], color=_GREY, lw=1, zorder=0)
 
 
 def cycle_figure(demands: Mapping[str, Demand], side: str = "left") -> Figure:
-    """Angles and torques of one leg's joints over a motion, one curve a robot; stance of the first is shaded.
+    """Angles and torques of one leg's joints over a motion, one curve a robot; stance of the first
+    is shaded.
 
     Args:
         demands: of the same motion, by label or variant.
@@ -127,7 +179,14 @@ def cycle_figure(demands: Mapping[str, Demand], side: str = "left") -> Figure:
     joints = max((joint_names(d.design) for d in demands.values()), key=len)
     shown = [j for j in joints if j != "hip_yaw"]
     with figure_style():
-        figure, grid = plt.subplots(2, len(shown), figsize=(2.3 * len(shown), 5.0), sharex=True, squeeze=False, layout="constrained")
+        figure, grid = plt.subplots(
+            2,
+            len(shown),
+            figsize=(2.3 * len(shown), 5.0),
+            sharex=True,
+            squeeze=False,
+            layout="constrained",
+        )
         for key, demand in demands.items():
             names = joint_names(demand.design)
             share = 100 * np.arange(len(demand.motion.time)) / len(demand.motion.time)
@@ -136,9 +195,13 @@ def cycle_figure(demands: Mapping[str, Demand], side: str = "left") -> Figure:
                     continue
                 index = names.index(joint)
                 style = _curve(key, demand)
-                grid[0, column].plot(share, np.rad2deg(demand.motion.joint_position[:, leg, index]), **style)
+                grid[0, column].plot(
+                    share, np.rad2deg(demand.motion.joint_position[:, leg, index]), **style
+                )
                 grid[1, column].plot(share, demand.joint_torque[:, leg, index], **style)
-        loaded = first.motion.contact[:, np.array([p.side == side for p in sole_pads(first.motion.model.tree)])].any(1)
+        loaded = first.motion.contact[
+            :, np.array([p.side == side for p in sole_pads(first.motion.model.tree)])
+        ].any(1)
         for column, joint in enumerate(shown):
             grid[0, column].set_title(joint.replace("_", " "))
             grid[1, column].set_xlabel("cycle [%]" if first.motion.periodic else "time [%]")
@@ -150,13 +213,18 @@ def cycle_figure(demands: Mapping[str, Demand], side: str = "left") -> Figure:
         grid[1, 0].set_ylabel("torque of the motors [Nm]")
         handles, labels = grid[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
-        title = f"{first.motion.name.capitalize()}: {side} leg; shaded while that foot bears load. Flexion and plantar flexion are positive"
+        title = (
+            f"{first.motion.name.capitalize()}: {side} leg; shaded while that foot bears "
+            f"load. "
+            f"Flexion and plantar flexion are positive"
+        )
         figure.suptitle(title, x=0.01, ha="left", fontsize=11)
     return figure
 
 
 def operating_points_figure(demands: Mapping[str, Demand]) -> Figure:
-    """Torque against speed at every motor over a motion, both legs, with the envelope of the first robot's motors.
+    """Torque against speed at every motor over a motion, both legs, with the envelope of the first
+    robot's motors.
 
     Args:
         demands: of the same motion, by label or variant; the toe's motor is drawn where one has it.
@@ -168,30 +236,58 @@ def operating_points_figure(demands: Mapping[str, Demand]) -> Figure:
     columns = min(4, len(motors))
     rows = -(-len(motors) // columns)
     with figure_style():
-        figure, grid = plt.subplots(rows, columns, figsize=(2.9 * columns, 2.5 * rows), squeeze=False, layout="constrained")
+        figure, grid = plt.subplots(
+            rows, columns, figsize=(2.9 * columns, 2.5 * rows), squeeze=False, layout="constrained"
+        )
         for axes in grid.flat[len(motors) :]:
             axes.set_axis_off()
         for axes, motor in zip(grid.flat, motors, strict=False):
             owners = [d for d in demands.values() if motor in motor_names(d.design)]
-            reach = max(float(np.abs(d.motor_velocity[..., motor_names(d.design).index(motor)]).max()) for d in owners)
+            reach = max(
+                float(np.abs(d.motor_velocity[..., motor_names(d.design).index(motor)]).max())
+                for d in owners
+            )
             _envelope(axes, owners[0], motor, reach)
             for key, demand in demands.items():
                 names = motor_names(demand.design)
                 if motor not in names:
                     continue
                 m = names.index(motor)
-                style = {"s": 7, "color": _curve(key, demand)["color"], "alpha": 0.75, "lw": 0, "zorder": 3}
-                axes.scatter(demand.motor_velocity[..., m].ravel(), demand.motor_torque[..., m].ravel(), **style)
+                style = {
+                    "s": 7,
+                    "color": _curve(key, demand)["color"],
+                    "alpha": 0.75,
+                    "lw": 0,
+                    "zorder": 3,
+                }
+                axes.scatter(
+                    demand.motor_velocity[..., m].ravel(),
+                    demand.motor_torque[..., m].ravel(),
+                    **style,
+                )
             axes.set_title(motor.replace("_", " "))
         for axes in grid[:, 0]:
             axes.set_ylabel("motor torque [Nm]")
-        bottom = [grid[max(r for r in range(rows) if r * columns + c < len(motors)), c] for c in range(columns)]
+        bottom = [
+            grid[max(r for r in range(rows) if r * columns + c < len(motors)), c]
+            for c in range(columns)
+        ]
         for axes in bottom:
             axes.set_xlabel("motor speed [rad/s]")
-        handles = [plt.Line2D([], [], ls="", marker="o", color=_curve(k, d)["color"], label=_curve(k, d)["label"]) for k, d in demands.items()]
+        handles = [
+            plt.Line2D(
+                [], [], ls="", marker="o", color=_curve(k, d)["color"], label=_curve(k, d)["label"]
+            )
+            for k, d in demands.items()
+        ]
         handles.append(plt.Line2D([], [], color=_GREY, label="envelope"))
         figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
-        figure.suptitle(f"{first.motion.name.capitalize()}: operating points of the motors of both legs", x=0.01, ha="left", fontsize=11)
+        figure.suptitle(
+            f"{first.motion.name.capitalize()}: operating points of the motors of both legs",
+            x=0.01,
+            ha="left",
+            fontsize=11,
+        )
     return figure
 
 
@@ -228,9 +324,19 @@ def margin_figure(demands: Mapping[str, Demand]) -> Figure:
         for axes, (field, label) in zip(grid, panels, strict=True):
             for number, (key, demand) in enumerate(demands.items()):
                 rows = {row["motor"]: row[field] for row in demand.table()}
-                at = [i - 0.4 + width * (number + 0.5) for i, motor in enumerate(motors) if motor in rows]
+                at = [
+                    i - 0.4 + width * (number + 0.5)
+                    for i, motor in enumerate(motors)
+                    if motor in rows
+                ]
                 style = _curve(key, demand)
-                axes.bar(at, [rows[m] for m in motors if m in rows], 0.92 * width, color=style["color"], label=style["label"])
+                axes.bar(
+                    at,
+                    [rows[m] for m in motors if m in rows],
+                    0.92 * width,
+                    color=style["color"],
+                    label=style["label"],
+                )
             axes.set_xticks(range(len(motors)), [m.replace("_", "\n") for m in motors], fontsize=8)
             axes.set_title(label)
             axes.grid(False, axis="x")
@@ -238,7 +344,12 @@ def margin_figure(demands: Mapping[str, Demand]) -> Figure:
         grid[1].axhline(1, color=_INK, lw=1, ls="--")
         handles, labels = grid[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
-        figure.suptitle(f"{first.motion.name.capitalize()}: what is left at every motor", x=0.01, ha="left", fontsize=11)
+        figure.suptitle(
+            f"{first.motion.name.capitalize()}: what is left at every motor",
+            x=0.01,
+            ha="left",
+            fontsize=11,
+        )
     return figure
 
 
@@ -257,14 +368,30 @@ def capability_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
     directions = list(dict.fromkeys(r["direction"] for r in rows))
     width = 0.8 / len(designs)
     with figure_style():
-        figure, grid = plt.subplots(1, len(directions), figsize=(4.6 * len(directions), 3.4), squeeze=False, layout="constrained")
+        figure, grid = plt.subplots(
+            1,
+            len(directions),
+            figsize=(4.6 * len(directions), 3.4),
+            squeeze=False,
+            layout="constrained",
+        )
         for axes, direction in zip(grid[0], directions, strict=True):
             for number, design in enumerate(designs):
-                found = {r["posture"]: r.get("body_weights") for r in rows if r["design"] == design and r["direction"] == direction}
-                at = [i - 0.4 + width * (number + 0.5) for i, p in enumerate(postures) if found.get(p) is not None]
+                found = {
+                    r["posture"]: r.get("body_weights")
+                    for r in rows
+                    if r["design"] == design and r["direction"] == direction
+                }
+                at = [
+                    i - 0.4 + width * (number + 0.5)
+                    for i, p in enumerate(postures)
+                    if found.get(p) is not None
+                ]
                 tall = [found[p] for p in postures if found.get(p) is not None]
                 label = _VARIANT_LABEL.get(design, design)
-                bars = axes.bar(at, tall, 0.92 * width, color=VARIANT_COLOUR.get(design), label=label)
+                bars = axes.bar(
+                    at, tall, 0.92 * width, color=VARIANT_COLOUR.get(design), label=label
+                )
                 axes.bar_label(bars, fmt="%.3g", fontsize=7, padding=1)
             axes.set_xticks(range(len(postures)), [p.replace("_", " ") for p in postures])
             axes.set_title(f"largest {direction} force of one leg")
@@ -280,17 +407,25 @@ def _first(demands: Mapping[str, Demand]) -> Demand:
         raise InputError("demand figure", "demands", 0, "expects at least one")
     found = list(demands.values())
     if len({d.motion.name for d in found}) > 1:
-        raise InputError("demand figure", "demands", [d.motion.name for d in found], "must be of one motion")
+        raise InputError(
+            "demand figure", "demands", [d.motion.name for d in found], "must be of one motion"
+        )
     return found[0]
 
 
 def _curve(key: str, demand: Demand) -> dict[str, Any]:
     variant = key if key in VARIANT_COLOUR else demand.design.variant
-    return {"color": VARIANT_COLOUR.get(variant, _INK), "lw": 1.6, "label": _VARIANT_LABEL.get(key, key)}
+    return {
+        "color": VARIANT_COLOUR.get(variant, _INK),
+        "lw": 1.6,
+        "label": _VARIANT_LABEL.get(key, key),
+    }
 
 
 def _shade(axes: Axes, loaded: np.ndarray) -> None:
     count = len(loaded)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], loaded, [False]]).astype(int)))
     for begin, end in edges.reshape(-1, 2):
-        axes.axvspan(100 * begin / count, 100 * min(end, count) / count, color=_STANCE, zorder=0, lw=0)
+        axes.axvspan(
+            100 * begin / count, 100 * min(end, count) / count, color=_STANCE, zorder=0, lw=0
+        )

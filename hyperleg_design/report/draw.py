@@ -1,4 +1,6 @@
-"""Draws one pickled `picture.Scene` or `motion.Motion`: `python -m hyperleg_design.report.draw SOURCE TARGET`, started by `picture.drawn`."""
+"""Draws one pickled `picture.Scene` or `motion.Motion`: `python -m hyperleg_design.report.draw
+SOURCE TARGET`, started by `picture.drawn`.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +22,22 @@ def _mesh(solid: Solid, fine: bool = True) -> Any:
         x, y, z = solid.size
         return pv.Cube(x_length=x, y_length=y, z_length=z)
     if solid.kind == "cylinder":
-        return pv.Cylinder(radius=solid.size[0], height=solid.size[1], direction=(0, 0, 1), resolution=48 if fine else 24)
+        return pv.Cylinder(
+            radius=solid.size[0],
+            height=solid.size[1],
+            direction=(0, 0, 1),
+            resolution=48 if fine else 24,
+        )
     if solid.kind == "capsule":
-        return pv.Capsule(radius=solid.size[0], cylinder_length=solid.size[1], direction=(0, 0, 1), resolution=40 if fine else 16)
-    return pv.Sphere(radius=solid.size[0], theta_resolution=36 if fine else 14, phi_resolution=36 if fine else 14)
+        return pv.Capsule(
+            radius=solid.size[0],
+            cylinder_length=solid.size[1],
+            direction=(0, 0, 1),
+            resolution=40 if fine else 16,
+        )
+    return pv.Sphere(
+        radius=solid.size[0], theta_resolution=36 if fine else 14, phi_resolution=36 if fine else 14
+    )
 
 
 def _transform(rotation: np.ndarray, position: np.ndarray) -> np.ndarray:
@@ -34,7 +48,11 @@ def _transform(rotation: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 def _add(plotter: Any, solid: Solid, mesh: Any, lighting: bool = True) -> Any:
     smooth = solid.kind != "box"
-    look = {"smooth_shading": smooth, "split_sharp_edges": smooth, "specular": 0.25} if lighting else {"lighting": False}
+    look = (
+        {"smooth_shading": smooth, "split_sharp_edges": smooth, "specular": 0.25}
+        if lighting
+        else {"lighting": False}
+    )
     return plotter.add_mesh(mesh, color=solid.colour, opacity=solid.opacity, **look)
 
 
@@ -45,12 +63,23 @@ def draw(scene: Scene, path: Path) -> None:
     plotter = pv.Plotter(off_screen=True, window_size=list(scene.size), lighting="three lights")
     plotter.set_background("white")
     for solid in scene.solids:
-        _add(plotter, solid, _mesh(solid).transform(_transform(solid.rotation, solid.position), inplace=False))
+        _add(
+            plotter,
+            solid,
+            _mesh(solid).transform(_transform(solid.rotation, solid.position), inplace=False),
+        )
     for start, end, colour, width in scene.lines:
         plotter.add_mesh(pv.Line(start, end), color=colour, line_width=width)
     for start, vector, colour in scene.arrows:
         length = float(np.linalg.norm(vector))
-        arrow = pv.Arrow(start=start, direction=vector, scale=length, shaft_radius=0.035, tip_radius=0.09, tip_length=0.28)
+        arrow = pv.Arrow(
+            start=start,
+            direction=vector,
+            scale=length,
+            shaft_radius=0.035,
+            tip_radius=0.09,
+            tip_length=0.28,
+        )
         plotter.add_mesh(arrow, color=colour)
     _labels(plotter, scene.labels, scene.font)
     plotter.camera_position = [scene.camera[0], scene.camera[1], (0, 0, 1)]
@@ -70,7 +99,9 @@ def draw_motion(motion: Motion, path: Path) -> None:
     for start, end, colour, width in motion.lines:
         plotter.add_mesh(pv.Line(start, end), color=colour, line_width=width)
     for solid in motion.still:
-        mesh = _mesh(solid, fine=False).transform(_transform(solid.rotation, solid.position), inplace=False)
+        mesh = _mesh(solid, fine=False).transform(
+            _transform(solid.rotation, solid.position), inplace=False
+        )
         _add(plotter, solid, mesh, lighting=solid.kind != "box")  # the floor has no shades
     actors = [_add(plotter, solid, _mesh(solid, fine=False)) for solid in motion.solids]
     _labels(plotter, motion.labels, motion.font)
@@ -80,7 +111,9 @@ def draw_motion(motion: Motion, path: Path) -> None:
     plotter.enable_anti_aliasing("fxaa")
     frames = np.empty((len(motion.focus), motion.size[1], motion.size[0], 3), np.uint8)
     for i, focus in enumerate(motion.focus):
-        for actor, rotation, position in zip(actors, motion.rotations[i], motion.positions[i], strict=True):
+        for actor, rotation, position in zip(
+            actors, motion.rotations[i], motion.positions[i], strict=True
+        ):
             actor.user_matrix = _transform(rotation, position)
         plotter.camera.position, plotter.camera.focal_point = focus + motion.eye, focus
         plotter.reset_camera_clipping_range()
@@ -93,9 +126,16 @@ def draw_motion(motion: Motion, path: Path) -> None:
 def _labels(plotter: Any, labels: Any, font: int) -> None:
     for place, text, colour in labels:
         plotter.add_point_labels(
-            [place], [text], text_color=colour, font_size=font, shape=None, show_points=False, always_visible=True,
-            justification_horizontal="left", justification_vertical="center",
-        )  # fmt: skip
+            [place],
+            [text],
+            text_color=colour,
+            font_size=font,
+            shape=None,
+            show_points=False,
+            always_visible=True,
+            justification_horizontal="left",
+            justification_vertical="center",
+        )
 
 
 if __name__ == "__main__":

@@ -32,8 +32,11 @@ class Drawer:
     prefix: str = ""
     """In front of each figure's name."""
 
-    def together(self, jobs: Sequence[tuple[str, str, Callable[[Path], object], str, bool]]) -> list[Picture | Missing]:
-        """Figures that other processes draw, side by side; each job has the arguments of a call. Not for matplotlib, which shares its state.
+    def together(
+        self, jobs: Sequence[tuple[str, str, Callable[[Path], object], str, bool]]
+    ) -> list[Picture | Missing]:
+        """Figures that other processes draw, side by side; each job has the arguments of a call.
+        Not for matplotlib, which shares its state.
 
         Returns:
             In the order of the jobs.
@@ -41,8 +44,18 @@ class Drawer:
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
             return list(pool.map(lambda job: self(*job[:4], wide=job[4]), jobs))
 
-    def __call__(self, name: str, caption: str, make: Callable[[Path], object], suffix: str = ".png", *, wide: bool = True) -> Picture | Missing:
-        """A figure made by `make(path)`; a machine that cannot draw it, or trials that do not suffice, cost this figure only."""
+    def __call__(
+        self,
+        name: str,
+        caption: str,
+        make: Callable[[Path], object],
+        suffix: str = ".png",
+        *,
+        wide: bool = True,
+    ) -> Picture | Missing:
+        """A figure made by `make(path)`; a machine that cannot draw it, or trials that do not
+        suffice, cost this figure only.
+        """
         file = f"{FIGURES}/{self.prefix}{name}{suffix}"
         try:
             make(self.folder / file)

@@ -1,4 +1,6 @@
-"""Torque-speed envelopes of the shared ankle motors in the style of the paper's Fig. 4, and cuts of the torque set."""
+"""Torque-speed envelopes of the shared ankle motors in the style of the paper's Fig. 4, and cuts of
+the torque set.
+"""
 
 from __future__ import annotations
 
@@ -44,12 +46,19 @@ def _one(design: Design) -> None:
         raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
 
 
-def torque_speed_figure(design: Design, torque: np.ndarray | None = None, velocity: np.ndarray | None = None, posture: str | None = None) -> Figure:
-    """Envelopes of both ankle motors, and of what the two give to ankle pitch (L+R) and roll (L-R), as the paper's Fig. 4.
+def torque_speed_figure(
+    design: Design,
+    torque: np.ndarray | None = None,
+    velocity: np.ndarray | None = None,
+    posture: str | None = None,
+) -> Figure:
+    """Envelopes of both ankle motors, and of what the two give to ankle pitch (L+R) and roll (L-R),
+    as the paper's Fig. 4.
 
-    In the lower panels torque and speed are those of the pair's sum and difference: pitch torque M (t_L + t_R) against
-    (w_L + w_R) / 2M, which is the speed of ankle pitch with the knee at rest, and likewise for roll. Their product is the
-    power that the pair gives in that way, so the colours mean the same in all panels.
+    In the lower panels torque and speed are those of the pair's sum and difference: pitch torque M
+    (t_L + t_R) against (w_L + w_R) / 2M, which is the speed of ankle pitch with the knee at rest,
+    and likewise for roll. Their product is the power that the pair gives in that way, so the
+    colours mean the same in all panels.
 
     Args:
         design: one robot.
@@ -74,7 +83,11 @@ def torque_speed_figure(design: Design, torque: np.ndarray | None = None, veloci
         for axis, motor, side in zip(axes[0], pair, ("left", "right"), strict=True):
             _envelope(axis, one, 1.0, 1.0, rated)
             _operating(axis, points, np.eye(matrix.shape[1])[motor], np.eye(matrix.shape[1])[motor])
-            axis.set(title=f"{side} ankle motor", xlabel="motor speed [rad/s]", ylabel="motor torque [Nm]")
+            axis.set(
+                title=f"{side} ankle motor",
+                xlabel="motor speed [rad/s]",
+                ylabel="motor torque [Nm]",
+            )
         for axis, row, sign, title in (
             (axes[1, 0], transmission.ANKLE_PITCH, 1.0, "ankle pitch (L + R)"),
             (axes[1, 1], transmission.ANKLE_ROLL, -1.0, "ankle roll (L − R)"),
@@ -89,30 +102,51 @@ def torque_speed_figure(design: Design, torque: np.ndarray | None = None, veloci
         return figure
 
 
-def _motor_points(design: Design, matrix: np.ndarray, torque: np.ndarray | None, velocity: np.ndarray | None) -> tuple[np.ndarray, np.ndarray] | None:
+def _motor_points(
+    design: Design, matrix: np.ndarray, torque: np.ndarray | None, velocity: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray] | None:
     """Motor torques and speeds `(t, motors)` of joint-space points."""
     if torque is None and velocity is None:
         return None
     found = [None if values is None else np.shape(values) for values in (torque, velocity)]
-    if torque is None or velocity is None or found[0] != found[1] or np.ndim(torque) != 2 or np.shape(torque)[1] != len(matrix):
-        raise InputError("torque_speed_figure", "torque, velocity", found, f"expects both, of shape (t, {len(matrix)})")
+    if (
+        torque is None
+        or velocity is None
+        or found[0] != found[1]
+        or np.ndim(torque) != 2
+        or np.shape(torque)[1] != len(matrix)
+    ):
+        raise InputError(
+            "torque_speed_figure",
+            "torque, velocity",
+            found,
+            f"expects both, of shape (t, {len(matrix)})",
+        )
     heat = motor_envelope(design).power_constant
-    return transmission.motor_torque(matrix, np.asarray(torque, float), heat), transmission.motor_velocity(matrix, np.asarray(velocity, float))
+    return transmission.motor_torque(
+        matrix, np.asarray(torque, float), heat
+    ), transmission.motor_velocity(matrix, np.asarray(velocity, float))
 
 
-def _envelope(axis: Axes, one: MotorEnvelope, torque_scale: float, speed_scale: float, rated: float) -> None:
+def _envelope(
+    axis: Axes, one: MotorEnvelope, torque_scale: float, speed_scale: float, rated: float
+) -> None:
     """Regions of one motor's envelope, with torque and speed stretched to the panel's."""
     free, peak = float(one.no_load_speed[0]), float(one.peak_torque[0])
     end = min(1.25 * free, float(one.top_speed[0]))
     corner = float(one.corner_speed[0])
-    speed = np.unique(np.concatenate([np.linspace(-end, end, 401), [-corner, corner, -free, 0, free]]))
+    speed = np.unique(
+        np.concatenate([np.linspace(-end, end, 401), [-corner, corner, -free, 0, free]])
+    )
     lower, upper = (limit[:, 0] * torque_scale for limit in torque_limits(one, speed[:, None]))
     x = speed * speed_scale
     for part in (speed >= 0, speed <= 0):
         driving = np.sign(speed[part].sum())
         above, below = np.maximum(upper[part], 0), np.minimum(upper[part], 0)
         under, over = np.minimum(lower[part], 0), np.maximum(lower[part], 0)
-        red, blue = ((over, above), (under, below)) if driving > 0 else ((under, below), (over, above))
+        red, blue = (
+            ((over, above), (under, below)) if driving > 0 else ((under, below), (over, above))
+        )
         axis.fill_between(x[part], *red, color=MOTORING, alpha=0.16, linewidth=0)
         axis.fill_between(x[part], *blue, color=REGENERATIVE, alpha=0.16, linewidth=0)
     for limit in (lower, upper):
@@ -120,23 +154,55 @@ def _envelope(axis: Axes, one: MotorEnvelope, torque_scale: float, speed_scale: 
     axis.axhline(0, color=_GREY, linewidth=0.7)
     axis.axvline(0, color=_GREY, linewidth=0.7)
     for level in (-rated, rated):
-        axis.plot([-free * speed_scale, free * speed_scale], [level * torque_scale] * 2, color=_GREY, linewidth=0.9, linestyle=(0, (5, 3)))
+        axis.plot(
+            [-free * speed_scale, free * speed_scale],
+            [level * torque_scale] * 2,
+            color=_GREY,
+            linewidth=0.9,
+            linestyle=(0, (5, 3)),
+        )
     note: dict[str, Any] = {"fontsize": 8, "color": _INK, "textcoords": "offset points"}
-    axis.plot([corner * speed_scale, free * speed_scale], [peak * torque_scale, 0], "o", color=_INK, markersize=3.5, zorder=5)
+    axis.plot(
+        [corner * speed_scale, free * speed_scale],
+        [peak * torque_scale, 0],
+        "o",
+        color=_INK,
+        markersize=3.5,
+        zorder=5,
+    )
     axis.annotate(
-        f"{corner * speed_scale:.3g} rad/s, {peak * torque_scale:.3g} Nm", (corner * speed_scale, peak * torque_scale), xytext=(4, 5), **note
+        f"{corner * speed_scale:.3g} rad/s, {peak * torque_scale:.3g} Nm",
+        (corner * speed_scale, peak * torque_scale),
+        xytext=(4, 5),
+        **note,
     )
     axis.annotate(f"{free * speed_scale:.3g} rad/s", (free * speed_scale, 0), xytext=(4, 4), **note)
-    axis.set(xlim=(-1.1 * end * speed_scale, 1.1 * end * speed_scale), ylim=(-1.2 * peak * torque_scale, 1.2 * peak * torque_scale))
+    axis.set(
+        xlim=(-1.1 * end * speed_scale, 1.1 * end * speed_scale),
+        ylim=(-1.2 * peak * torque_scale, 1.2 * peak * torque_scale),
+    )
 
 
-def _operating(axis: Axes, points: tuple[np.ndarray, np.ndarray] | None, torque_weight: np.ndarray, speed_weight: np.ndarray) -> None:
+def _operating(
+    axis: Axes,
+    points: tuple[np.ndarray, np.ndarray] | None,
+    torque_weight: np.ndarray,
+    speed_weight: np.ndarray,
+) -> None:
     if points is None:
         return
     torque, speed = points[0] @ torque_weight, points[1] @ speed_weight
     driving = torque * speed >= 0
     for chosen, colour in ((driving, MOTORING), (~driving, REGENERATIVE)):
-        axis.plot(speed[chosen], torque[chosen], ".", color=colour, markersize=3.5, markeredgewidth=0, zorder=4)
+        axis.plot(
+            speed[chosen],
+            torque[chosen],
+            ".",
+            color=colour,
+            markersize=3.5,
+            markeredgewidth=0,
+            zorder=4,
+        )
 
 
 def _legend(figure: Figure, points: bool) -> None:
@@ -144,7 +210,11 @@ def _legend(figure: Figure, points: bool) -> None:
     from matplotlib.patches import Patch
 
     def handle(colour: str, label: str) -> Any:
-        return Line2D([], [], marker="o", linestyle="", color=colour, label=label) if points else Patch(color=colour, alpha=0.25, label=label)
+        return (
+            Line2D([], [], marker="o", linestyle="", color=colour, label=label)
+            if points
+            else Patch(color=colour, alpha=0.25, label=label)
+        )
 
     handles = [
         handle(MOTORING, "motoring, torque × speed ≥ 0"),
@@ -155,12 +225,18 @@ def _legend(figure: Figure, points: bool) -> None:
     figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=9)
 
 
-def _below_hip(design: Design, posture: str | None, pitch_speed: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Matrix and limits of the motors below the hip, with the ankle pitching at a speed and all else at rest."""
+def _below_hip(
+    design: Design, posture: str | None, pitch_speed: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Matrix and limits of the motors below the hip, with the ankle pitching at a speed and all
+    else at rest.
+    """
     matrix = transmission.joint_from_motor(design, posture)[BELOW_HIP, BELOW_HIP]
     velocity = np.zeros(len(matrix))
     velocity[ANKLE_PITCH] = pitch_speed
-    return matrix, *zonotope.speed_dependent(motor_envelope(design).select(BELOW_HIP), matrix, velocity)
+    return matrix, *zonotope.speed_dependent(
+        motor_envelope(design).select(BELOW_HIP), matrix, velocity
+    )
 
 
 def slice_figure(
@@ -169,10 +245,11 @@ def slice_figure(
     pitch_speeds: Sequence[float] = (0.0, 7.0, 10.0),
     posture: str | None = None,
 ) -> Figure:
-    """What two joints below the hip can have together, against the box that their maxima suggest; a row a variant.
+    """What two joints below the hip can have together, against the box that their maxima suggest; a
+    row a variant.
 
-    Filled: the other joints below the hip at zero torque, at each ankle-pitch speed. Dotted: the others free. Dashed: the
-    box of single-joint maxima, all at zero speed.
+    Filled: the other joints below the hip at zero torque, at each ankle-pitch speed. Dotted: the
+    others free. Dashed: the box of single-joint maxima, all at zero speed.
 
     Args:
         design: one robot; its ablations are drawn where it has an active toe, else itself alone.
@@ -185,36 +262,73 @@ def slice_figure(
     """
     _one(design)
     if not 1 <= len(pitch_speeds) <= len(_SPEED_SHADES):
-        raise InputError("slice_figure", "pitch_speeds", list(pitch_speeds), f"expects one to {len(_SPEED_SHADES)} speeds [rad/s]")
-    robots = {v: ablate(design, v) for v in variants} if design.variant == "toe" else {design.variant: design}
+        raise InputError(
+            "slice_figure",
+            "pitch_speeds",
+            list(pitch_speeds),
+            f"expects one to {len(_SPEED_SHADES)} speeds [rad/s]",
+        )
+    robots = (
+        {v: ablate(design, v) for v in variants}
+        if design.variant == "toe"
+        else {design.variant: design}
+    )
     with figure_style():
         import matplotlib.pyplot as plt
 
         figure, axes = plt.subplots(
-            len(robots), len(PAIRS), figsize=(11.5, 3.5 * len(robots) + 0.5), constrained_layout=True, squeeze=False, sharex="col", sharey=True
+            len(robots),
+            len(PAIRS),
+            figsize=(11.5, 3.5 * len(robots) + 0.5),
+            constrained_layout=True,
+            squeeze=False,
+            sharex="col",
+            sharey=True,
         )
         for row, (name, robot) in zip(axes, robots.items(), strict=True):
             for axis, pair in zip(row, PAIRS, strict=True):
                 _slice_panel(axis, robot, pair, pitch_speeds, posture)
             row[0].set_ylabel(f"{_LABEL[ANKLE_PITCH]} torque [Nm]")
-            row[0].set_title(name.replace("_", " "), loc="left", color=VARIANT_COLOUR[name], fontweight="bold")
+            row[0].set_title(
+                name.replace("_", " "), loc="left", color=VARIANT_COLOUR[name], fontweight="bold"
+            )
         for axis, pair in zip(axes[-1], PAIRS, strict=True):
             axis.set_xlabel(f"{_LABEL[pair[0]]} torque [Nm]")
         _slice_legend(figure, pitch_speeds)
         return figure
 
 
-def _slice_panel(axis: Axes, design: Design, pair: tuple[int, int], speeds: Sequence[float], posture: str | None) -> None:
+def _slice_panel(
+    axis: Axes, design: Design, pair: tuple[int, int], speeds: Sequence[float], posture: str | None
+) -> None:
     from matplotlib.patches import Polygon, Rectangle
 
     matrix, lower, upper = _below_hip(design, posture, 0.0)
     if max(pair) >= len(matrix):
-        axis.text(0.5, 0.5, "no toe joint", transform=axis.transAxes, ha="center", va="center", color=_GREY)
+        axis.text(
+            0.5,
+            0.5,
+            "no toe joint",
+            transform=axis.transAxes,
+            ha="center",
+            va="center",
+            color=_GREY,
+        )
         axis.grid(False)
         return
     low, high = zonotope.box(matrix, lower, upper)
     corner, size = low[list(pair)], (high - low)[list(pair)]
-    axis.add_patch(Rectangle((corner[0], corner[1]), size[0], size[1], fill=False, edgecolor=_GREY, linestyle=(0, (5, 3)), linewidth=1.1))
+    axis.add_patch(
+        Rectangle(
+            (corner[0], corner[1]),
+            size[0],
+            size[1],
+            fill=False,
+            edgecolor=_GREY,
+            linestyle=(0, (5, 3)),
+            linewidth=1.1,
+        )
+    )
     shadow = slices.projection_polygon(matrix, lower, upper, pair)
     axis.add_patch(Polygon(shadow, fill=False, edgecolor=_INK, linestyle=":", linewidth=1.2))
     area = np.nan
@@ -227,7 +341,9 @@ def _slice_panel(axis: Axes, design: Design, pair: tuple[int, int], speeds: Sequ
             x, y = cut.T
             area = 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / float(size.prod())
     if np.isfinite(area):
-        axis.set_title(f"at rest {100 * area:.0f} % of the box", loc="right", fontsize=8, color=_INK)
+        axis.set_title(
+            f"at rest {100 * area:.0f} % of the box", loc="right", fontsize=8, color=_INK
+        )
     axis.axhline(0, color=_GREY, linewidth=0.6)
     axis.axvline(0, color=_GREY, linewidth=0.6)
     axis.autoscale_view()
@@ -243,17 +359,26 @@ def _slice_legend(figure: Figure, speeds: Sequence[float]) -> None:
             facecolor=shade,
             alpha=0.5,
             edgecolor=shade,
-            label=f"others at zero, ankle pitching at {speed:g} rad/s" if speed else "others at zero, at rest",
+            label=f"others at zero, ankle pitching at {speed:g} rad/s"
+            if speed
+            else "others at zero, at rest",
         )
         for speed, shade in zip(speeds, _SPEED_SHADES, strict=False)
     ]
     handles.append(Line2D([], [], color=_INK, linestyle=":", label="others free, at rest"))
-    handles.append(Line2D([], [], color=_GREY, linestyle=(0, (5, 3)), label="box of single-joint maxima, at rest"))
+    handles.append(
+        Line2D(
+            [], [], color=_GREY, linestyle=(0, (5, 3)), label="box of single-joint maxima, at rest"
+        )
+    )
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9)
 
 
-def polyhedron_figure(design: Design, pitch_speeds: Sequence[float] = (0.0, 10.0), posture: str | None = None) -> Figure:
-    """What knee, ankle pitch and toe can have together with ankle roll at zero, in 3-D inside the box of their maxima.
+def polyhedron_figure(
+    design: Design, pitch_speeds: Sequence[float] = (0.0, 10.0), posture: str | None = None
+) -> Figure:
+    """What knee, ankle pitch and toe can have together with ankle roll at zero, in 3-D inside the
+    box of their maxima.
 
     Ankle roll takes the toe's place where the toe does not move.
 
@@ -267,10 +392,17 @@ def polyhedron_figure(design: Design, pitch_speeds: Sequence[float] = (0.0, 10.0
         InfeasibleError: at some speed no torque with zero roll is within reach.
     """
     _one(design)
-    joints = (KNEE, TOE, ANKLE_PITCH) if design.toe.joint == "active" else (KNEE, ANKLE_ROLL, ANKLE_PITCH)
+    joints = (
+        (KNEE, TOE, ANKLE_PITCH)
+        if design.toe.joint == "active"
+        else (KNEE, ANKLE_ROLL, ANKLE_PITCH)
+    )
     matrix, lower, upper = _below_hip(design, posture, 0.0)
     low, high = (limit[list(joints)] for limit in zonotope.box(matrix, lower, upper))
-    bodies = [slices.slice_polyhedron(*_below_hip(design, posture, speed), joints) for speed in pitch_speeds]
+    bodies = [
+        slices.slice_polyhedron(*_below_hip(design, posture, speed), joints)
+        for speed in pitch_speeds
+    ]
     with figure_style():
         import matplotlib.pyplot as plt
         from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
@@ -280,15 +412,29 @@ def polyhedron_figure(design: Design, pitch_speeds: Sequence[float] = (0.0, 10.0
         edges = [(i, i | 1 << a) for i in range(8) for a in range(3) if not i >> a & 1]
         for index, (speed, body) in enumerate(zip(pitch_speeds, bodies, strict=True)):
             axis: Any = figure.add_subplot(1, len(bodies), index + 1, projection="3d")
-            axis.add_collection3d(Line3DCollection([corners[list(e)] for e in edges], colors=_GREY, linewidths=0.9, linestyles="--"))
+            axis.add_collection3d(
+                Line3DCollection(
+                    [corners[list(e)] for e in edges], colors=_GREY, linewidths=0.9, linestyles="--"
+                )
+            )
             faces = [body.vertices[face] for face in body.faces]
-            axis.add_collection3d(Poly3DCollection(faces, facecolors=_shaded(faces), edgecolors=_INK, linewidths=1.0, alpha=0.85))
+            axis.add_collection3d(
+                Poly3DCollection(
+                    faces, facecolors=_shaded(faces), edgecolors=_INK, linewidths=1.0, alpha=0.85
+                )
+            )
             axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-            for label, joint in zip((axis.set_xlabel, axis.set_ylabel, axis.set_zlabel), joints, strict=True):
+            for label, joint in zip(
+                (axis.set_xlabel, axis.set_ylabel, axis.set_zlabel), joints, strict=True
+            ):
                 label(f"{_LABEL[joint]} [Nm]", labelpad=6)
             axis.view_init(elev=20, azim=-62)
             axis.set_box_aspect((1, 1, 0.9), zoom=0.92)
-            axis.set_title(f"{_motion(speed)}: {100 * body.volume / float((high - low).prod()):.1f} % of the box", y=0.97)
+            axis.set_title(
+                f"{_motion(speed)}: {100 * body.volume / float((high - low).prod()):.1f} % of the "
+                f"box",
+                y=0.97,
+            )
         return figure
 
 
@@ -303,5 +449,7 @@ def _shaded(faces: list[np.ndarray]) -> list[Any]:
     for face in faces:
         normal = np.cross((face[1] - face[0]) / scale, (face[2] - face[1]) / scale)
         bright = 0.5 + 0.5 * float(normal @ light) / max(float(np.linalg.norm(normal)), 1e-12)
-        shades.append(tuple(np.array(to_rgb(_SPEED_SHADES[0])) * (0.45 + 0.55 * bright) + 0.12 * bright))
+        shades.append(
+            tuple(np.array(to_rgb(_SPEED_SHADES[0])) * (0.45 + 0.55 * bright) + 0.12 * bright)
+        )
     return [tuple(np.clip(s, 0, 1)) for s in shades]

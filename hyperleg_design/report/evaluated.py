@@ -1,4 +1,6 @@
-"""All shipped policies under their protocols, evaluated side by side: what tables, figures and the page are made from."""
+"""All shipped policies under their protocols, evaluated side by side: what tables, figures and the
+page are made from.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,8 @@ if TYPE_CHECKING:
 WALK, T_TEST = "walk", "t_test"
 """Kinds of protocol."""
 TIME_CONSTANTS = (0.01, 0.014, 0.02, 0.028, 0.04)
-"""Of the contact, over which impacts are shown [s]; the first is the stiffest that steps of 5 ms allow."""
+"""Of the contact, over which impacts are shown [s]; the first is the stiffest that steps of 5 ms
+allow."""
 BAND_SEEDS, BAND_TRIALS = 3, 4
 """Trainings of each design, and walks of each, at every time constant."""
 
@@ -42,18 +45,31 @@ class Evaluated:
     """Walks over a band of contact time constants [s], by design."""
 
     def groups(self, kind: str) -> list[str]:
-        """Groups of trainings that were run under a kind of protocol, in the order of their names."""
-        return list(dict.fromkeys(p.group for p, e in zip(self.policies, self.evaluations, strict=True) if _kind(e) == kind))
+        """Groups of trainings that were run under a kind of protocol, in the order of their
+        names.
+        """
+        return list(
+            dict.fromkeys(
+                p.group
+                for p, e in zip(self.policies, self.evaluations, strict=True)
+                if _kind(e) == kind
+            )
+        )
 
     def designs(self, group: str) -> list[str]:
         """Designs of a group, the paper's two first."""
         found = dict.fromkeys(p.design for p in self.policies if p.group == group)
-        return sorted(found, key=lambda name: (VARIANTS.index(name) if name in VARIANTS else len(VARIANTS), name))
+        return sorted(
+            found,
+            key=lambda name: (VARIANTS.index(name) if name in VARIANTS else len(VARIANTS), name),
+        )
 
     def of(self, group: str, design: str, *, late: bool = True) -> list[Evaluation]:
         """Evaluations of a group and design, by seed, the last policy of each training first."""
         pairs = zip(self.policies, self.evaluations, strict=True)
-        return [e for p, e in pairs if (p.group, p.design) == (group, design) and (late or p.late == 0)]
+        return [
+            e for p, e in pairs if (p.group, p.design) == (group, design) and (late or p.late == 0)
+        ]
 
     def shown(self, group: str, design: str) -> Trial | None:
         """A trial of a group and design whose signals are there."""
@@ -65,7 +81,9 @@ class Evaluated:
 
     def table(self, group: str) -> pd.DataFrame:
         """One row a trial of a group; `variant` and `seed` as the trainings' folders say."""
-        chosen = [(p, e) for p, e in zip(self.policies, self.evaluations, strict=True) if p.group == group]
+        chosen = [
+            (p, e) for p, e in zip(self.policies, self.evaluations, strict=True) if p.group == group
+        ]
         table = trial_table([e for _, e in chosen])
         table["variant"] = [p.design for p, e in chosen for _ in e.measures]
         table["seed"] = [p.seed for p, e in chosen for _ in e.measures]
@@ -87,7 +105,8 @@ def evaluate_shipped(
         folder: of trainings; the shipped policies by default.
         walk: protocol of policies that walk at a speed; the shipped one by default.
         t_test: protocol of policies that run to waypoints; the shipped one by default.
-        band: time constants of the contact over which walks are repeated [s]; none to leave that out.
+        band: time constants of the contact over which walks are repeated [s]; none to leave that
+            out.
         workers: processes; as many as the machine has processors by default.
         progress: called with how many of how many evaluations are done, and which was the last.
 
@@ -99,7 +118,10 @@ def evaluate_shipped(
     """
     policies = shipped_policies(folder)
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
-    kinds = [T_TEST if isinstance(protocol_for(load_policy(p.path)), TTestProtocol) else WALK for p in policies]
+    kinds = [
+        T_TEST if isinstance(protocol_for(load_policy(p.path)), TTestProtocol) else WALK
+        for p in policies
+    ]
     banded = _banded(policies, kinds) if band else []
     count, done = len(policies) + len(banded) * len(band), 0
 
@@ -115,12 +137,33 @@ def evaluate_shipped(
     for kind, protocol in protocols.items():
         places = [i for i, own in enumerate(kinds) if own == kind]
         kept = [int(i in shown.values()) for i in places]
-        some = evaluate_many([policies[i].path for i in places], protocol, workers=processes, kept=kept, progress=note) if places else []
+        some = (
+            evaluate_many(
+                [policies[i].path for i in places],
+                protocol,
+                workers=processes,
+                kept=kept,
+                progress=note,
+            )
+            if places
+            else []
+        )
         found |= dict(zip(places, some, strict=True))
     jobs = [(policy, constant) for policy in banded for constant in band]
     few = protocols[WALK].changed(trials=min(BAND_TRIALS, int(protocols[WALK].trials)))
     changes = [{"contact.time_constant": constant} for _, constant in jobs]
-    walks = evaluate_many([p.path for p, _ in jobs], few, workers=processes, kept=0, overrides=changes, progress=note) if jobs else []
+    walks = (
+        evaluate_many(
+            [p.path for p, _ in jobs],
+            few,
+            workers=processes,
+            kept=0,
+            overrides=changes,
+            progress=note,
+        )
+        if jobs
+        else []
+    )
     over: dict[str, dict[float, list[Evaluation]]] = {}
     for (policy, constant), one in zip(jobs, walks, strict=True):
         over.setdefault(policy.design, {}).setdefault(constant, []).append(one)
@@ -130,13 +173,23 @@ def evaluate_shipped(
 
 
 def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:
-    """Last policies of the first trainings of the paper's two designs, of the first group that walks and has most of them."""
-    last = [p for p, kind in zip(policies, kinds, strict=True) if kind == WALK and p.late == 0 and p.design in VARIANTS]
+    """Last policies of the first trainings of the paper's two designs, of the first group that
+    walks and has most of them.
+    """
+    last = [
+        p
+        for p, kind in zip(policies, kinds, strict=True)
+        if kind == WALK and p.late == 0 and p.design in VARIANTS
+    ]
     if not last:
         return []
     groups = {p.group: len({q.design for q in last if q.group == p.group}) for p in last}
     group = max(groups, key=lambda name: groups[name])
-    return [p for design in VARIANTS for p in [q for q in last if (q.group, q.design) == (group, design)][:BAND_SEEDS]]
+    return [
+        p
+        for design in VARIANTS
+        for p in [q for q in last if (q.group, q.design) == (group, design)][:BAND_SEEDS]
+    ]
 
 
 def _kind(evaluation: Evaluation) -> str:

@@ -15,7 +15,11 @@ if TYPE_CHECKING:
     from hyperleg_design.evaluation.measures import OUTCOMES, T_TEST, WALK
 from hyperleg_design.evaluation.result import Evaluation
 
-UNITS = {name: measure.unit for table_of in (OUTCOMES, WALK, T_TEST) for name, measure in table_of.items()}
+UNITS = {
+    name: measure.unit
+    for table_of in (OUTCOMES, WALK, T_TEST)
+    for name, measure in table_of.items()
+}
 """Unit of each measure."""
 
 
@@ -23,7 +27,8 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
     """One row a variant and measure: mean with its interval over seeds and trials.
 
     Returns:
-        `variant`, `protocol`, `measure`, `unit`, `mean`, `low`, `high` (None where there is none), `seeds`, `trials`, `missing`.
+        `variant`, `protocol`, `measure`, `unit`, `mean`, `low`, `high` (None where there is none),
+        `seeds`, `trials`, `missing`.
     """
     trials = trial_table(evaluations)
     rows = []
@@ -31,8 +36,18 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
         for measure in evaluations[0].measures[0]:
             if measure not in part:
                 continue
-            found = (share if measure in OUTCOMES else estimate)(list(by_checkpoint(part, measure).values()))
-            rows.append({"variant": str(variant), "protocol": str(protocol), "measure": measure, "unit": UNITS.get(measure, ""), **_plain(found)})
+            found = (share if measure in OUTCOMES else estimate)(
+                list(by_checkpoint(part, measure).values())
+            )
+            rows.append(
+                {
+                    "variant": str(variant),
+                    "protocol": str(protocol),
+                    "measure": measure,
+                    "unit": UNITS.get(measure, ""),
+                    **_plain(found),
+                }
+            )
     return rows
 
 
@@ -51,5 +66,17 @@ def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
     cells = []
     for row in rows:
         numbers = ["" if row[k] is None else row[k] for k in ("mean", "low", "high")]
-        cells.append([row["variant"], row["measure"], row["unit"], *numbers, row["seeds"], row["trials"], row["missing"]])
-    return table(["variant", "measure", "unit", "mean", "low", "high", "seeds", "trials", "missing"], cells)
+        cells.append(
+            [
+                row["variant"],
+                row["measure"],
+                row["unit"],
+                *numbers,
+                row["seeds"],
+                row["trials"],
+                row["missing"],
+            ]
+        )
+    return table(
+        ["variant", "measure", "unit", "mean", "low", "high", "seeds", "trials", "missing"], cells
+    )

@@ -1,4 +1,6 @@
-"""Folders that the verbs of `hyperleg gap` write: a diagnosis with its page, planned experiments with their figures."""
+"""Folders that the verbs of `hyperleg gap` write: a diagnosis with its page, planned experiments
+with their figures.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ def diagnose_to_folder(
 
     Args:
         robot: a design, MJCF or URDF file; empty: what the logs name.
-        sources: files or folders of any known format; logs whose metadata say so count as references.
+        sources: files or folders of any known format; logs whose metadata say so count as
+            references.
         references: of the healthy robot.
         out: folder, written whole or not at all.
         seed: of everything random.
@@ -51,7 +54,9 @@ def diagnose_to_folder(
 
     check_output_folder(out)
     tests, healthy = open_logs(sources, references)
-    found = diagnose(robot or None, tests, healthy, seed=seed, thresholds=thresholds, threads=threads, show=show).mapping()
+    found = diagnose(
+        robot or None, tests, healthy, seed=seed, thresholds=thresholds, threads=threads, show=show
+    ).mapping()
     subject = load_subject(robot or None, [*tests, *healthy])
     with output_folder(out) as folder:
         write_json(folder / "diagnosis.json", found)
@@ -60,7 +65,8 @@ def diagnose_to_folder(
 
 
 def excite_to_folder(robot: str, out: str | os.PathLike[str], **options: Any) -> str:
-    """Design experiments for a rig, write targets, plan and figures, and return the plan as text; options as `gap.excite.excite`.
+    """Design experiments for a rig, write targets, plan and figures, and return the plan as text;
+    options as `gap.excite.excite`.
 
     Raises:
         InputError: bad input.

@@ -1,4 +1,6 @@
-"""Figures and texts of single effects: the catalogue, and one effect's trace on the standard motion."""
+"""Figures and texts of single effects: the catalogue, and one effect's trace on the standard
+motion.
+"""
 
 from __future__ import annotations
 
@@ -17,24 +19,37 @@ if TYPE_CHECKING:
 TRACE, RESIDUAL, BEFORE, TARGET = "#c8602a", "#9ca3af", "#2f6db3", "#6b7280"
 ZOOM = 2.0
 """Length of the stretch of the closed loop that is drawn large [s]."""
-PLACES = {"motion": "balance of motion", "drive": "balance of the drive", "base": "balance of the base", "ground": "balance of the ground"}
+PLACES = {
+    "motion": "balance of motion",
+    "drive": "balance of the drive",
+    "base": "balance of the base",
+    "ground": "balance of the ground",
+}
 
 
 def effects_text(table: Sequence[Mapping[str, Any]]) -> str:
-    """The catalogue as lines: identifier, kind of place and summary, then a line for each parameter."""
+    """The catalogue as lines: identifier, kind of place and summary, then a line for each
+    parameter.
+    """
     lines = []
     for entry in table:
         lines.append(f"{entry['effect']}  ({entry['where']})  {entry['summary']}")
         for p in entry["parameters"]:
             if p["choices"]:
-                lines.append(f"    {p['name']}: {', '.join(f'{i} {words}' for i, words in enumerate(p['choices']))}")
+                lines.append(
+                    f"    {p['name']}: "
+                    f"{', '.join(f'{i} {words}' for i, words in enumerate(p['choices']))}"
+                )
                 continue
             unit = f" {p['unit']}" if p["unit"] else ""
             shape = ", shapes the trace only" if p["shape"] else ""
             lines.append(
-                f"    {p['name']}: {p['null']:g}{unit} without, usually {p['typical']:g}{unit} off, {p['low']:g} .. {p['high']:g}{unit}{shape}"
+                f"    {p['name']}: {p['null']:g}{unit} without, usually {p['typical']:g}{unit} "
+                f"off, {p['low']:g} .. {p['high']:g}{unit}{shape}"
             )
-            lines += textwrap.wrap(p["source"], 110, initial_indent="        ", subsequent_indent="        ")
+            lines += textwrap.wrap(
+                p["source"], 110, initial_indent="        ", subsequent_indent="        "
+            )
     return "\n".join(lines)
 
 
@@ -45,7 +60,10 @@ def show_summary(shown: Shown) -> dict[str, Any]:
         "effect": shown.effect.identifier,
         "robot": shown.robot,
         "location": shown.location,
-        "parameters": {p.name: {"value": float(v), "unit": p.unit} for p, v in zip(shown.effect.parameters, shown.values, strict=True)},
+        "parameters": {
+            p.name: {"value": float(v), "unit": p.unit}
+            for p, v in zip(shown.effect.parameters, shown.values, strict=True)
+        },
         "balance": shown.balance,
         "row": shown.row,
         "trace_rms": _rms(shown.trace[known]),
@@ -58,13 +76,16 @@ def show_summary(shown: Shown) -> dict[str, Any]:
 
 def show_text(summary: Mapping[str, Any]) -> str:
     """`show_summary` for people."""
-    values = ", ".join(f"{name} {v['value']:.4g} {v['unit']}".rstrip() for name, v in summary["parameters"].items())
+    values = ", ".join(
+        f"{name} {v['value']:.4g} {v['unit']}".rstrip() for name, v in summary["parameters"].items()
+    )
     lines = [f"{summary['effect']} at {summary['location']} of {summary['robot']}: {values}"]
     if summary["balance"]:
         place = PLACES[summary["balance"]]
         unit = summary["unit"]
         lines.append(
-            f"trace {summary['trace_rms']:.3g} {unit} RMS in the {place}, row {summary['row']}; residual {summary['residual_rms']:.3g} {unit}"
+            f"trace {summary['trace_rms']:.3g} {unit} RMS in the {place}, row {summary['row']}; "
+            f"residual {summary['residual_rms']:.3g} {unit}"
         )
     else:
         lines.append("leaves no trace on this motion")
@@ -73,21 +94,35 @@ def show_text(summary: Mapping[str, Any]) -> str:
 
 
 def show_figure(shown: Shown, path: str | Path) -> Path:
-    """Draw a shown effect: trace and residual in time, the trace against velocity, position and torque, the closed loop."""
+    """Draw a shown effect: trace and residual in time, the trace against velocity, position and
+    torque, the closed loop.
+    """
     import matplotlib.pyplot as plt
 
     with figure_style():
         figure = plt.figure(figsize=(11, 9.6))
         grid = figure.add_gridspec(3, 3, height_ratios=[1.1, 1.0, 1.1], hspace=0.42, wspace=0.3)
-        figure.suptitle(f"{shown.effect.identifier}: {shown.effect.summary}", fontsize=13, x=0.08, ha="left", y=0.985)
+        figure.suptitle(
+            f"{shown.effect.identifier}: {shown.effect.summary}",
+            fontsize=13,
+            x=0.08,
+            ha="left",
+            y=0.985,
+        )
         figure.text(0.08, 0.955, _caption(shown), fontsize=9.5, color="#374151", va="top")
         _draw_time(figure.add_subplot(grid[0, :]), shown)
-        others = (("velocity", shown.velocity, "rad/s"), ("position", shown.position, "rad"), ("torque", shown.torque, "Nm"))
+        others = (
+            ("velocity", shown.velocity, "rad/s"),
+            ("position", shown.position, "rad"),
+            ("torque", shown.torque, "Nm"),
+        )
         first = None
         for column, (name, values, unit) in enumerate(others):
             axes = figure.add_subplot(grid[1, column], sharey=first)
             first = first or axes
-            axes.plot(values, shown.trace, ".", markersize=2, color=TRACE, alpha=0.5, rasterized=True)
+            axes.plot(
+                values, shown.trace, ".", markersize=2, color=TRACE, alpha=0.5, rasterized=True
+            )
             axes.set_xlabel(f"{name} of {shown.joint} [{unit}]")
             if column == 0:
                 axes.set_ylabel(f"trace [{shown.unit}]")
@@ -101,7 +136,10 @@ def show_figure(shown: Shown, path: str | Path) -> Path:
 
 
 def _caption(shown: Shown) -> str:
-    values = ", ".join(f"{p.name} {v:.4g} {p.unit}".rstrip() for p, v in zip(shown.effect.parameters, shown.values, strict=True))
+    values = ", ".join(
+        f"{p.name} {v:.4g} {p.unit}".rstrip()
+        for p, v in zip(shown.effect.parameters, shown.values, strict=True)
+    )
     return "\n".join(textwrap.wrap(f"at {shown.location} of {shown.robot}, {values}", 125))
 
 
@@ -111,12 +149,26 @@ def _draw_time(axes: Any, shown: Shown) -> None:
         axes.set_axis_off()
         axes.text(0.5, 0.5, "leaves no trace on this motion", ha="center", transform=axes.transAxes)
         return
-    axes.plot(shown.time, shown.residual, color=RESIDUAL, linewidth=0.8, label="residual of a simulated log with the effect")
+    axes.plot(
+        shown.time,
+        shown.residual,
+        color=RESIDUAL,
+        linewidth=0.8,
+        label="residual of a simulated log with the effect",
+    )
     axes.plot(shown.time, shown.trace, color=TRACE, linewidth=1.1, label="trace")
     known = np.abs(np.concatenate([shown.trace, shown.residual]))
     size = float(np.nanpercentile(known, 99.7)) if np.isfinite(known).any() else 1.0
-    low = min(0.0, float(np.nanmin(shown.trace, initial=0.0)), float(np.nanpercentile(shown.residual, 0.3)))
-    high = max(0.0, float(np.nanmax(shown.trace, initial=0.0)), float(np.nanpercentile(shown.residual, 99.7)))
+    low = min(
+        0.0,
+        float(np.nanmin(shown.trace, initial=0.0)),
+        float(np.nanpercentile(shown.residual, 0.3)),
+    )
+    high = max(
+        0.0,
+        float(np.nanmax(shown.trace, initial=0.0)),
+        float(np.nanpercentile(shown.residual, 99.7)),
+    )
     room = 0.08 * max(high - low, 1e-3 * size, 1e-12)
     axes.set_ylim(low - room, high + 4.0 * room)
     axes.set_ylabel(f"{shown.row} [{shown.unit}]")
@@ -130,9 +182,18 @@ def _draw_loop(axes: Any, shown: Shown) -> None:
     moved = np.convolve((shown.after - shown.before) ** 2, np.ones(length), "valid")
     start = int(np.argmax(moved))
     part = slice(start, start + length)
-    axes.plot(shown.time[part], shown.target[part], color=TARGET, linestyle=":", linewidth=1.2, label="target")
+    axes.plot(
+        shown.time[part],
+        shown.target[part],
+        color=TARGET,
+        linestyle=":",
+        linewidth=1.2,
+        label="target",
+    )
     axes.plot(shown.time[part], shown.before[part], color=BEFORE, linewidth=1.2, label="without")
-    axes.plot(shown.time[part], shown.after[part], color=TRACE, linewidth=1.2, label="with the effect")
+    axes.plot(
+        shown.time[part], shown.after[part], color=TRACE, linewidth=1.2, label="with the effect"
+    )
     values = np.concatenate([shown.target[part], shown.before[part], shown.after[part]])
     room = 0.08 * max(float(np.ptp(values)), 1e-6)
     axes.set_ylim(values.min() - room, values.max() + 3.5 * room)

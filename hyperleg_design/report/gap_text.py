@@ -14,7 +14,11 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.measure import Gap
     from hyperleg_design.gap.sampling import Column
 
-FLOORS = {"reference": "reference logs", "repeats": "repeats of the same motion", "split": "the smooth part against the noisy part of the logs"}
+FLOORS = {
+    "reference": "reference logs",
+    "repeats": "repeats of the same motion",
+    "split": "the smooth part against the noisy part of the logs",
+}
 """What a floor rests on."""
 MOST_PLACES = 4
 """Names listed before the rest is counted."""
@@ -28,17 +32,24 @@ def checks_text(checks: Sequence[Check]) -> str:
 def _text(check: Check) -> str:
     clock = check.sampling
     lines = [
-        f"{check.name}: {clock.duration:.4g} s at {clock.rate:.4g} Hz, {clock.ticks} ticks, jitter {100 * clock.jitter:.1f} % of a step, "
+        f"{check.name}: {clock.duration:.4g} s at {clock.rate:.4g} Hz, {clock.ticks} ticks, jitter "
+        f"{100 * clock.jitter:.1f} % of a step, "
         f"dropouts {100 * clock.dropouts:.1f} % of the time"
     ]
     for finding in check.findings:
         place = f"{finding.signal} " if finding.signal else ""
-        lines.append(f"  {finding.severity:8}{place}{finding.what}{f': {finding.remedy}' if finding.remedy else ''}")
+        lines.append(
+            f"  {finding.severity:8}{place}{finding.what}{f': {finding.remedy}' if finding.remedy else ''}"  # noqa: E501
+        )
     lines += [f"  signals {line}" for line in _signals(check.columns)]
     shown = [e for e in check.excitation if e.shown]
     lines += [f"  shows   {e.effect}{_places(e.where)}: {e.why}" for e in shown]
     lines += [f"  cannot  {e.effect}: {e.why}" for e in check.excitation if not e.shown]
-    lines.append("  fit for a diagnosis" if check.usable else "  not fit for a diagnosis: mend the errors first")
+    lines.append(
+        "  fit for a diagnosis"
+        if check.usable
+        else "  not fit for a diagnosis: mend the errors first"
+    )
     return "\n".join(lines)
 
 
@@ -50,7 +61,9 @@ def _places(where: tuple[str, ...]) -> str:
 
 
 def _signals(columns: Sequence[Column]) -> list[str]:
-    """One line a kind of signal: how many, rate, quantisation, noise, saturation, the worst of its columns."""
+    """One line a kind of signal: how many, rate, quantisation, noise, saturation, the worst of its
+    columns.
+    """
     kinds: dict[str, list[Column]] = {}
     for one in columns:
         kinds.setdefault(one.column.partition("/")[0], []).append(one)
@@ -62,49 +75,80 @@ def _signals(columns: Sequence[Column]) -> list[str]:
             f"{min(c.rate for c in members):.4g} Hz",
             f"steps of {quantum:.2g}" if quantum else "",
             f"noise {max(c.noise for c in members):.2g}",
-            f"at a bound {100 * max(c.saturated for c in members):.2g} %" if max(c.saturated for c in members) > 0.005 else "",
+            f"at a bound {100 * max(c.saturated for c in members):.2g} %"
+            if max(c.saturated for c in members) > 0.005
+            else "",
         ]
         lines.append(", ".join(part for part in parts if part))
     return lines
 
 
 def gap_text(gap: Gap, most: int = 12) -> str:
-    """Where the gap lies: each signal's places, largest excess first, and the regimes in which the largest stands out."""
+    """Where the gap lies: each signal's places, largest excess first, and the regimes in which the
+    largest stands out.
+    """
     lines = [f"floor from {FLOORS[gap.floor_from]}"]
     lines += [f"note: {note}" for note in gap.notes]
     for signal in dict.fromkeys(row.signal for row in gap.rows):
         rows = sorted(gap.select(signal), key=lambda row: -row.excess)
-        lines += ["", f"{signal} [{rows[0].unit}]", f"  {'place':<24} {'gap':>10} {'floor':>10} {'excess':>10} {'share':>7}"]
-        lines += [f"  {row.location:<24} {row.gap:>10.4g} {row.floor:>10.4g} {row.excess:>10.4g} {100 * row.share:>6.0f}%" for row in rows[:most]]
+        lines += [
+            "",
+            f"{signal} [{rows[0].unit}]",
+            f"  {'place':<24} {'gap':>10} {'floor':>10} {'excess':>10} {'share':>7}",
+        ]
+        lines += [
+            f"  {row.location:<24} {row.gap:>10.4g} {row.floor:>10.4g} {row.excess:>10.4g} "
+            f"{100 * row.share:>6.0f}%"
+            for row in rows[:most]
+        ]
         if len(rows) > most:
             lines.append(f"  and {len(rows) - most} more")
         worst = rows[0]
-        regimes = sorted((r for r in gap.select(signal, location=worst.location, regime="") if r.regime != "all"), key=lambda r: -r.share)
+        regimes = sorted(
+            (
+                r
+                for r in gap.select(signal, location=worst.location, regime="")
+                if r.regime != "all"
+            ),
+            key=lambda r: -r.share,
+        )
         if worst.excess > 0 and regimes:
             told = ", ".join(f"{r.regime} {100 * r.share:.0f} %" for r in regimes[:4])
             lines.append(f"  {worst.location} mostly in: {told}")
     return "\n".join(lines)
 
 
-def chosen(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, Mapping[str, Any], str]]:
+def chosen(
+    effect: str, parameters: Mapping[str, Mapping[str, Any]]
+) -> list[tuple[str, Mapping[str, Any], str]]:
     """Parameters by name, with words for those that are a choice."""
     choices = {p.name: p.choices for p in EFFECTS[effect].parameters}
     found = []
     for name, one in parameters.items():
         words = choices.get(name, ())
-        found.append((name, one, words[min(max(round(float(one["value"])), 0), len(words) - 1)] if words else ""))
+        found.append(
+            (
+                name,
+                one,
+                words[min(max(round(float(one["value"])), 0), len(words) - 1)] if words else "",
+            )
+        )
     return found
 
 
 def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
-    """Smallest change that the logs would have shown, an effect's parameter a row: effect, parameter, where it is least and where most."""
+    """Smallest change that the logs would have shown, an effect's parameter a row: effect,
+    parameter, where it is least and where most.
+    """
     groups: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
     for one in diagnosis.get("sensitivity", ()):
         groups.setdefault((str(one["effect"]), str(one["parameter"])), []).append(one)
     rows = []
     for (effect, parameter), members in groups.items():
         ordered = sorted(members, key=lambda one: float(one["change"]))
-        least, most = (f"{change_text(one)} at {one['location']}" for one in (ordered[0], ordered[-1]))
+        least, most = (
+            f"{change_text(one)} at {one['location']}" for one in (ordered[0], ordered[-1])
+        )
         rows.append((effect, parameter, least, most if len(ordered) > 1 else ""))
     return rows
 
@@ -118,20 +162,42 @@ def change_text(one: Mapping[str, Any]) -> str:
 def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     """Verdict, gap, causes, rivals and what to do next."""
     gap = diagnosis["gap"]
-    lines = [f"verdict: {diagnosis['verdict']}", f"gap {gap['before']:.4g} {gap['unit']} before, floor {gap['floor']:.4g}"]
+    lines = [
+        f"verdict: {diagnosis['verdict']}",
+        f"gap {gap['before']:.4g} {gap['unit']} before, floor {gap['floor']:.4g}",
+    ]
     if diagnosis["causes"]:
         low, high = (100 * float(v) for v in gap["closed_interval"])
-        lines[1] += f", {gap['after']:.4g} after: {100 * gap['closed']:.0f} % of the excess closed on held-out data ({low:.0f} .. {high:.0f})"
+        lines[1] += (
+            f", {gap['after']:.4g} after: {100 * gap['closed']:.0f} % of the excess closed on "
+            f"held-out data ({low:.0f} .. {high:.0f})"
+        )
     for title, rows in (("cause", diagnosis["causes"]), ("rival", diagnosis["rivals"][:4])):
         for row in rows:
             told = ", ".join(
-                choice or f"{n} {p['value']:.4g} {p['unit']} ({p['low']:.4g} .. {p['high']:.4g})".replace("  ", " ")
+                choice
+                or f"{n} {p['value']:.4g} {p['unit']} ({p['low']:.4g} .. {p['high']:.4g})".replace(
+                    "  ", " "
+                )
                 for n, p, choice in chosen(row["effect"], row["parameters"])
             )
-            lines.append(f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}, closes {100 * row['closed']:.0f} %; {told}")
-    lines += [f"  at rest, which is in no balance: {one['says']}" for one in diagnosis.get("at_rest", ())]
-    lines += [f"  {one['location']} {one['says']}" for one in diagnosis.get("residual_shape", ()) if one["shape"] in APART]
-    places = [f"{w['location']} {100 * w['share']:.0f} %" for w in diagnosis["where"] if w["regime"] == "all"][:5]
+            lines.append(
+                f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}, "
+                f"closes {100 * row['closed']:.0f} %; {told}"
+            )
+    lines += [
+        f"  at rest, which is in no balance: {one['says']}" for one in diagnosis.get("at_rest", ())
+    ]
+    lines += [
+        f"  {one['location']} {one['says']}"
+        for one in diagnosis.get("residual_shape", ())
+        if one["shape"] in APART
+    ]
+    places = [
+        f"{w['location']} {100 * w['share']:.0f} %"
+        for w in diagnosis["where"]
+        if w["regime"] == "all"
+    ][:5]
     if places:
         lines.append(f"  where: {', '.join(places)}")
     if diagnosis["verdict"] == "unknown":
@@ -139,9 +205,15 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         lines += [f"  left: {one['shape']} at {one['location']}: {one['says']}" for one in left[:3]]
     if diagnosis["verdict"] == "none" and (rows := sensitivity_rows(diagnosis)):
         lines.append("  these logs would have shown, nine times in ten, from:")
-        lines += [f"    {effect} {parameter}: {least}{f' to {most}' if most else ''}" for effect, parameter, least, most in rows]
+        lines += [
+            f"    {effect} {parameter}: {least}{f' to {most}' if most else ''}"
+            for effect, parameter, least, most in rows
+        ]
     if diagnosis["separating_experiment"]:
-        told = "; ".join(f"{key.replace('_', ' ')}: {value}" for key, value in diagnosis["separating_experiment"].items())
+        told = "; ".join(
+            f"{key.replace('_', ' ')}: {value}"
+            for key, value in diagnosis["separating_experiment"].items()
+        )
         lines.append(f"  to tell them apart: {told}")
     return "\n".join(lines)
 
@@ -151,7 +223,10 @@ def replayed_text(rows: Sequence[Replayed]) -> str:
     if not rows:
         return ""
     wide = max(len(r.joint) for r in rows)
-    lines = [f"replayed over {rows[0].windows} short windows, following each log's {rows[0].follows}; error of position [mrad]:"]
+    lines = [
+        f"replayed over {rows[0].windows} short windows, following each log's {rows[0].follows}; "
+        f"error of position [mrad]:"
+    ]
     lines += [f"  {r.joint:{wide}}  {1e3 * r.before:8.3g} -> {1e3 * r.after:8.3g}" for r in rows]
     return "\n".join(lines)
 
@@ -164,5 +239,8 @@ def changed_text(rows: Sequence[Changed]) -> str:
     lines = [f"  {'':{wide}}  {'without':>9} {'with':>9}  difference, 95 % interval over trials"]
     for r in rows:
         change = f"{r.difference:+.3g} ({r.low:+.3g} .. {r.high:+.3g})" if r.trials > 1 else "-"
-        lines.append(f"  {r.measure:{wide}}  {r.before:9.4g} {r.after:9.4g}  {change}{f' {r.unit}' if r.unit else ''}")
+        lines.append(
+            f"  {r.measure:{wide}}  {r.before:9.4g} {r.after:9.4g}  "
+            f"{change}{f' {r.unit}' if r.unit else ''}"
+        )
     return "\n".join(lines)

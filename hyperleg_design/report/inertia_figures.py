@@ -1,7 +1,8 @@
 """How light the distal leg is, beside other robots.
 
-The paper prints HyperLeg's segment masses; where in a segment they lie is assumed, so its share below the knee is the
-paper's and its swing inertia rests on assumptions. Rotor inertia through the gears is in none of the bars.
+The paper prints HyperLeg's segment masses; where in a segment they lie is assumed, so its share
+below the knee is the paper's and its swing inertia rests on assumptions. Rotor inertia through the
+gears is in none of the bars.
 """
 
 from __future__ import annotations
@@ -42,7 +43,9 @@ class Row:
     """Whether it is one of the designs rather than another robot."""
 
 
-def comparison_rows(designs: Iterable[Design], others: Iterable[OtherRobot] | None = None) -> tuple[Row, ...]:
+def comparison_rows(
+    designs: Iterable[Design], others: Iterable[OtherRobot] | None = None
+) -> tuple[Row, ...]:
     """Designs and other robots, lightest swing first; designs with equal legs share one row.
 
     Args:
@@ -60,7 +63,11 @@ def comparison_rows(designs: Iterable[Design], others: Iterable[OtherRobot] | No
         for place, row in enumerate(rows):
             if all(abs(getattr(row.leg, f) - v) < 1e-9 for f, v in vars(leg).items()):
                 same = place
-        label = f"{design.name}: {design.variant}" if not design.name.endswith(design.variant) else design.name
+        label = (
+            f"{design.name}: {design.variant}"
+            if not design.name.endswith(design.variant)
+            else design.name
+        )
         if same >= 0:
             rows[same] = Row(f"{rows[same].label}, {design.variant}", leg, rows[same].colour, True)
         else:
@@ -72,8 +79,11 @@ def comparison_rows(designs: Iterable[Design], others: Iterable[OtherRobot] | No
     return tuple(sorted(rows, key=lambda row: float(row.leg.inertia_over_leg)))
 
 
-def leg_comparison_figure(designs: Iterable[Design], others: Iterable[OtherRobot] | None = None) -> Figure:
-    """Share of the leg's mass below the knee, and swing inertia of the leg over leg mass and over total mass, as bars.
+def leg_comparison_figure(
+    designs: Iterable[Design], others: Iterable[OtherRobot] | None = None
+) -> Figure:
+    """Share of the leg's mass below the knee, and swing inertia of the leg over leg mass and over
+    total mass, as bars.
 
     Args:
         designs: robots, such as the variants of one.
@@ -87,12 +97,29 @@ def leg_comparison_figure(designs: Iterable[Design], others: Iterable[OtherRobot
 
     rows = comparison_rows(designs, others)
     panels = (
-        ("leg mass below the knee", "share of leg mass [%]", [100 * float(r.leg.distal_share) for r in rows], "{:.0f}"),
-        ("swing inertia, per leg", "I / (leg mass × length²) [-]", [float(r.leg.inertia_over_leg) for r in rows], "{:.2f}"),
-        ("swing inertia, per robot", "I / (total mass × length²) [10⁻³]", [1e3 * float(r.leg.inertia_over_total) for r in rows], "{:.0f}"),
+        (
+            "leg mass below the knee",
+            "share of leg mass [%]",
+            [100 * float(r.leg.distal_share) for r in rows],
+            "{:.0f}",
+        ),
+        (
+            "swing inertia, per leg",
+            "I / (leg mass × length²) [-]",
+            [float(r.leg.inertia_over_leg) for r in rows],
+            "{:.2f}",
+        ),
+        (
+            "swing inertia, per robot",
+            "I / (total mass × length²) [10⁻³]",
+            [1e3 * float(r.leg.inertia_over_total) for r in rows],
+            "{:.0f}",
+        ),
     )
     with figure_style():
-        figure, axes = plt.subplots(1, 3, figsize=(11.5, 1.6 + 0.34 * len(rows)), sharey=True, layout="constrained")
+        figure, axes = plt.subplots(
+            1, 3, figsize=(11.5, 1.6 + 0.34 * len(rows)), sharey=True, layout="constrained"
+        )
         for axis, (title, label, values, form) in zip(axes, panels, strict=True):
             _bars(axis, rows, values, form)
             axis.set_title(title)
@@ -103,21 +130,37 @@ def leg_comparison_figure(designs: Iterable[Design], others: Iterable[OtherRobot
         for tick, row in zip(axes[0].get_yticklabels(), rows, strict=True):
             tick.set_fontweight("bold" if row.own else "normal")
         axes[0].set_ylim(len(rows) - 0.4, -1.1)
-        kinds = dict.fromkeys(KIND_LABEL[k] for k, c in KIND_COLOUR.items() if any(r.colour == c for r in rows))
+        kinds = dict.fromkeys(
+            KIND_LABEL[k] for k, c in KIND_COLOUR.items() if any(r.colour == c for r in rows)
+        )
         colours = {KIND_LABEL[k]: c for k, c in KIND_COLOUR.items()}
         if kinds:
-            figure.legend(handles=[Patch(color=colours[k], label=k) for k in kinds], loc="outside lower right", ncols=len(kinds), fontsize=9)
+            figure.legend(
+                handles=[Patch(color=colours[k], label=k) for k in kinds],
+                loc="outside lower right",
+                ncols=len(kinds),
+                fontsize=9,
+            )
     return figure
 
 
 def _bars(axis: Axes, rows: tuple[Row, ...], values: list[float], form: str) -> None:
-    """One horizontal bar a robot with its value at the end; robots whose value is unknown say so."""
+    """One horizontal bar a robot with its value at the end; robots whose value is unknown say
+    so.
+    """
     known = [v for v in values if v == v]
-    axis.barh(range(len(rows)), [v if v == v else 0.0 for v in values], color=[r.colour for r in rows], height=0.72)
+    axis.barh(
+        range(len(rows)),
+        [v if v == v else 0.0 for v in values],
+        color=[r.colour for r in rows],
+        height=0.72,
+    )
     for place, (row, value) in enumerate(zip(rows, values, strict=True)):
         text, end = (form.format(value), value) if value == value else ("total mass unknown", 0.0)
         weight = "bold" if row.own else "normal"
-        axis.text(end, place, f" {text}", va="center", fontsize=8.5, fontweight=weight, color="#374151")
+        axis.text(
+            end, place, f" {text}", va="center", fontsize=8.5, fontweight=weight, color="#374151"
+        )
     axis.set_xlim(0, 1.16 * max(known, default=1.0))
     axis.grid(axis="y", visible=False)
     axis.tick_params(axis="y", length=0)

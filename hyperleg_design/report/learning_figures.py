@@ -13,7 +13,12 @@ from hyperleg_design.report.style import VARIANT_COLOUR, figure_style
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SHOWN = (("speed", "speed [m/s]"), ("falls", "falls a minute"), ("cost_of_transport", "CoT"), ("assist", "assist"))
+SHOWN = (
+    ("speed", "speed [m/s]"),
+    ("falls", "falls a minute"),
+    ("cost_of_transport", "CoT"),
+    ("assist", "assist"),
+)
 """Of a learning curve, and its axis."""
 _GREY = "#6b7280"
 _HIGHEST = {"cost_of_transport": 1.5}
@@ -21,7 +26,8 @@ _HIGHEST = {"cost_of_transport": 1.5}
 
 
 def learning_figure(policies: Sequence[Shipped]) -> Figure:
-    """What trainings were measured on over their policy steps, a row a group, a line a training, coloured by design.
+    """What trainings were measured on over their policy steps, a row a group, a line a training,
+    coloured by design.
 
     Args:
         policies: of which each training is drawn once.
@@ -32,14 +38,22 @@ def learning_figure(policies: Sequence[Shipped]) -> Figure:
     groups = list(dict.fromkeys(p.group for p in trainings.values()))
     designs = list(dict.fromkeys(p.design for p in trainings.values()))
     with figure_style():
-        figure, grid = plt.subplots(len(groups), len(SHOWN), figsize=(3.1 * len(SHOWN), 2.3 * len(groups)), squeeze=False, layout="constrained")
+        figure, grid = plt.subplots(
+            len(groups),
+            len(SHOWN),
+            figsize=(3.1 * len(SHOWN), 2.3 * len(groups)),
+            squeeze=False,
+            layout="constrained",
+        )
         for row, group in zip(grid, groups, strict=True):
             for policy in (p for p in trainings.values() if p.group == group):
                 curve = learning_curve(policy.path.parent)
                 for axes, (key, _) in zip(row, SHOWN, strict=True):
                     x = np.array([r["steps"] for r in curve if key in r and "steps" in r]) / 1e6
                     y = np.array([r[key] for r in curve if key in r and "steps" in r])
-                    axes.plot(x, y, lw=1.1, alpha=0.85, color=VARIANT_COLOUR.get(policy.design, _GREY))
+                    axes.plot(
+                        x, y, lw=1.1, alpha=0.85, color=VARIANT_COLOUR.get(policy.design, _GREY)
+                    )
             for axes, (key, title) in zip(row, SHOWN, strict=True):
                 axes.set_title(title)
                 axes.set_ylim(0, _HIGHEST.get(key))
@@ -47,6 +61,9 @@ def learning_figure(policies: Sequence[Shipped]) -> Figure:
             row[0].set_ylabel(group.replace("_", " "))
         for axes in grid[-1]:
             axes.set_xlabel("policy steps [millions]")
-        handles = [plt.Line2D([], [], color=VARIANT_COLOUR.get(d, _GREY), label=d.replace("_", " ")) for d in designs]
+        handles = [
+            plt.Line2D([], [], color=VARIANT_COLOUR.get(d, _GREY), label=d.replace("_", " "))
+            for d in designs
+        ]
         figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
     return figure

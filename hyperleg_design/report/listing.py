@@ -68,7 +68,10 @@ def _motors() -> dict[str, Any]:
 def _sweeps() -> dict[str, Any]:
     from hyperleg_design.reading import read_yaml
 
-    return {n: {"description": str(read_yaml(resources.find("sweeps", n)).get("description", ""))} for n in resources.names("sweeps")}
+    return {
+        n: {"description": str(read_yaml(resources.find("sweeps", n)).get("description", ""))}
+        for n in resources.names("sweeps")
+    }
 
 
 def _policies() -> dict[str, Any]:
@@ -76,7 +79,9 @@ def _policies() -> dict[str, Any]:
 
     found: dict[str, Any] = {}
     for one in shipped_policies():
-        found.setdefault(one.training, {"group": one.group, "design": one.design, "seed": one.seed, "files": []})["files"].append(one.path.name)
+        found.setdefault(
+            one.training, {"group": one.group, "design": one.design, "seed": one.seed, "files": []}
+        )["files"].append(one.path.name)
     return found
 
 
@@ -102,20 +107,68 @@ def listing_text(found: dict[str, Any]) -> str:
     for kind, entries in found.items():
         parts.append(kind)
         if kind == "motors":
-            columns = ["mass", "peak_torque", "rated_torque", "no_load_speed", "corner_speed", "motor_constant"]
-            heads = ["motor", "vendor", "kind", "kg", "peak Nm", "rated Nm", "no load rad/s", "corner rad/s", "Km Nm/W^.5"]
-            parts.append(table(heads, [[n, e["vendor"], e["kind"], *(e[c] for c in columns)] for n, e in entries.items()]))
+            columns = [
+                "mass",
+                "peak_torque",
+                "rated_torque",
+                "no_load_speed",
+                "corner_speed",
+                "motor_constant",
+            ]
+            heads = [
+                "motor",
+                "vendor",
+                "kind",
+                "kg",
+                "peak Nm",
+                "rated Nm",
+                "no load rad/s",
+                "corner rad/s",
+                "Km Nm/W^.5",
+            ]
+            parts.append(
+                table(
+                    heads,
+                    [
+                        [n, e["vendor"], e["kind"], *(e[c] for c in columns)]
+                        for n, e in entries.items()
+                    ],
+                )
+            )
         elif kind == "designs":
-            parts.append(table(["design", "variant", "kg"], [[n, e["variant"], e["total_mass"]] for n, e in entries.items()]))
+            parts.append(
+                table(
+                    ["design", "variant", "kg"],
+                    [[n, e["variant"], e["total_mass"]] for n, e in entries.items()],
+                )
+            )
         elif kind == "policies":
-            rows = [[n, e["group"], e["design"], str(e["seed"]), str(len(e["files"]) - 1)] for n, e in entries.items()]
+            rows = [
+                [n, e["group"], e["design"], str(e["seed"]), str(len(e["files"]) - 1)]
+                for n, e in entries.items()
+            ]
             parts.append(table(["policy", "task", "design", "seed", "late ones"], rows))
         elif kind == "parameters":
             rows = [
-                [n, str(e["value"]), e["unit"], "" if e["low"] is None else f"{e['low']:g} .. {e['high']:g}", e["label"]] for n, e in entries.items()
+                [
+                    n,
+                    str(e["value"]),
+                    e["unit"],
+                    "" if e["low"] is None else f"{e['low']:g} .. {e['high']:g}",
+                    e["label"],
+                ]
+                for n, e in entries.items()
             ]
             parts.append(table(["parameter", "value", "unit", "range", "label"], rows))
         else:
-            parts.append(table([kind[:-1], "description"], [[n, e if isinstance(e, str) else e["description"]] for n, e in entries.items()]))
+            parts.append(
+                table(
+                    [kind[:-1], "description"],
+                    [
+                        [n, e if isinstance(e, str) else e["description"]]
+                        for n, e in entries.items()
+                    ],
+                )
+            )
         parts.append("")
     return "\n".join(parts).rstrip()

@@ -64,7 +64,8 @@ class Section:
 
     title: str
     content: Sequence[Any] = ()
-    """Texts (paragraphs), `Heading`, `Table`, `Picture`, `Missing`, `Details`; a list of pictures stands side by side."""
+    """Texts (paragraphs), `Heading`, `Table`, `Picture`, `Missing`, `Details`; a list of pictures
+    stands side by side."""
     anchor: str = ""
 
 
@@ -101,8 +102,11 @@ def render(page: Page) -> str:
     import jinja2
 
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )  # fmt: skip
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     environment.filters["number"] = number
     environment.tests["kind"] = lambda value, name: type(value).__name__ == name
     return environment.get_template("page.html").render(page=page)

@@ -47,7 +47,13 @@ def replay(
         InputError: as `evaluate`.
     """
     chosen = load_policy(policy) if isinstance(policy, str | Path) else policy
-    run = protocol_for(chosen, task) if protocol is None else load_protocol(protocol) if isinstance(protocol, str | Path) else protocol
+    run = (
+        protocol_for(chosen, task)
+        if protocol is None
+        else load_protocol(protocol)
+        if isinstance(protocol, str | Path)
+        else protocol
+    )
     one = run.changed(trials=1) if seed is None else run.changed(trials=1, seed=seed)
     return evaluate(chosen, one, design=design, task=task, threads=1)
 
@@ -82,7 +88,12 @@ def check_browser() -> None:
         InputError: it is not.
     """
     if importlib.util.find_spec("viser") is None:
-        raise InputError("replay", "viser", None, "is not installed: pip install viser, or write a file with --gif FILE")
+        raise InputError(
+            "replay",
+            "viser",
+            None,
+            "is not installed: pip install viser, or write a file with --gif FILE",
+        )
 
 
 def replay_in_browser(found: Evaluation, *, port: int = 8080, rounds: int | None = None) -> str:
@@ -105,7 +116,9 @@ def replay_in_browser(found: Evaluation, *, port: int = 8080, rounds: int | None
     trial = found.trials[0]
     duration = trial.samples * trial.time_step
     if isinstance(found.protocol, TTestProtocol):
-        motion = t_test_motion(trial, found.protocol, frames_per_second=BROWSER_RATE, most_frames=10_000)
+        motion = t_test_motion(
+            trial, found.protocol, frames_per_second=BROWSER_RATE, most_frames=10_000
+        )
     else:
         motion = walk_motion(trial, begin=0.0, duration=duration, frames_per_second=BROWSER_RATE)
     server = viser.ViserServer(port=port)
@@ -114,10 +127,17 @@ def replay_in_browser(found: Evaluation, *, port: int = 8080, rounds: int | None
         for i, solid in enumerate(motion.still):
             _put(server, f"/still/{i}", solid, solid.rotation, solid.position)
         for i, (start, end, colour, width) in enumerate(motion.lines):
-            server.scene.add_line_segments(f"/lines/{i}", np.array([[start, end]]), colors=np.array(_rgb(colour)), line_width=width)
+            server.scene.add_line_segments(
+                f"/lines/{i}",
+                np.array([[start, end]]),
+                colors=np.array(_rgb(colour)),
+                line_width=width,
+            )
         handles = [
             _put(server, f"/robot/{i}", solid, rotation, place)
-            for i, (solid, rotation, place) in enumerate(zip(motion.solids, motion.rotations[0], motion.positions[0], strict=True))
+            for i, (solid, rotation, place) in enumerate(
+                zip(motion.solids, motion.rotations[0], motion.positions[0], strict=True)
+            )
         ]
         done = 0
         while rounds is None or done < rounds:
@@ -142,13 +162,20 @@ def _put(server: Any, name: str, solid: Solid, rotation: np.ndarray, place: np.n
         mesh = trimesh.creation.cylinder(radius=solid.size[0], height=solid.size[1])
     elif solid.kind == "capsule":
         mesh = trimesh.creation.capsule(radius=solid.size[0], height=solid.size[1])
-        mesh.apply_translation([0.0, 0.0, -float(mesh.bounds.mean(0)[2])])  # trimesh's begins at its lower end in some versions
+        mesh.apply_translation(
+            [0.0, 0.0, -float(mesh.bounds.mean(0)[2])]
+        )  # trimesh's begins at its lower end in some versions
     else:
         mesh = trimesh.creation.icosphere(radius=solid.size[0], subdivisions=2)
     return server.scene.add_mesh_simple(
-        name, mesh.vertices, mesh.faces, color=_rgb(solid.colour), opacity=solid.opacity if solid.opacity < 1 else None,
-        wxyz=_quaternion(rotation), position=place,
-    )  # fmt: skip
+        name,
+        mesh.vertices,
+        mesh.faces,
+        color=_rgb(solid.colour),
+        opacity=solid.opacity if solid.opacity < 1 else None,
+        wxyz=_quaternion(rotation),
+        position=place,
+    )
 
 
 def _rgb(colour: str) -> tuple[int, int, int]:

@@ -51,7 +51,9 @@ class Context:
     progress: bool = False
     """Show a bar in parts that take long."""
 
-    def picture(self, name: str, caption: str, make: Callable[[Path], object], *, wide: bool = True) -> Picture | Missing:
+    def picture(
+        self, name: str, caption: str, make: Callable[[Path], object], *, wide: bool = True
+    ) -> Picture | Missing:
         """A figure made by `make(path)`; a machine that cannot draw it costs this figure only."""
         file = f"{FIGURES}/{name}.png"
         try:
@@ -61,7 +63,13 @@ class Context:
         return Picture(file, caption, wide)
 
 
-def run_study(out: str | Path, *, design: Design | None = None, policies: str | Path | None = None, progress: bool = True) -> Path:
+def run_study(
+    out: str | Path,
+    *,
+    design: Design | None = None,
+    policies: str | Path | None = None,
+    progress: bool = True,
+) -> Path:
     """Run the study and write its page.
 
     Args:
@@ -81,7 +89,9 @@ def run_study(out: str | Path, *, design: Design | None = None, policies: str | 
     design = design or load_design("hyperleg")
     shipped_policies(policies)  # a folder that is not there is told before minutes of work
     with output_folder(out) as folder:
-        context = Context(design, variants(design), folder, None if policies is None else Path(policies), progress)
+        context = Context(
+            design, variants(design), folder, None if policies is None else Path(policies), progress
+        )
         (folder / FIGURES).mkdir()
         found: list[Section] = []
         facts: list[tuple[str, str]] = []
@@ -105,7 +115,11 @@ def run_study(out: str | Path, *, design: Design | None = None, policies: str | 
 
 def _provenance() -> dict[str, Any]:
     commit = provenance.git_commit()
-    return {**provenance.versions(), **({"commit": commit} if commit else {}), "made by": "hyperleg study"}
+    return {
+        **provenance.versions(),
+        **({"commit": commit} if commit else {}),
+        "made by": "hyperleg study",
+    }
 
 
 __all__: Sequence[str] = ("Context", "run_study")

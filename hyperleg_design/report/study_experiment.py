@@ -1,4 +1,6 @@
-"""The part of the study's page that evaluates the shipped policies: walks and T-tests with and without the active toe."""
+"""The part of the study's page that evaluates the shipped policies: walks and T-tests with and
+without the active toe.
+"""
 
 from __future__ import annotations
 
@@ -31,8 +33,20 @@ def experiment(context: Context) -> Made:
 def _facts(found: Evaluated) -> tuple[tuple[str, str], ...]:
     facts = []
     for kind, word in ((WALK, "walks"), (T_TEST, "T-tests")):
-        trials = [e for group in found.groups(kind) for design in found.designs(group) for e in found.of(group, design)]
+        trials = [
+            e
+            for group in found.groups(kind)
+            for design in found.designs(group)
+            for e in found.of(group, design)
+        ]
         if trials:
-            fell, arrived = (sum(int(e.values(ending).sum()) for e in trials) for ending in ("fell", "arrived"))
-            facts.append((f"{arrived} / {sum(len(e.outcomes) for e in trials)}", f"{word} of {len(trials)} policies that arrived; {fell} fell"))
+            fell, arrived = (
+                sum(int(e.values(ending).sum()) for e in trials) for ending in ("fell", "arrived")
+            )
+            facts.append(
+                (
+                    f"{arrived} / {sum(len(e.outcomes) for e in trials)}",
+                    f"{word} of {len(trials)} policies that arrived; {fell} fell",
+                )
+            )
     return tuple(facts)

@@ -36,7 +36,10 @@ def capability(context: Context) -> Made:
     rows = []
     for (posture, direction), entries in by_place.items():
         best = max(e["force"] or 0.0 for e in entries.values())
-        cells = [Cell(e["force"], "good" if e["force"] and e["force"] > 0.999 * best else "") for e in entries.values()]
+        cells = [
+            Cell(e["force"], "good" if e["force"] and e["force"] > 0.999 * best else "")
+            for e in entries.values()
+        ]
         stops = "; ".join(
             f"{name}: {', '.join(e['binding']).replace('_', ' ')}"
             for name, e in entries.items()
@@ -48,12 +51,30 @@ def capability(context: Context) -> Made:
 
     content: list[Any] = [
         "The largest force that one leg can press on the floor in a posture at rest, inside the motors' envelopes and the friction cones of the sole's pads (a second-order cone programme). The pelvis is held. Near straight knees the vertical force is almost borne by the structure; with the force through the centre of mass, as in standing on that leg, it is what motors can hold.",
-        Table(["posture", "direction", *(f"{v} [N]" for v in context.variants), "motors at their limit"], rows),
+        Table(
+            [
+                "posture",
+                "direction",
+                *(f"{v} [N]" for v in context.variants),
+                "motors at their limit",
+            ],
+            rows,
+        ),
     ]
-    content.append(context.picture("capability", "Largest contact force of one leg by posture.", lambda p: save(capability_figure(free), p)))
+    content.append(
+        context.picture(
+            "capability",
+            "Largest contact force of one leg by posture.",
+            lambda p: save(capability_figure(free), p),
+        )
+    )
     if off["toe"]["force"] and off["toe_locked"]["force"]:
         ratio = off["toe"]["force"] / off["toe_locked"]["force"]
-        verdict = "so the active toe is the weak link there: it buys motion, not force" if ratio < 0.95 else "so the active toe costs no force there"
+        verdict = (
+            "so the active toe is the weak link there: it buys motion, not force"
+            if ratio < 0.95
+            else "so the active toe costs no force there"
+        )
         content.append(
             f"With the heel up and only the tip on the floor, the active toe presses {off['toe']['force']:.0f} N, the locked toe, whose motor helps knee and ankle, {off['toe_locked']['force']:.0f} N: {verdict}."
         )
@@ -95,9 +116,23 @@ def demand(context: Context) -> Made:
     ratio = walk["toe"]["motor_side"] / walk["toe_removed_matched"]["motor_side"] - 1
     content: list[Any] = [
         "Motions are planned for each design (inverse kinematics with the design's own lengths), inverse dynamics gives the forces they need, and contact forces and motor torques of least Joule heat are found inside envelopes and friction cones. These are planned motions, not learned ones: they compare designs on one task, and say nothing about what a good controller would do.",
-        Table(["motion", "variant", "Joule [W]", "mech. [W]", "motors [W]", "battery [W]", "CoT motors", "CoT battery", "beyond"], rows, "Mean powers, joint friction included. CoT: energy over m g distance. Beyond: part of the time that needs more than the envelopes give."),
+        Table(
+            [
+                "motion",
+                "variant",
+                "Joule [W]",
+                "mech. [W]",
+                "motors [W]",
+                "battery [W]",
+                "CoT motors",
+                "CoT battery",
+                "beyond",
+            ],
+            rows,
+            "Mean powers, joint friction included. CoT: energy over m g distance. Beyond: part of the time that needs more than the envelopes give.",
+        ),
         f"On the planned walk at 1.33 m/s the active toe changes motor-side power by {100 * ratio:+.1f} % against no toe at equal mass; the locked toe, whose motor still helps, by {100 * (walk['toe_locked']['motor_side'] / walk['toe_removed_matched']['motor_side'] - 1):+.1f} %.",
-    ]  # fmt: skip
+    ]
     content += _figures(context, found)
     details = []
     for motion, entries in summaries.items():
@@ -113,13 +148,33 @@ def demand(context: Context) -> Made:
                 "Joule [W]",
                 "mechanical [W]",
             ]
-            keys = ("peak_torque", "rms_torque", "rms_over_rated", "peak_speed", "speed_over_no_load", "margin", "joule", "mechanical")
+            keys = (
+                "peak_torque",
+                "rms_torque",
+                "rms_over_rated",
+                "peak_speed",
+                "speed_over_no_load",
+                "margin",
+                "joule",
+                "mechanical",
+            )
             table_rows = [
-                [r["motor"].replace("_", " "), *(Cell(r[k], "bad" if k == "margin" and r[k] < -1e-6 else "") for k in keys)] for r in s["motors"]
+                [
+                    r["motor"].replace("_", " "),
+                    *(Cell(r[k], "bad" if k == "margin" and r[k] < -1e-6 else "") for k in keys),
+                ]
+                for r in s["motors"]
             ]
             details.append(Table(head, table_rows, f"{motion}, {name}"))
-    assumed = [[m, what, text] for m, entries in summaries.items() for what, text in next(iter(entries.values()))["assumptions"].items()]
-    content += [Details("Every motor in every motion", details), Details("What the motions assume", [Table(["motion", "what", "assumed"], assumed)])]
+    assumed = [
+        [m, what, text]
+        for m, entries in summaries.items()
+        for what, text in next(iter(entries.values()))["assumptions"].items()
+    ]
+    content += [
+        Details("Every motor in every motion", details),
+        Details("What the motions assume", [Table(["motion", "what", "assumed"], assumed)]),
+    ]
     content += [Missing("motion that a variant cannot make", reason) for reason in reasons]
     facts = (
         (
@@ -131,16 +186,44 @@ def demand(context: Context) -> Made:
 
 
 def _figures(context: Context, found: dict[str, dict[str, Demand]]) -> list[Any]:
-    from hyperleg_design.report.demand_figures import cycle_figure, margin_figure, operating_points_figure, stick_figure_strip
+    from hyperleg_design.report.demand_figures import (
+        cycle_figure,
+        margin_figure,
+        operating_points_figure,
+        stick_figure_strip,
+    )
 
     walk = found["walk"]
     pair: dict[str, Demand] = {n: walk[n] for n in ("toe", "toe_removed_matched") if n in walk}
     drawn: list[Any] = [
-        context.picture("walk", "The planned walk with the active toe, from the right side, with the floor's force on each foot.", lambda p: save(stick_figure_strip(walk["toe"]), p)),
-        context.picture("walk_cycle", "Joint angles and torques of the left leg over one cycle of the planned walk.", lambda p: save(cycle_figure(pair), p)),
-        context.picture("walk_points", "Operating points of every motor on the planned walk, in their envelopes.", lambda p: save(operating_points_figure(pair), p)),
-        context.picture("walk_margins", "Smallest margin, thermal use and heat of every motor on the planned walk.", lambda p: save(margin_figure(walk), p)),
-    ]  # fmt: skip
+        context.picture(
+            "walk",
+            "The planned walk with the active toe, from the right side, with the floor's force on each foot.",
+            lambda p: save(stick_figure_strip(walk["toe"]), p),
+        ),
+        context.picture(
+            "walk_cycle",
+            "Joint angles and torques of the left leg over one cycle of the planned walk.",
+            lambda p: save(cycle_figure(pair), p),
+        ),
+        context.picture(
+            "walk_points",
+            "Operating points of every motor on the planned walk, in their envelopes.",
+            lambda p: save(operating_points_figure(pair), p),
+        ),
+        context.picture(
+            "walk_margins",
+            "Smallest margin, thermal use and heat of every motor on the planned walk.",
+            lambda p: save(margin_figure(walk), p),
+        ),
+    ]
     others = [m for m in MOTIONS[1:] if "toe" in found.get(m, {})]
-    strips = [context.picture(m, f"The planned {m}, active toe.", lambda p, m=m: save(stick_figure_strip(found[m]["toe"]), p)) for m in others]  # type: ignore[misc]
+    strips = [
+        context.picture(
+            m,
+            f"The planned {m}, active toe.",
+            lambda p, m=m: save(stick_figure_strip(found[m]["toe"]), p),  # type: ignore[misc]
+        )
+        for m in others
+    ]
     return [*drawn, *strips]

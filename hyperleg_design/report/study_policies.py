@@ -1,4 +1,6 @@
-"""What evaluated policies say, as parts of a page: what there is, Tables III and IV and Figs. 4 to 7 beside the paper, learning."""
+"""What evaluated policies say, as parts of a page: what there is, Tables III and IV and Figs. 4 to
+7 beside the paper, learning.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +25,17 @@ from hyperleg_design.report.walk_figures import operating_points_figure
 
 
 def parts(found: Evaluated, draw: Drawer) -> list[Part]:
-    """All parts that the policies that are there allow, in the order of a page; what is missing is said in the first."""
+    """All parts that the policies that are there allow, in the order of a page; what is missing is
+    said in the first.
+    """
     made = [_what(found)]
     if found.groups(WALK):
-        made += [walks.walks(found, draw), walks.table_three(found, draw), walks.confound(found, draw), walks.cycle(found, draw)]
+        made += [
+            walks.walks(found, draw),
+            walks.table_three(found, draw),
+            walks.confound(found, draw),
+            walks.cycle(found, draw),
+        ]
     if found.groups(T_TEST):
         made.append(_table_four(found, draw))
     if found.band:
@@ -43,7 +52,10 @@ def _what(found: Evaluated) -> Part:
                 part = table[table["variant"] == design]
                 falls = statistics.share(list(by_checkpoint(part, "fell").values()), resamples=1000)
                 arrived = int(part["arrived"].sum())
-                ends = ", ".join(f"{count} {str(name).replace('_', ' ')}" for name, count in part["outcome"].value_counts().items())
+                ends = ", ".join(
+                    f"{count} {str(name).replace('_', ' ')}"
+                    for name, count in part["outcome"].value_counts().items()
+                )
                 seeds, policies = found.seeds(group, design), part["policy"].nunique()
                 fell = int(part["fell"].sum())
                 share = f"{100 * falls.mean:.1f} % [{100 * falls.low:.1f}, {100 * falls.high:.1f}]"
@@ -60,12 +72,27 @@ def _what(found: Evaluated) -> Part:
                     ]
                 )
     protocols = {e.protocol.name: e.protocol for e in found.evaluations}
-    text = "; ".join(f"{name}: {int(p.trials)} trials, starting states from seed {int(p.seed)}" for name, p in protocols.items())
+    text = "; ".join(
+        f"{name}: {int(p.trials)} trials, starting states from seed {int(p.seed)}"
+        for name, p in protocols.items()
+    )
     content: list[Any] = [
         f"{len(found.policies)} policies of {len({p.training for p in found.policies})} trainings, each run on its own protocol ({text}), deterministic and without assist. "
         "Intervals are 95 % and rest on a hierarchical bootstrap over training seeds, late checkpoints and trials, widened for few seeds; "
         "a difference is told only where both sides have three seeds and the interval leaves zero out. Falls are counted, never dropped; what a fallen trial cannot give is counted as missing.",
-        Table(["group", "design", "seeds", "policies", "trials", "falls", "share of falls", "how trials ended"], rows),
+        Table(
+            [
+                "group",
+                "design",
+                "seeds",
+                "policies",
+                "trials",
+                "falls",
+                "share of falls",
+                "how trials ended",
+            ],
+            rows,
+        ),
     ]
     content.append(
         f"Of the campaign's trainings {len(found.missing)} are not there: {_missing(found)}."
@@ -91,22 +118,41 @@ def _deviations(found: Evaluated) -> Any:
     for policy, one in zip(found.policies, found.evaluations, strict=True):
         given = one.origin.get("deviations")
         terms.setdefault(policy.group, {}).update(given if isinstance(given, dict) else {})
-    rows = [[group, name.replace("_", " "), text] for group, some in terms.items() for name, text in some.items()]
-    rows += [[group, "none", "the paper's reward alone"] for group, some in terms.items() if not some]
-    return Details("What is not the paper's: reward terms and observations", [Table(["group", "term", "what it is"], rows)])
+    rows = [
+        [group, name.replace("_", " "), text]
+        for group, some in terms.items()
+        for name, text in some.items()
+    ]
+    rows += [
+        [group, "none", "the paper's reward alone"] for group, some in terms.items() if not some
+    ]
+    return Details(
+        "What is not the paper's: reward terms and observations",
+        [Table(["group", "term", "what it is"], rows)],
+    )
 
 
 def _table_four(found: Evaluated, draw: Drawer) -> Part:
     content: list[Any] = [
         "The Robot T-test, A B C D B A with the human test's lengths and free torso yaw. Deviation is from the nearest point of the course; from the leg being run it stands in the table of differences."
     ]
-    made = {name: rows for name, rows in rows_beside_paper(found).items() if name.startswith("Table IV")}
+    made = {
+        name: rows for name, rows in rows_beside_paper(found).items() if name.startswith("Table IV")
+    }
     if not made:
-        content.append("Table IV cannot be reproduced yet: no group has both of the paper's robots.")
+        content.append(
+            "Table IV cannot be reproduced yet: no group has both of the paper's robots."
+        )
     for name, rows in made.items():
         content += [*beside(rows, name), toe_sentence(rows)]
     if made:
-        content.append(draw("table_4", "Change that the toe makes: ours beside the paper's.", lambda p: save(change_figure(made), p)))
+        content.append(
+            draw(
+                "table_4",
+                "Change that the toe makes: ours beside the paper's.",
+                lambda p: save(change_figure(made), p),
+            )
+        )
     for group in found.groups(T_TEST):
         runs = {d: found.of(group, d) for d in found.designs(group)}
         shown = next((one.trials[0] for some in runs.values() for one in some if one.trials), None)
@@ -123,7 +169,15 @@ def _table_four(found: Evaluated, draw: Drawer) -> Part:
             if (t := found.shown(group, d)) is not None:
                 caption = f"A T-test, {d.replace('_', ' ')}; longer runs faster than true."
                 jobs.append(
-                    (f"{group}_{d}", caption, lambda p, t=t, one=some[0]: motion.render_gif(motion.t_test_motion(t, one.protocol), p), ".gif", False)
+                    (
+                        f"{group}_{d}",
+                        caption,
+                        lambda p, t=t, one=some[0]: motion.render_gif(
+                            motion.t_test_motion(t, one.protocol), p
+                        ),
+                        ".gif",
+                        False,
+                    )
                 )
         content.append(draw.together(jobs))
         if set(VARIANTS) <= set(runs):
@@ -135,11 +189,18 @@ def _motors(found: Evaluated, draw: Drawer) -> Part:
     content: list[Any] = []
     for kind, word in ((T_TEST, "a T-test"), (WALK, "a walk")):
         for group in found.groups(kind)[:1]:
-            trials = {d: t for d in found.designs(group) if d in VARIANTS and (t := found.shown(group, d)) is not None}
+            trials = {
+                d: t
+                for d in found.designs(group)
+                if d in VARIANTS and (t := found.shown(group, d)) is not None
+            }
             if kind == T_TEST and "toe" in trials:
                 toe = trials["toe"]
                 legs = toe.layout.leg_joints
-                torque, speed = (values.reshape(-1, legs)[::4] for values in (toe.driven_joint_torque, toe.joint_velocity))
+                torque, speed = (
+                    values.reshape(-1, legs)[::4]
+                    for values in (toe.driven_joint_torque, toe.joint_velocity)
+                )
                 content.append(
                     draw(
                         "fig_4",
@@ -163,4 +224,6 @@ def _learning(found: Evaluated, draw: Drawer) -> Part:
     if not curves:
         return Part("Learning curves", ["No training brought its learning curve along."])
     caption = "Means over the robots in training, with exploration, and with assist as long as there is some."
-    return Part("Learning curves", [draw("learning", caption, lambda p: save(learning_figure(curves), p))])
+    return Part(
+        "Learning curves", [draw("learning", caption, lambda p: save(learning_figure(curves), p))]
+    )

@@ -1,4 +1,6 @@
-"""The parts of the study's page, each a function from a context to a section and its headline numbers."""
+"""The parts of the study's page, each a function from a context to a section and its headline
+numbers.
+"""
 
 from __future__ import annotations
 
@@ -42,12 +44,26 @@ def robot(context: Context) -> Made:
     write_json(context.folder / "analysis.json", found)
     design = context.design
     drawn = [
-        context.picture("dimensions", "Dimensions [mm]; leg length and height are the paper's, the rest is assumed.", lambda p: picture.render(picture.dimensions_scene(design), p)),
-        context.picture("frames", "Joint axes: an arrow points along the axis about which the angle is positive.", lambda p: picture.render(picture.frames_scene(design), p)),
-        context.picture("masses", "Segment masses at their centres of mass; balls have the volume of that mass at 6.5 kg/dm³.", lambda p: picture.render(picture.masses_scene(design), p)),
-    ]  # fmt: skip
+        context.picture(
+            "dimensions",
+            "Dimensions [mm]; leg length and height are the paper's, the rest is assumed.",
+            lambda p: picture.render(picture.dimensions_scene(design), p),
+        ),
+        context.picture(
+            "frames",
+            "Joint axes: an arrow points along the axis about which the angle is positive.",
+            lambda p: picture.render(picture.frames_scene(design), p),
+        ),
+        context.picture(
+            "masses",
+            "Segment masses at their centres of mass; balls have the volume of that mass at 6.5 kg/dm³.",
+            lambda p: picture.render(picture.masses_scene(design), p),
+        ),
+    ]
     side_by_side = context.picture(
-        "variants", "The four variants; orange: active toe and its motor.", lambda p: picture.render(picture.variants_scene(context.variants), p)
+        "variants",
+        "The four variants; orange: active toe and its motor.",
+        lambda p: picture.render(picture.variants_scene(context.variants), p),
     )
     confound = ablation.confound(design)
     rows = []
@@ -55,22 +71,41 @@ def robot(context: Context) -> Made:
         torque = entry["max_joint_torque"]
         lost = entry["lost"]
         cells: list[Any] = [name, entry["total_mass"], 2 * entry["motors"]]
-        cells += [Cell(torque[j], "bad" if lost[j] > 1e-9 else "") if j in torque else "–" for j in JOINTS[3:]]
+        cells += [
+            Cell(torque[j], "bad" if lost[j] > 1e-9 else "") if j in torque else "–"
+            for j in JOINTS[3:]
+        ]
         rows.append([*cells, entry["removes"]])
     content = [
         [*drawn],
         side_by_side,
-        Table(["variant", "mass [kg]", "motors", *(f"{j.replace('_', ' ')} [Nm]" for j in JOINTS[3:]), "what it is"], rows, "Largest joint torque, standing, derated as in Table I."),
+        Table(
+            [
+                "variant",
+                "mass [kg]",
+                "motors",
+                *(f"{j.replace('_', ' ')} [Nm]" for j in JOINTS[3:]),
+                "what it is",
+            ],
+            rows,
+            "Largest joint torque, standing, derated as in Table I.",
+        ),
         "The motors below the hip are shared. Taking the toe's motor away therefore also takes "
         f"{confound['toe_removed']['lost']['knee']:.1f} Nm from the knee and {confound['toe_removed']['lost']['ankle_pitch']:.1f} Nm from ankle pitch: "
         "a comparison of “toe” and “no toe” is also one of a strong and a weak knee. The locked toe, whose motor still helps, and the removal at equal mass separate the two.",
-    ]  # fmt: skip
+    ]
     facts = (
         (f"{found['total_mass']:.2f} kg", "total mass, as printed"),
         (f"{found['leg_mass']:.2f} kg", "one leg, as printed"),
-        (f"{100 * found['zonotope_to_box_volume']:.1f} %", "of the box of maximum torques below the hip can be reached"),
-        (f"{confound['toe']['max_joint_torque']['knee']:.0f} → {confound['toe_removed']['max_joint_torque']['knee']:.0f} Nm", "knee torque lost with the toe's motor"),
-    )  # fmt: skip
+        (
+            f"{100 * found['zonotope_to_box_volume']:.1f} %",
+            "of the box of maximum torques below the hip can be reached",
+        ),
+        (
+            f"{confound['toe']['max_joint_torque']['knee']:.0f} → {confound['toe_removed']['max_joint_torque']['knee']:.0f} Nm",
+            "knee torque lost with the toe's motor",
+        ),
+    )
     return Made(Section("The robot and its variants", content), facts)
 
 
@@ -84,21 +119,40 @@ def table_i(context: Context) -> Made:
         "The paper's power constants against those that follow from the catalogue:",
         _rows_table(motor_rows()),
     ]
-    return Made(Section("Table I beside the paper", content), ((f"{agreeing} / {len(rows)}", "numbers of Table I agree; the others are explained"),))
+    return Made(
+        Section("Table I beside the paper", content),
+        ((f"{agreeing} / {len(rows)}", "numbers of Table I agree; the others are explained"),),
+    )
 
 
 def _rows_table(rows: list[Row]) -> Table:
     cells = [
-        [r.place, r.quantity.replace("_", " "), r.paper, r.ours, r.unit, f"{100 * r.difference:+.2f} %", Cell(r.verdict, "good" if r.verdict == "agrees" else "bad"), Cell("" if r.verdict == "agrees" else r.note, "note")]
+        [
+            r.place,
+            r.quantity.replace("_", " "),
+            r.paper,
+            r.ours,
+            r.unit,
+            f"{100 * r.difference:+.2f} %",
+            Cell(r.verdict, "good" if r.verdict == "agrees" else "bad"),
+            Cell("" if r.verdict == "agrees" else r.note, "note"),
+        ]
         for r in rows
-    ]  # fmt: skip
-    return Table(["place", "quantity", "paper", "ours", "unit", "difference", "verdict", "why"], cells)
+    ]
+    return Table(
+        ["place", "quantity", "paper", "ours", "unit", "difference", "verdict", "why"], cells
+    )
 
 
 def inconsistencies(context: Context) -> Made:
     """What does not fit together in the paper."""
     rows = [[i.place, i.finding, i.choice] for i in paper.INCONSISTENCIES]
-    return Made(Section("What does not fit together in the paper", [Table(["place", "what was found", "what is done here"], rows)]))
+    return Made(
+        Section(
+            "What does not fit together in the paper",
+            [Table(["place", "what was found", "what is done here"], rows)],
+        )
+    )
 
 
 def cooperative_actuation(context: Context) -> Made:
@@ -110,9 +164,16 @@ def cooperative_actuation(context: Context) -> Made:
     joints = [j.replace("_", " ") for j in transmission.joint_names(design)]
     motors = [m.replace("_", " ") for m in transmission.motor_names(design)]
     tables = [
-        Table(["joint \\ motor", *motors], [[j, *map(float, row)] for j, row in zip(joints, transmission.joint_from_motor(design, p), strict=True)], f"joint_from_motor, {p}")
+        Table(
+            ["joint \\ motor", *motors],
+            [
+                [j, *map(float, row)]
+                for j, row in zip(joints, transmission.joint_from_motor(design, p), strict=True)
+            ],
+            f"joint_from_motor, {p}",
+        )
         for p in POSTURES
-    ]  # fmt: skip
+    ]
     inertia = leg_reflected_inertia(design)
     inertia = np.where(np.abs(inertia) < 1e-12, 0.0, inertia)  # rounding where motors cancel
     reflected = Table(
@@ -126,14 +187,22 @@ def cooperative_actuation(context: Context) -> Made:
         reflected,
         f"Rotors couple the joints: the knee's {inertia[3, 3]:.3f} kg m² come with {inertia[3, 4]:.3f} kg m² between knee and ankle pitch, which a diagonal armature drops.",
         "M depends on posture. The paper prints two postures; between them stands a four-bar model of ours, calibrated to both and labelled assumed. It is the exact gradient of a motor-position map, so work around a closed path is zero.",
-        context.picture("linkage", "Reductions over posture. Squares and dots: the printed postures.", lambda p: save(linkage_figure(design), p)),
-    ]  # fmt: skip
+        context.picture(
+            "linkage",
+            "Reductions over posture. Squares and dots: the printed postures.",
+            lambda p: save(linkage_figure(design), p),
+        ),
+    ]
     return Made(Section("Cooperative actuation", content))
 
 
 def envelopes(context: Context) -> Made:
     """Motor envelopes, and the set of torques that joints can have together."""
-    from hyperleg_design.report.envelope_figures import polyhedron_figure, slice_figure, torque_speed_figure
+    from hyperleg_design.report.envelope_figures import (
+        polyhedron_figure,
+        slice_figure,
+        torque_speed_figure,
+    )
     from hyperleg_design.sizing import zonotope
     from hyperleg_design.sizing.demand import demand
     from hyperleg_design.sizing.envelope import motor_envelope
@@ -142,22 +211,53 @@ def envelopes(context: Context) -> Made:
     walk = demand(design, "walk")
     torque = walk.joint_torque.reshape(-1, walk.joint_torque.shape[-1])
     velocity = walk.motion.v[:, 6:].reshape(torque.shape)
-    matrix, peak = transmission.joint_from_motor(design, "walking"), motor_envelope(design).peak_torque
+    matrix, peak = (
+        transmission.joint_from_motor(design, "walking"),
+        motor_envelope(design).peak_torque,
+    )
     _, high = zonotope.box(matrix, -peak, peak)
     rows: list[list[Any]] = []
     for index, joint in enumerate(transmission.joint_names(design)):
         alone = float(zonotope.alone(matrix, -peak, peak, index))
-        rows.append([joint.replace("_", " "), float(high[index]), alone, f"{100 * alone / high[index]:.0f} %"])
+        rows.append(
+            [
+                joint.replace("_", " "),
+                float(high[index]),
+                alone,
+                f"{100 * alone / high[index]:.0f} %",
+            ]
+        )
     share = float(zonotope.zonotope_to_box_volume(matrix[3:, 3:], -peak[3:], peak[3:]))
     pitch = float(zonotope.alone(matrix[3:, 3:], -peak[3:], peak[3:], 1, held=[0]))
     content = [
         "Each motor lives inside four quadrants: peak torque, and the line from stall torque to no-load speed. Projected through M, the ankle's two motors make the pitch and roll envelopes of the paper's Fig. 4.",
-        context.picture("envelopes", "Envelopes of the ankle motors, and of ankle pitch (L+R) and roll (L−R), with the operating points of a planned walk at 1.33 m/s.", lambda p: save(torque_speed_figure(design, torque, velocity), p)),
+        context.picture(
+            "envelopes",
+            "Envelopes of the ankle motors, and of ankle pitch (L+R) and roll (L−R), with the operating points of a planned walk at 1.33 m/s.",
+            lambda p: save(torque_speed_figure(design, torque, velocity), p),
+        ),
         f"The printed maxima of the joints are one at a time. Below the hip the reachable torques are a zonotope that fills {100 * share:.1f} % of the box those maxima span. With no knee torque, ankle pitch reaches {pitch:.1f} Nm, not {high[4]:.1f}.",
-        Table(["joint", "largest, whatever the others do [Nm]", "largest, the others at zero [Nm]", "of it"], rows, "Walking posture, zero speed, not derated."),
-        context.picture("slices", "What two joints can have together, the others at zero, against the box (dashed).", lambda p: save(slice_figure(design), p)),
-        context.picture("polyhedron", "Knee, ankle pitch and toe together, inside the box of their maxima.", lambda p: save(polyhedron_figure(design), p)),
-    ]  # fmt: skip
+        Table(
+            [
+                "joint",
+                "largest, whatever the others do [Nm]",
+                "largest, the others at zero [Nm]",
+                "of it",
+            ],
+            rows,
+            "Walking posture, zero speed, not derated.",
+        ),
+        context.picture(
+            "slices",
+            "What two joints can have together, the others at zero, against the box (dashed).",
+            lambda p: save(slice_figure(design), p),
+        ),
+        context.picture(
+            "polyhedron",
+            "Knee, ankle pitch and toe together, inside the box of their maxima.",
+            lambda p: save(polyhedron_figure(design), p),
+        ),
+    ]
     return Made(Section("Envelopes, and what a box hides", content))
 
 
@@ -198,10 +298,28 @@ def lightness(context: Context) -> Made:
     content = [
         f"Below the knee is {100 * toe.distal_share:.0f} % of the leg's mass. Swinging the straight leg about the hip takes {toe.swing_inertia:.3f} kg m² ({bare.swing_inertia:.3f} without toe and toe motor), and the rotors add {float(rotor_swing_inertia(context.design)):.3f} kg m² there.",
         f"Over the leg's own mass the swing inertia is {toe.inertia_over_leg:.3f}, less than that of {_lighter(toe.inertia_over_leg, [r.leg.inertia_over_leg for r in bipeds])} other two-legged bodies, the human's among them; over the robot's total mass it is {toe.inertia_over_total:.3f}, less than that of {_lighter(toe.inertia_over_total, [r.leg.inertia_over_total for r in bipeds])}, because the legs are {200 * toe.leg_share:.0f} % of the robot. Masses are the paper's, centres of mass and radii of gyration are assumed; the other robots' come from their URDF or SDF files.",
-        context.picture("lightness", "Share of the leg's mass below the knee, and swing inertia of the straight leg about the hip.", lambda p: save(leg_comparison_figure(list(context.variants.values()), others), p)),
-        Table(["robot", "total kg", "leg kg", "below the knee [-]", "swing inertia / (leg mass · length²)", "… / (total mass · length²)", "gyration / length"], rows),
-    ]  # fmt: skip
-    return Made(Section("How light the leg is", content), ((f"{100 * toe.distal_share:.0f} %", "of the leg's mass is below the knee"),))
+        context.picture(
+            "lightness",
+            "Share of the leg's mass below the knee, and swing inertia of the straight leg about the hip.",
+            lambda p: save(leg_comparison_figure(list(context.variants.values()), others), p),
+        ),
+        Table(
+            [
+                "robot",
+                "total kg",
+                "leg kg",
+                "below the knee [-]",
+                "swing inertia / (leg mass · length²)",
+                "… / (total mass · length²)",
+                "gyration / length",
+            ],
+            rows,
+        ),
+    ]
+    return Made(
+        Section("How light the leg is", content),
+        ((f"{100 * toe.distal_share:.0f} %", "of the leg's mass is below the knee"),),
+    )
 
 
 def _lighter(own: Any, others: list[Any]) -> str:
@@ -222,8 +340,13 @@ def sweeps(context: Context) -> Made:
     for name in sorted(resources.names("sweeps"), key=lambda n: (n == "combined", n)):
         result = run_sweep(name, context.folder / "sweeps" / name, progress=False)
         designs += result.summary["designs"]
-        content += [Heading(name.replace("_", " ").capitalize()), *sweep_content(result, context.folder, f"figures/{name}")]
-    return Made(Section("Sweeps", content), ((f"{designs:,}".replace(",", " "), "designs in the sweeps"),))
+        content += [
+            Heading(name.replace("_", " ").capitalize()),
+            *sweep_content(result, context.folder, f"figures/{name}"),
+        ]
+    return Made(
+        Section("Sweeps", content), ((f"{designs:,}".replace(",", " "), "designs in the sweeps"),)
+    )
 
 
 def motors(context: Context) -> Made:
@@ -232,16 +355,55 @@ def motors(context: Context) -> Made:
 
     rows = []
     for m in catalogue().values():
-        weakest = min((m.constants[k].confidence for k in ("peak_torque", "torque_constant", "resistance")), key=["low", "medium", "high"].index)
+        weakest = min(
+            (m.constants[k].confidence for k in ("peak_torque", "torque_constant", "resistance")),
+            key=["low", "medium", "high"].index,
+        )
         assumed = [k for k, c in m.constants.items() if c.label == "assumed"]
-        numbers = [m.mass, m.peak_torque("vendor"), m.rated_torque, m.no_load_speed("vendor"), m.stall_torque("vendor"), m.corner_speed("vendor"), m.power_constant("vendor"), m.motor_constant("vendor"), m.rated_heat("vendor")]  # fmt: skip
-        rows.append([m.name, m.vendor, m.kind, *numbers, weakest, Cell(", ".join(a.split("_")[0] for a in assumed) or "–", "note")])
-    heads = ["motor", "vendor", "kind", "kg", "peak Nm", "rated Nm", "no load rad/s", "stall Nm", "corner rad/s", "Cp W/Nm²", "Km Nm/√W", "rated heat W", "confidence", "assumed"]  # fmt: skip
+        numbers = [
+            m.mass,
+            m.peak_torque("vendor"),
+            m.rated_torque,
+            m.no_load_speed("vendor"),
+            m.stall_torque("vendor"),
+            m.corner_speed("vendor"),
+            m.power_constant("vendor"),
+            m.motor_constant("vendor"),
+            m.rated_heat("vendor"),
+        ]
+        rows.append(
+            [
+                m.name,
+                m.vendor,
+                m.kind,
+                *numbers,
+                weakest,
+                Cell(", ".join(a.split("_")[0] for a in assumed) or "–", "note"),
+            ]
+        )
+    heads = [
+        "motor",
+        "vendor",
+        "kind",
+        "kg",
+        "peak Nm",
+        "rated Nm",
+        "no load rad/s",
+        "stall Nm",
+        "corner rad/s",
+        "Cp W/Nm²",
+        "Km Nm/√W",
+        "rated heat W",
+        "confidence",
+        "assumed",
+    ]
     content = [
         "Vendors' constants; stall torque, corner speed, power constant, motor constant and heat are computed from them. Each constant's source stands in the motor's file.",
         Table(heads, rows),
     ]
-    return Made(Section("Motors to choose from", content), ((str(len(rows)), "motors in the catalogue"),))
+    return Made(
+        Section("Motors to choose from", content), ((str(len(rows)), "motors in the catalogue"),)
+    )
 
 
 def made_from(context: Context) -> Made:

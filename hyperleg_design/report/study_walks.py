@@ -1,4 +1,6 @@
-"""What evaluated walks say, as parts of a page: whether they are believable, Table III, the confound, Fig. 6, impacts."""
+"""What evaluated walks say, as parts of a page: whether they are believable, Table III, the
+confound, Fig. 6, impacts.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,15 @@ from hyperleg_design.evaluation.result import by_checkpoint
 from hyperleg_design.evaluation.steps import measured_steps
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report import motion, picture
-from hyperleg_design.report.beside_paper import beside, differences, interval, percent, rows_beside_paper, toe_sentence, verdict
+from hyperleg_design.report.beside_paper import (
+    beside,
+    differences,
+    interval,
+    percent,
+    rows_beside_paper,
+    toe_sentence,
+    verdict,
+)
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.evaluated import WALK, Evaluated
 from hyperleg_design.report.page import Cell, Table
@@ -40,16 +50,36 @@ def walks(found: Evaluated, draw: Drawer) -> Part:
         rows.append([demand.why, f"{demand.low:.3g} … {demand.high:.3g}", *cells])
     for group in groups[:1]:
         trials = {d: t for d in found.designs(group) if (t := found.shown(group, d)) is not None}
-        pair = {d: (t, found.of(group, d)[0].protocol.events) for d, t in trials.items() if d in VARIANTS or d == next(iter(trials))}
+        pair = {
+            d: (t, found.of(group, d)[0].protocol.events)
+            for d, t in trials.items()
+            if d in VARIANTS or d == next(iter(trials))
+        }
         jobs: list[Any] = []
         if pair:
             named = {name.replace("_", " "): value for name, value in pair.items()}
             caption = "Fig. 5: one gait cycle at 1.33 m/s from the right side, touchdown to touchdown of the right foot; arrows: the floor's force, in proportion."
-            jobs.append((f"gait_{group}", caption, lambda p, named=named: picture.render(motion.strip_scene(named), p), ".png", True))
+            jobs.append(
+                (
+                    f"gait_{group}",
+                    caption,
+                    lambda p, named=named: picture.render(motion.strip_scene(named), p),
+                    ".png",
+                    True,
+                )
+            )
         for d, t in trials.items():
             if d in VARIANTS:
                 caption = f"A walk, {d.replace('_', ' ')}, at true speed."
-                jobs.append((f"{group}_{d}", caption, lambda p, t=t: motion.render_gif(motion.walk_motion(t), p), ".gif", False))
+                jobs.append(
+                    (
+                        f"{group}_{d}",
+                        caption,
+                        lambda p, t=t: motion.render_gif(motion.walk_motion(t), p),
+                        ".gif",
+                        False,
+                    )
+                )
         pictures = draw.together(jobs)
         wide = int(bool(pair))
         content += [*pictures[:wide], pictures[wide:]]
@@ -66,14 +96,28 @@ def table_three(found: Evaluated, draw: Drawer) -> Part:
         "The paper's numbers beside ours: twenty metres at 1.33 m/s. Ablation: toe and its motor removed at equal mass (toe_removed_matched), which fits the ratios of the table best. "
         "A printed number agrees where it lies in our interval."
     ]
-    made = {name: rows for name, rows in rows_beside_paper(found).items() if name.startswith("Table III")}
+    made = {
+        name: rows
+        for name, rows in rows_beside_paper(found).items()
+        if name.startswith("Table III")
+    }
     if not made:
         content.append("Cannot be reproduced yet: no group has both of the paper's robots.")
     for name, rows in made.items():
         content += [*beside(rows, name), toe_sentence(rows)]
     if made:
-        content.append(draw("table_3", "Change that the toe makes: ours beside the paper's.", lambda p: save(change_figure(made), p)))
-    content += [differences(found, group, WALK) for group in found.groups(WALK) if set(VARIANTS) <= set(found.designs(group))]
+        content.append(
+            draw(
+                "table_3",
+                "Change that the toe makes: ours beside the paper's.",
+                lambda p: save(change_figure(made), p),
+            )
+        )
+    content += [
+        differences(found, group, WALK)
+        for group in found.groups(WALK)
+        if set(VARIANTS) <= set(found.designs(group))
+    ]
     return Part("Table III: walking, beside the paper", content)
 
 
@@ -91,7 +135,10 @@ def confound(found: Evaluated, draw: Drawer) -> Part:
         rows = []
         shares = {}
         for name in ATTRIBUTED:
-            groups = {d: list(by_checkpoint(table[table["variant"] == d], name).values()) for d in found.designs(group)}
+            groups = {
+                d: list(by_checkpoint(table[table["variant"] == d], name).values())
+                for d in found.designs(group)
+            }
             shares[name.replace("_", " ")] = found_shares = attribution.attribute(groups)
             for share in found_shares:
                 change = share.change
@@ -114,7 +161,9 @@ def confound(found: Evaluated, draw: Drawer) -> Part:
         figures[group] = shares
         absent = [d for d in attribution.LADDER if d not in found.designs(group)]
         if absent:
-            ladder.append(f"Steps that need {', '.join(absent)} cannot be told in the group {group}: no such training is there.")
+            ladder.append(
+                f"Steps that need {', '.join(absent)} cannot be told in the group {group}: no such training is there."
+            )
     for group, shares in figures.items():
         ladder.append(
             draw(
@@ -147,11 +196,22 @@ def cycle(found: Evaluated, draw: Drawer) -> Part:
 
 def impacts(found: Evaluated, draw: Drawer) -> Part:
     """Impacts over the stiffness of the sole, and the pad that it stands for."""
-    evaluation, trial = next((e, e.trials[0]) for e in found.evaluations if e.trials and not hasattr(e.protocol, "course"))
+    evaluation, trial = next(
+        (e, e.trials[0])
+        for e in found.evaluations
+        if e.trials and not hasattr(e.protocol, "course")
+    )
     steps = measured_steps(trial, evaluation.protocol.events)
-    mass = float(np.median(heel_mass(trial, steps.touchdown, steps.foot))) if len(steps) else float("nan")
+    mass = (
+        float(np.median(heel_mass(trial, steps.touchdown, steps.foot)))
+        if len(steps)
+        else float("nan")
+    )
     if not mass > 0:
-        return Part("Impacts over the stiffness of the sole", ["Cannot be told: the walk that would say what mass stands behind a heel has no step."])
+        return Part(
+            "Impacts over the stiffness of the sole",
+            ["Cannot be told: the walk that would say what mass stands behind a heel has no step."],
+        )
     constants = sorted(next(iter(found.band.values())))
     pads = {c: pad_of_contact(trial.design, mass, c) for c in constants}
     own = float(trial.design.contact.time_constant)
@@ -160,10 +220,16 @@ def impacts(found: Evaluated, draw: Drawer) -> Part:
         pad = pads[c]
         cells = []
         for walks in found.band.values():
-            one = statistics.estimate([e.values("grf_peak_body_weights") for e in walks[c]], resamples=1000)
+            one = statistics.estimate(
+                [e.values("grf_peak_body_weights") for e in walks[c]], resamples=1000
+            )
             fell = int(sum(e.values("fell").sum() for e in walks[c]))
-            cells.append(f"{interval(one.mean, one.low if one.speaks_of_seeds else math.nan, one.high, '')}{f', {fell} fell' if fell else ''}")
-        pair = [[e.values("grf_peak_body_weights") for e in walks[c]] for walks in found.band.values()]
+            cells.append(
+                f"{interval(one.mean, one.low if one.speaks_of_seeds else math.nan, one.high, '')}{f', {fell} fell' if fell else ''}"
+            )
+        pair = [
+            [e.values("grf_peak_body_weights") for e in walks[c]] for walks in found.band.values()
+        ]
         told = statistics.difference(*pair, resamples=1000).verdict if len(pair) == 2 else ""
         rows.append(
             [
@@ -181,14 +247,23 @@ def impacts(found: Evaluated, draw: Drawer) -> Part:
         "at touchdown (median over the steps of one walk, rotors included), which turns the contact's time constant into stiffness and damping. All time constants on this page but in this table are the design's; "
         "the softest and the stiffest differ sixteenfold, and steps of 5 ms allow none stiffer. Solid rubber, at 1 to 10 MPa, would be stiffer than any of them, so printed newtons are not to be expected; designs are compared at equal settings.",
         Table(
-            ["time constant", "stiffness [kN/m]", "damping [Ns/m]", "modulus [MPa]", *(d.replace("_", " ") for d in found.band), "difference"],
+            [
+                "time constant",
+                "stiffness [kN/m]",
+                "damping [Ns/m]",
+                "modulus [MPa]",
+                *(d.replace("_", " ") for d in found.band),
+                "difference",
+            ],
             rows,
             "Peak of the filtered vertical force within 50 ms of touchdown, in body weights. The policies were trained at the design's contact only.",
         ),
         draw(
             "impact_band",
             "Impact over the stiffness of the pad under a heel.",
-            lambda p: save(impact_band_figure(found.band, {c: pads[c].stiffness for c in constants}), p),
+            lambda p: save(
+                impact_band_figure(found.band, {c: pads[c].stiffness for c in constants}), p
+            ),
         ),
     ]
     return Part("Impacts over the stiffness of the sole", content)

@@ -12,7 +12,12 @@ from hyperleg_design.writing import write_bytes
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-VARIANT_COLOUR = {"toe": "#c8602a", "toe_locked": "#8172b3", "toe_removed_matched": "#2f6db3", "toe_removed": "#6b7280"}
+VARIANT_COLOUR = {
+    "toe": "#c8602a",
+    "toe_locked": "#8172b3",
+    "toe_removed_matched": "#2f6db3",
+    "toe_removed": "#6b7280",
+}
 """Colour of each ablation, told apart by colour-blind readers too."""
 
 _STYLE: dict[str, Any] = {
@@ -42,7 +47,9 @@ def figure_style() -> Iterator[None]:
 
 
 def save(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
-    """Write a figure as PNG or SVG by its ending, whole or not at all, the same bytes each time; closes it."""
+    """Write a figure as PNG or SVG by its ending, whole or not at all, the same bytes each time;
+    closes it.
+    """
     import io
 
     import matplotlib.pyplot as plt

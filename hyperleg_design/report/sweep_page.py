@@ -28,14 +28,34 @@ def sweep_content(result: SweepResult, page_folder: Path, figures: str) -> list[
     folder.mkdir(parents=True, exist_ok=True)
     content: list[Any] = [summary["description"], _axes_text(result)]
     if summary["rejected"]:
-        reasons = "; ".join(f"{count} because {reason}" for reason, count in summary["rejected_because"].items())
-        content.append(f"{summary['rejected']} of {summary['designs']} combinations make no robot: {reasons}.")
-    content += [Picture(f"{figures}/{name}", caption) for name, caption in draw_sweep(result, folder).items()]
+        reasons = "; ".join(
+            f"{count} because {reason}" for reason, count in summary["rejected_because"].items()
+        )
+        content.append(
+            f"{summary['rejected']} of {summary['designs']} combinations make no robot: {reasons}."
+        )
+    content += [
+        Picture(f"{figures}/{name}", caption)
+        for name, caption in draw_sweep(result, folder).items()
+    ]
     rows = []
     for variant, ranges in summary["range"].items():
         base = summary["base"].get(variant, {})
-        rows += [[variant, measures.label(column), base.get(column), *values] for column, values in ranges.items()]
-    content.append(Details("Ranges of all measures", [Table(["variant", "measure", "unchanged design", "smallest", "median", "largest"], rows)]))
+        rows += [
+            [variant, measures.label(column), base.get(column), *values]
+            for column, values in ranges.items()
+        ]
+    content.append(
+        Details(
+            "Ranges of all measures",
+            [
+                Table(
+                    ["variant", "measure", "unchanged design", "smallest", "median", "largest"],
+                    rows,
+                )
+            ],
+        )
+    )
     return content
 
 
@@ -43,8 +63,14 @@ def _axes_text(result: SweepResult) -> str:
     sweep = result.sweep
     axes = ", ".join(axis.name for axis in sweep.axes)
     front = result.summary.get("front", {})
-    fronts = "; ".join(f"{entry['designs']} on the front of {variant}" for variant, entry in front.items())
-    text = f"{result.summary['designs']} designs ({sweep.sampling}, seed {result.summary['seed']}) over {axes}"
+    fronts = "; ".join(
+        f"{entry['designs']} on the front of {variant}" for variant, entry in front.items()
+    )
+    text = (
+        f"{result.summary['designs']} designs ({sweep.sampling}, seed "
+        f"{result.summary['seed']}) "
+        f"over {axes}"
+    )
     return f"{text}; {fronts}." if fronts else f"{text}."
 
 
@@ -62,4 +88,8 @@ def sweep_report(result: SweepResult) -> dict[str, Any]:
     )
     target = write_text(result.folder / "index.html", render(page))
     files = [str(result.table_path), str(target)]
-    return {"designs": result.summary["designs"], "rejected": result.summary["rejected"], "files": files}
+    return {
+        "designs": result.summary["designs"],
+        "rejected": result.summary["rejected"],
+        "files": files,
+    }

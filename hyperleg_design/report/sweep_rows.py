@@ -17,7 +17,9 @@ from hyperleg_design.sweep.summary import base_values
 
 
 def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:
-    """The table, and the rows on each variant's front; variants that lack an objective are left out."""
+    """The table, and the rows on each variant's front; variants that lack an objective are left
+    out.
+    """
     sweep = result.sweep
     table = result.columns(["variant", *(axis.name for axis in sweep.axes), *sweep.objectives])
     values = np.stack([table[c] for c in sweep.objectives], -1)
@@ -29,7 +31,9 @@ def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:
         if front.size:
             fronts[variant] = front
     if not fronts:
-        raise InputError(sweep.source, "objectives", list(sweep.objectives), "no design has all of them")
+        raise InputError(
+            sweep.source, "objectives", list(sweep.objectives), "no design has all of them"
+        )
     return table, fronts
 
 
@@ -58,7 +62,9 @@ def base_level(axis: Axis, sweep: Sweep) -> Any:
 
 def base_row(sweep: Sweep) -> dict[str, Any]:
     """Axis values and measures of the unchanged design as the sweep's first variant."""
-    return {axis.name: base_value(axis, sweep) for axis in sweep.axes} | base_values(sweep, sweep.variants[0])
+    return {axis.name: base_value(axis, sweep) for axis in sweep.axes} | base_values(
+        sweep, sweep.variants[0]
+    )
 
 
 def variant_title(variant: str) -> str:

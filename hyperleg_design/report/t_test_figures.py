@@ -1,4 +1,6 @@
-"""Figures of evaluated T-tests: ways over the course, and the speed along them (the paper's Fig. 7)."""
+"""Figures of evaluated T-tests: ways over the course, and the speed along them (the paper's Fig.
+7).
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,8 @@ _GREY, _COURSE = "#6b7280", "#1d2129"
 
 
 def t_test_figure(runs: Mapping[str, Sequence[Evaluation]], step: float) -> Figure:
-    """Layout of the course, the ways of all trials coloured by speed, a panel a design, and speed over the way below.
+    """Layout of the course, the ways of all trials coloured by speed, a panel a design, and speed
+    over the way below.
 
     Args:
         runs: evaluations under one T-test protocol by design.
@@ -55,14 +58,20 @@ def t_test_figure(runs: Mapping[str, Sequence[Evaluation]], step: float) -> Figu
                         continue
                     seen = path[:, ::-1] * [-1.0, 1.0]  # ahead is up, left is left
                     parts = list(np.stack([seen[:-1], seen[1:]], 1))
-                    lines = LineCollection(parts, cmap="viridis", norm=plt.Normalize(0, FASTEST), lw=0.9, alpha=0.7)
+                    lines = LineCollection(
+                        parts, cmap="viridis", norm=plt.Normalize(0, FASTEST), lw=0.9, alpha=0.7
+                    )
                     lines.set_array(speeds(path, step)[1:])
                     axes.add_collection(lines)
                     if outcome != ARRIVED:
                         axes.plot(*seen[-1], "x", color="#b3372f", ms=7, mew=2, zorder=5)
             trials = sum(len(one.outcomes) for one in evaluations)
             ended = sum(outcome != ARRIVED for one in evaluations for outcome in one.outcomes)
-            axes.set_title(f"{name.replace('_', ' ')}\n{trials} trials, {ended} without arrival" + (" (crosses)" if ended else ""), loc="left")
+            axes.set_title(
+                f"{name.replace('_', ' ')}\n{trials} trials, {ended} without arrival"
+                + (" (crosses)" if ended else ""),
+                loc="left",
+            )
         for axes in panels:
             axes.set_aspect("equal")
             axes.set_xlabel("right [m]")
@@ -72,7 +81,9 @@ def t_test_figure(runs: Mapping[str, Sequence[Evaluation]], step: float) -> Figu
             figure.colorbar(lines, ax=panels, shrink=0.7, label="speed [m/s]", pad=0.01)
         below = figure.add_subplot(grid[1, :])
         for name, evaluations in runs.items():
-            _speed(below, evaluations, step, VARIANT_COLOUR.get(name, _GREY), name.replace("_", " "))
+            _speed(
+                below, evaluations, step, VARIANT_COLOUR.get(name, _GREY), name.replace("_", " ")
+            )
         below.set(xlabel="way of the pelvis [m]", ylabel="speed [m/s]")
         below.set_ylim(0, 1.18 * below.get_ylim()[1])  # room for the legend
         if below.get_legend_handles_labels()[0]:
@@ -90,7 +101,9 @@ def speeds(path: np.ndarray, step: float) -> np.ndarray:
     raw = np.linalg.norm(np.gradient(path, step, axis=0), axis=-1)
     width = min(len(raw), max(1, round(SMOOTHING / step)))
     window = np.ones(width)
-    return np.asarray(np.convolve(raw, window, "same") / np.convolve(np.ones(len(raw)), window, "same"))
+    return np.asarray(
+        np.convolve(raw, window, "same") / np.convolve(np.ones(len(raw)), window, "same")
+    )
 
 
 def _course(axes: Axes, protocol: TTestProtocol) -> None:
@@ -99,7 +112,14 @@ def _course(axes: Axes, protocol: TTestProtocol) -> None:
     start = protocol.points[protocol.order[0]]
     for name, (x, y) in protocol.points.items():
         axes.add_patch(_circle((-(y - start[1]), x - start[0]), protocol.arrival))
-        axes.annotate(name, (-(y - start[1]), x - start[0]), xytext=(7, 9), textcoords="offset points", fontsize=11, fontweight="bold")
+        axes.annotate(
+            name,
+            (-(y - start[1]), x - start[0]),
+            xytext=(7, 9),
+            textcoords="offset points",
+            fontsize=11,
+            fontweight="bold",
+        )
     low, high = place.min(0) - 1.6, place.max(0) + 1.6
     axes.set(xlim=(-high[1], -low[1]), ylim=(low[0], high[0]))
 
@@ -117,17 +137,30 @@ def _order(axes: Axes, protocol: TTestProtocol) -> None:
         along = (b - a) / np.linalg.norm(b - a)
         aside = 0.22 * np.array([along[1], -along[0]])
         begin, end = a + 0.18 * (b - a) + aside, a + 0.82 * (b - a) + aside
-        axes.annotate("", end, begin, arrowprops={"arrowstyle": "-|>", "color": "#c8602a", "lw": 1.4})
-        axes.annotate(str(i + 1), begin + 0.3 * (end - begin) + aside, color="#c8602a", ha="center", va="center", fontsize=10)
+        axes.annotate(
+            "", end, begin, arrowprops={"arrowstyle": "-|>", "color": "#c8602a", "lw": 1.4}
+        )
+        axes.annotate(
+            str(i + 1),
+            begin + 0.3 * (end - begin) + aside,
+            color="#c8602a",
+            ha="center",
+            va="center",
+            fontsize=10,
+        )
 
 
-def _speed(axes: Axes, evaluations: Sequence[Evaluation], step: float, colour: str, label: str) -> None:
+def _speed(
+    axes: Axes, evaluations: Sequence[Evaluation], step: float, colour: str, label: str
+) -> None:
     """Median and middle half of the trials' speed over their way."""
     curves = []
     for one in evaluations:
         for path, outcome in zip(one.paths, one.outcomes, strict=True):
             if outcome == ARRIVED and len(path) > 2:
-                way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=-1))])
+                way = np.concatenate(
+                    [[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=-1))]
+                )
                 curves.append((way, speeds(path, step)))
     if not curves:
         return
@@ -136,5 +169,7 @@ def _speed(axes: Axes, evaluations: Sequence[Evaluation], step: float, colour: s
     values = np.array([np.interp(at, way, speed) for way, speed in curves])
     low, middle, high = np.quantile(values, [0.25, 0.5, 0.75], axis=0)
     axes.fill_between(at, low, high, color=colour, alpha=0.2, lw=0)
-    axes.plot(at, middle, color=colour, lw=1.6, label=f"{label}: median and middle half of arrived trials")
+    axes.plot(
+        at, middle, color=colour, lw=1.6, label=f"{label}: median and middle half of arrived trials"
+    )
     axes.margins(x=0.01)

@@ -11,14 +11,29 @@ from hyperleg_design.robot.names import JOINTS
 def table(headers: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Aligned columns: texts to the left, numbers to the right."""
     cells = [[_cell(v) for v in row] for row in rows]
-    numeric = [all(isinstance(row[i], int | float) or row[i] == "" for row in rows) for i in range(len(headers))] if isinstance(rows, list) else []
-    widths = [max(len(h), *(len(row[i]) for row in cells)) if cells else len(h) for i, h in enumerate(headers)]
+    numeric = (
+        [
+            all(isinstance(row[i], int | float) or row[i] == "" for row in rows)
+            for i in range(len(headers))
+        ]
+        if isinstance(rows, list)
+        else []
+    )
+    widths = [
+        max(len(h), *(len(row[i]) for row in cells)) if cells else len(h)
+        for i, h in enumerate(headers)
+    ]
 
     def line(parts: Sequence[str]) -> str:
-        aligned = [p.rjust(w) if numeric and numeric[i] else p.ljust(w) for i, (p, w) in enumerate(zip(parts, widths, strict=True))]
+        aligned = [
+            p.rjust(w) if numeric and numeric[i] else p.ljust(w)
+            for i, (p, w) in enumerate(zip(parts, widths, strict=True))
+        ]
         return "  ".join(aligned).rstrip()
 
-    return "\n".join([line(list(headers)), line(["-" * w for w in widths]), *(line(row) for row in cells)])
+    return "\n".join(
+        [line(list(headers)), line(["-" * w for w in widths]), *(line(row) for row in cells)]
+    )
 
 
 def _cell(value: object) -> str:
@@ -33,40 +48,88 @@ def analysis_text(found: Mapping[str, Any]) -> str:
     """An analysis as a page for a terminal."""
     masses = ", ".join(f"{k} {v:.3g}" for k, v in found["segment_mass"].items())
     parts = [
-        f"{found['design']} ({found['variant']}): {found['total_mass']:.2f} kg, leg {found['leg_mass']:.2f} kg, "
+        f"{found['design']} ({found['variant']}): {found['total_mass']:.2f} kg, leg "
+        f"{found['leg_mass']:.2f} kg, "
         f"leg length {found['leg_length']:.3f} m, height {found['height']:.4f} m",
         f"segments [kg]: {masses}",
         "",
         table(
-            ["joint", "max torque [Nm]", "alone [Nm]", "speed [rad/s]", "reflected inertia [kg m^2]"],
             [
-                [j, found["max_joint_torque"][j], found["torque_alone"][j], found["single_joint_speed"][j], found["reflected_inertia"][i][i]]
+                "joint",
+                "max torque [Nm]",
+                "alone [Nm]",
+                "speed [rad/s]",
+                "reflected inertia [kg m^2]",
+            ],
+            [
+                [
+                    j,
+                    found["max_joint_torque"][j],
+                    found["torque_alone"][j],
+                    found["single_joint_speed"][j],
+                    found["reflected_inertia"][i][i],
+                ]
                 for i, j in enumerate(found["joints"])
             ],
         ),
-        "max torque: standing, derated, one joint at its best whatever the others do; alone: walking, the others at zero torque",
-        f"reachable torques below the hip fill {100 * found['zonotope_to_box_volume']:.1f} % of the box that their maxima span",
+        "max torque: standing, derated, one joint at its best whatever the others do; alone: "
+        "walking, the others at zero torque",
+        f"reachable torques below the hip fill {100 * found['zonotope_to_box_volume']:.1f} % of "
+        f"the box that their maxima span",
         "",
         table(
-            ["motor", "type", "gear", "peak [Nm]", "rated [Nm]", "stall [Nm]", "no load [rad/s]", "Cp [W/Nm^2]"],
+            [
+                "motor",
+                "type",
+                "gear",
+                "peak [Nm]",
+                "rated [Nm]",
+                "stall [Nm]",
+                "no load [rad/s]",
+                "Cp [W/Nm^2]",
+            ],
             [
                 [
                     n,
                     m["motor"],
                     m["gear"],
-                    *(float(m[k]) for k in ("peak_torque", "rated_torque", "stall_torque", "no_load_speed", "power_constant")),
+                    *(
+                        float(m[k])
+                        for k in (
+                            "peak_torque",
+                            "rated_torque",
+                            "stall_torque",
+                            "no_load_speed",
+                            "power_constant",
+                        )
+                    ),
                 ]
                 for n, m in found["motors"].items()
             ],
         ),
     ]
     if found["ablation_confound"]:
-        parts += ["", "what taking the toe away takes besides:", confound_text(found["ablation_confound"])]
+        parts += [
+            "",
+            "what taking the toe away takes besides:",
+            confound_text(found["ablation_confound"]),
+        ]
     return "\n".join(parts)
 
 
 def confound_text(found: Mapping[str, Any]) -> str:
     """The ablations beside each other."""
     joints = [j for j in JOINTS if j in ("knee", "ankle_pitch", "ankle_roll", "toe")]
-    rows = [[name, v["total_mass"], 2 * v["motors"], *(v["max_joint_torque"].get(j, "") for j in joints), v["removes"]] for name, v in found.items()]
-    return table(["variant", "mass [kg]", "motors", *(f"{j} [Nm]" for j in joints), "what it is"], rows)
+    rows = [
+        [
+            name,
+            v["total_mass"],
+            2 * v["motors"],
+            *(v["max_joint_torque"].get(j, "") for j in joints),
+            v["removes"],
+        ]
+        for name, v in found.items()
+    ]
+    return table(
+        ["variant", "mass [kg]", "motors", *(f"{j} [Nm]" for j in joints), "what it is"], rows
+    )

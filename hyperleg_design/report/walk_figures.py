@@ -1,4 +1,6 @@
-"""Figures of evaluated walks: power over the gait cycle (the paper's Fig. 6), impacts over contact stiffness, motors in their envelopes."""
+"""Figures of evaluated walks: power over the gait cycle (the paper's Fig. 6), impacts over contact
+stiffness, motors in their envelopes.
+"""
 
 from __future__ import annotations
 
@@ -28,10 +30,11 @@ _DOTS = 4000
 
 
 def cycle_power_figure(walks: Mapping[str, Sequence[Evaluation]]) -> Figure:
-    """Power of the right leg over the normalised gait cycle: mechanical power of each joint group above, Joule heat and total below.
+    """Power of the right leg over the normalised gait cycle: mechanical power of each joint group
+    above, Joule heat and total below.
 
-    Lines are means over policies of their mean strides; bands span the policies' mean strides, or, where there is one
-    policy, one standard deviation over its strides.
+    Lines are means over policies of their mean strides; bands span the policies' mean strides, or,
+    where there is one policy, one standard deviation over its strides.
 
     Args:
         walks: evaluations by design; those without a steady stride are passed over.
@@ -39,9 +42,20 @@ def cycle_power_figure(walks: Mapping[str, Sequence[Evaluation]]) -> Figure:
     import matplotlib.pyplot as plt
 
     with figure_style():
-        figure, grid = plt.subplots(2, len(walks), figsize=(4.9 * len(walks), 6.4), sharex=True, sharey="row", squeeze=False, layout="constrained")
+        figure, grid = plt.subplots(
+            2,
+            len(walks),
+            figsize=(4.9 * len(walks), 6.4),
+            sharex=True,
+            sharey="row",
+            squeeze=False,
+            layout="constrained",
+        )
         for column, (name, evaluations) in enumerate(walks.items()):
-            cycles = [[c for c in one.cycles if c is not None and len(c.mechanical)] for one in evaluations]
+            cycles = [
+                [c for c in one.cycles if c is not None and len(c.mechanical)]
+                for one in evaluations
+            ]
             cycles = [some for some in cycles if some]
             upper, lower = grid[:, column]
             upper.set_title(name.replace("_", " "), loc="left")
@@ -50,14 +64,30 @@ def cycle_power_figure(walks: Mapping[str, Sequence[Evaluation]]) -> Figure:
                 axes.axhline(0, color=_GREY, lw=0.8, zorder=1)
                 axes.margins(x=0)
             if not cycles:
-                upper.text(0.5, 0.5, "no steady stride", transform=upper.transAxes, ha="center", color=_GREY)
+                upper.text(
+                    0.5,
+                    0.5,
+                    "no steady stride",
+                    transform=upper.transAxes,
+                    ha="center",
+                    color=_GREY,
+                )
                 continue
             for group, colour in GROUP_COLOUR.items():
                 if any(joint in GROUPS[group] for joint in cycles[0][0].joints):
-                    _band(upper, [np.concatenate([c.of_group(group) for c in some]) for some in cycles], colour, group)
+                    _band(
+                        upper,
+                        [np.concatenate([c.of_group(group) for c in some]) for some in cycles],
+                        colour,
+                        group,
+                    )
             heat = [np.concatenate([c.joule.sum(-1) for c in some]) for some in cycles]
             work = [np.concatenate([c.mechanical.sum(-1) for c in some]) for some in cycles]
-            for (part, colour), values in zip(_PARTS.items(), ([h + w for h, w in zip(heat, work, strict=True)], heat, work), strict=True):
+            for (part, colour), values in zip(
+                _PARTS.items(),
+                ([h + w for h, w in zip(heat, work, strict=True)], heat, work),
+                strict=True,
+            ):
                 _band(lower, values, colour, part)
         grid[0, 0].set_ylabel("mechanical power of joints [W]")
         grid[1, 0].set_ylabel("power of the leg [W]")
@@ -73,13 +103,18 @@ def _band(axes: Axes, policies: Sequence[np.ndarray], colour: str, label: str) -
     share = np.linspace(0, 100, means.shape[1])
     mean = means.mean(0)
     deviation = policies[0].std(0)
-    low, high = (means.min(0), means.max(0)) if len(means) > 1 else (mean - deviation, mean + deviation)
+    low, high = (
+        (means.min(0), means.max(0)) if len(means) > 1 else (mean - deviation, mean + deviation)
+    )
     axes.fill_between(share, low, high, color=colour, alpha=0.18, lw=0)
     axes.plot(share, mean, color=colour, lw=1.8, label=label)
 
 
-def impact_band_figure(band: Mapping[str, Mapping[float, Sequence[Evaluation]]], stiffness: Mapping[float, float]) -> Figure:
-    """Impact measures over the stiffness of the pad, by design, with 95 % intervals where there are several seeds.
+def impact_band_figure(
+    band: Mapping[str, Mapping[float, Sequence[Evaluation]]], stiffness: Mapping[float, float]
+) -> Figure:
+    """Impact measures over the stiffness of the pad, by design, with 95 % intervals where there are
+    several seeds.
 
     Args:
         band: evaluations by design and time constant of the contact [s].
@@ -87,27 +122,45 @@ def impact_band_figure(band: Mapping[str, Mapping[float, Sequence[Evaluation]]],
     """
     import matplotlib.pyplot as plt
 
-    shown = (("grf_peak_body_weights", "peak, filtered [body weights]"), ("grf_loading_rate", "loading rate [kN/s]"), ("grf_impulse", "impulse [Ns]"))
+    shown = (
+        ("grf_peak_body_weights", "peak, filtered [body weights]"),
+        ("grf_loading_rate", "loading rate [kN/s]"),
+        ("grf_impulse", "impulse [Ns]"),
+    )
     with figure_style():
-        figure, row = plt.subplots(1, len(shown), figsize=(4.0 * len(shown), 3.5), layout="constrained")
+        figure, row = plt.subplots(
+            1, len(shown), figsize=(4.0 * len(shown), 3.5), layout="constrained"
+        )
         for axes, (measure, title) in zip(row, shown, strict=True):
             scale = 1e-3 if measure == "grf_loading_rate" else 1.0
             for i, (design, walks) in enumerate(band.items()):
                 constants = sorted(walks)
-                found = [estimate([one.values(measure) * scale for one in walks[c]], resamples=1000) for c in constants]
+                found = [
+                    estimate([one.values(measure) * scale for one in walks[c]], resamples=1000)
+                    for c in constants
+                ]
                 x = np.array([stiffness[c] for c in constants]) * 1e-3 * (1 + 0.03 * i)
                 mean = np.array([f.mean for f in found])
                 colour = VARIANT_COLOUR.get(design, _GREY)
                 axes.plot(x, mean, "o-", color=colour, ms=5, label=design.replace("_", " "))
                 told = np.array([f.speaks_of_seeds for f in found])
-                axes.vlines(x[told], *(np.array([getattr(f, end) for f in found])[told] for end in ("low", "high")), color=colour, lw=1.4)
+                axes.vlines(
+                    x[told],
+                    *(np.array([getattr(f, end) for f in found])[told] for end in ("low", "high")),
+                    color=colour,
+                    lw=1.4,
+                )
             axes.set(xscale="log", xlabel="stiffness of the pad under a heel [kN/m]", title=title)
             means = [line.get_ydata() for line in axes.get_lines()]
-            axes.set_ylim(0, 1.6 * float(np.nanmax([*np.concatenate(means), 1e-9])))  # wider intervals are cut
+            axes.set_ylim(
+                0, 1.6 * float(np.nanmax([*np.concatenate(means), 1e-9]))
+            )  # wider intervals are cut
             ticks = [stiffness[c] * 1e-3 for c in next(iter(band.values()))]
             axes.set_xticks(ticks, [f"{t:.3g}" for t in ticks])
             axes.minorticks_off()
-        figure.legend(*row[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(band))
+        figure.legend(
+            *row[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(band)
+        )
     return figure
 
 
@@ -123,7 +176,9 @@ def operating_points_figure(trials: Mapping[str, Trial]) -> Figure:
     columns = 4
     rows = -(-len(motors) // columns)
     with figure_style():
-        figure, grid = plt.subplots(rows, columns, figsize=(3.0 * columns, 2.7 * rows), squeeze=False, layout="constrained")
+        figure, grid = plt.subplots(
+            rows, columns, figsize=(3.0 * columns, 2.7 * rows), squeeze=False, layout="constrained"
+        )
         for axes in grid.flat[len(motors) :]:
             axes.set_axis_off()
         for axes, motor in zip(grid.flat, motors, strict=False):
@@ -136,15 +191,39 @@ def operating_points_figure(trials: Mapping[str, Trial]) -> Figure:
                 if first:
                     _envelope(axes, trial, index)
                     first = False
-                speed, torque = (values.reshape(-1, 2, len(names))[..., index].ravel() for values in (trial.motor_velocity, trial.motor_torque))
+                speed, torque = (
+                    values.reshape(-1, 2, len(names))[..., index].ravel()
+                    for values in (trial.motor_velocity, trial.motor_torque)
+                )
                 every = max(1, len(speed) // _DOTS)
-                axes.scatter(speed[::every], torque[::every], s=3, color=VARIANT_COLOUR.get(key, _GREY), alpha=0.35, lw=0, zorder=3, rasterized=True)
+                axes.scatter(
+                    speed[::every],
+                    torque[::every],
+                    s=3,
+                    color=VARIANT_COLOUR.get(key, _GREY),
+                    alpha=0.35,
+                    lw=0,
+                    zorder=3,
+                    rasterized=True,
+                )
             axes.set_title(motor.replace("_", " "))
         for axes in grid[:, 0]:
             axes.set_ylabel("motor torque [Nm]")
         for column in range(columns):
-            grid[max(r for r in range(rows) if r * columns + column < len(motors)), column].set_xlabel("motor speed [rad/s]")
-        handles: list[Any] = [plt.Line2D([], [], ls="", marker="o", color=VARIANT_COLOUR.get(k, _GREY), label=k.replace("_", " ")) for k in trials]
+            grid[
+                max(r for r in range(rows) if r * columns + column < len(motors)), column
+            ].set_xlabel("motor speed [rad/s]")
+        handles: list[Any] = [
+            plt.Line2D(
+                [],
+                [],
+                ls="",
+                marker="o",
+                color=VARIANT_COLOUR.get(k, _GREY),
+                label=k.replace("_", " "),
+            )
+            for k in trials
+        ]
         handles.append(plt.Line2D([], [], color="#1d2129", label="envelope"))
         if len(motors) < rows * columns:
             grid[-1, -1].legend(handles=handles, loc="center")

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 DESCRIPTION = {
     "toe": "active toe",
     "toe_locked": "toe joint locked, its motor kept: the motor still helps knee and ankle",
-    "toe_removed_matched": "toe joint and motor gone; total mass, sole and foot length kept by ballast at the motor's place",
+    "toe_removed_matched": "toe joint and motor gone; total mass, sole and foot length kept by "
+    "ballast at the motor's place",
     "toe_removed": "toe joint and motor gone with their mass; the sole keeps its length",
 }
 
@@ -35,13 +36,20 @@ def ablate(design: Design, variant: str) -> Design:
     if variant == design.variant:
         return design
     if design.variant != "toe":
-        raise InputError(design.name, "variant", design.variant, f"has no active toe to make {variant} of; start from the toe variant")
+        raise InputError(
+            design.name,
+            "variant",
+            design.variant,
+            f"has no active toe to make {variant} of; start from the toe variant",
+        )
     values: dict[str, Any] = {"toe.joint": "locked"}
     if variant != "toe_locked":
         values["actuators.toe_installed"] = False
     if variant == "toe_removed_matched":
         without = masses.mass_table(design.with_values(values, f"variant {variant}"))
-        values["masses.thigh_ballast"] = design.masses.thigh_ballast + (masses.mass_table(design).total - without.total) / 2
+        values["masses.thigh_ballast"] = (
+            design.masses.thigh_ballast + (masses.mass_table(design).total - without.total) / 2
+        )
     if variant == "toe_removed":
         values["toe.mass"] = 0.0
     made = design.with_values(values, f"variant {variant}", label="derived")
@@ -57,15 +65,18 @@ def confound(design: Design, posture: str = "standing") -> dict[str, Any]:
     """What each ablation takes away besides the toe.
 
     Returns:
-        By variant: `removes` (text), `motors` and `joints` a leg, `total_mass` [kg], `leg_mass` [kg], and
-        `max_joint_torque` [Nm] by joint, derated as in Table I, with `lost` [Nm] against the active toe.
+        By variant: `removes` (text), `motors` and `joints` a leg, `total_mass` [kg], `leg_mass`
+        [kg], and `max_joint_torque` [Nm] by joint, derated as in Table I, with `lost` [Nm] against
+        the active toe.
     """
     full = dict(zip(JOINTS, transmission.max_joint_torque(design, posture).tolist(), strict=False))
     found: dict[str, Any] = {}
     for name, variant in variants(design).items():
         table = masses.mass_table(variant)
         joints = transmission.joint_names(variant)
-        torque = dict(zip(joints, transmission.max_joint_torque(variant, posture).tolist(), strict=True))
+        torque = dict(
+            zip(joints, transmission.max_joint_torque(variant, posture).tolist(), strict=True)
+        )
         found[name] = {
             "removes": DESCRIPTION[name],
             "joints": len(joints),

@@ -1,4 +1,6 @@
-"""A robot as files that other programs load: URDF, MJCF, resolved design, xacro with its numbers, mass table."""
+"""A robot as files that other programs load: URDF, MJCF, resolved design, xacro with its numbers,
+mass table.
+"""
 
 from __future__ import annotations
 
@@ -22,20 +24,30 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
 
 COLUMNS = (
-    "kind", "name", "count", "mass_kg", "com_x_m", "com_y_m", "com_z_m",
-    "principal_inertia_1_kg_m2", "principal_inertia_2_kg_m2", "principal_inertia_3_kg_m2",
-)  # fmt: skip
+    "kind",
+    "name",
+    "count",
+    "mass_kg",
+    "com_x_m",
+    "com_y_m",
+    "com_z_m",
+    "principal_inertia_1_kg_m2",
+    "principal_inertia_2_kg_m2",
+    "principal_inertia_3_kg_m2",
+)
 
 
 def build(design: Design, out: str | Path) -> Path:
     """Write a folder with everything about one robot; the same design gives the same bytes.
 
-    `NAME.urdf` and `NAME.xml` (MJCF), `design.yaml` (reads back as the same design), `tree.yaml` with the xacro template
-    (`xacro biped.urdf.xacro tree:=tree.yaml`), `masses.csv`, `masses.md`, and `manifest.json` with versions and checksums.
+    `NAME.urdf` and `NAME.xml` (MJCF), `design.yaml` (reads back as the same design), `tree.yaml`
+    with the xacro template (`xacro biped.urdf.xacro tree:=tree.yaml`), `masses.csv`, `masses.md`,
+    and `manifest.json` with versions and checksums.
 
     Args:
         design: one robot.
-        out: folder to write: new, empty, or one that this package made, which is replaced as a whole.
+        out: folder to write: new, empty, or one that this package made, which is replaced as a
+            whole.
 
     Returns:
         The folder.
@@ -56,7 +68,9 @@ def build(design: Design, out: str | Path) -> Path:
     }
     files = {name: text.encode() for name, text in texts.items()}
     template = (resources.content_folder("descriptions") / TEMPLATE).read_text(encoding="utf-8")
-    files[TEMPLATE] = template.replace('<robot name="biped"', f'<robot name="{design.name}"').encode()
+    files[TEMPLATE] = template.replace(
+        '<robot name="biped"', f'<robot name="{design.name}"'
+    ).encode()
     with output_folder(out) as folder:
         for name, content in files.items():
             write_bytes(folder / name, content)
@@ -65,8 +79,13 @@ def build(design: Design, out: str | Path) -> Path:
 
 
 def design_yaml(design: Design) -> str:
-    """The resolved design as YAML with label and source of each value; `load_design` reads it back as the same design."""
-    head = "# A resolved design: every value, with label and source. `hyperleg build --design design.yaml` makes the same robot.\n"
+    """The resolved design as YAML with label and source of each value; `load_design` reads it back
+    as the same design.
+    """
+    head = (
+        "# A resolved design: every value, with label and source. `hyperleg build --design "
+        "design.yaml` makes the same robot.\n"
+    )
     return head + yaml.dump(
         design.to_mapping(),
         Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper),
@@ -83,22 +102,45 @@ def masses_csv(rows: list[MassRow]) -> str:
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(COLUMNS)
     for row in rows:
-        writer.writerow([row.kind, row.name, row.count, float(row.mass), *row.com.tolist(), *row.principal.tolist()])
+        writer.writerow(
+            [
+                row.kind,
+                row.name,
+                row.count,
+                float(row.mass),
+                *row.com.tolist(),
+                *row.principal.tolist(),
+            ]
+        )
     return stream.getvalue()
 
 
 def masses_markdown(design: Design, rows: list[MassRow]) -> str:
     """The mass table to read, in kilograms, millimetres and gram square metres."""
-    cells = [["part", "pieces", "mass [kg]", "centre of mass x, y, z [mm]", "principal inertia [g m²]"]]
+    cells = [
+        ["part", "pieces", "mass [kg]", "centre of mass x, y, z [mm]", "principal inertia [g m²]"]
+    ]
     for row in rows:
         com = ", ".join(f"{round(1e3 * v, 1) + 0.0:.1f}" for v in row.com)
         principal = ", ".join(f"{1e3 * v:.4g}" for v in row.principal)
-        cells.append([f"{row.kind} {row.name}" if row.kind in ("link", "segment") else row.name, str(row.count), f"{row.mass:.3f}", com, principal])
+        cells.append(
+            [
+                f"{row.kind} {row.name}" if row.kind in ("link", "segment") else row.name,
+                str(row.count),
+                f"{row.mass:.3f}",
+                com,
+                principal,
+            ]
+        )
     widths = [max(len(line[i]) for line in cells) for i in range(len(cells[0]))]
-    lines = [f"| {' | '.join(cell.ljust(width) for cell, width in zip(line, widths, strict=True))} |" for line in cells]
+    lines = [
+        f"| {' | '.join(cell.ljust(width) for cell, width in zip(line, widths, strict=True))} |"
+        for line in cells
+    ]
     lines.insert(1, f"|{'|'.join('-' * (width + 2) for width in widths)}|")
     note = (
-        "Left parts; the right ones mirror y. Centres of mass of links and segments are measured from their upper joint, of leg and robot\n"
+        "Left parts; the right ones mirror y. Centres of mass of links and segments are measured "
+        "from their upper joint, of leg and robot\n"
         "from the midpoint of the hips, in the zero posture: x forward, y left, z up."
     )
     return f"# Masses of {design.name} ({design.variant})\n\n{note}\n\n" + "\n".join(lines) + "\n"
@@ -114,7 +156,9 @@ def _manifest(design: Design, files: dict[str, bytes]) -> dict[str, Any]:
         "leg_mass": float(table.leg),
         "versions": provenance.versions(),
         "git_commit": provenance.git_commit() or None,
-        "sha256": {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())},
+        "sha256": {
+            name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())
+        },
     }
 
 

@@ -1,4 +1,6 @@
-"""Checking the files that describe robots: designs, motors, URDF and MJCF, each by its own rules."""
+"""Checking the files that describe robots: designs, motors, URDF and MJCF, each by its own
+rules.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,13 @@ def kind_of(path: str | Path) -> str:
         root, _ = parse_xml(path)
         tag = None if root is None else root.tag
         if tag not in ("robot", "mujoco"):
-            return "urdf" if Path(path).suffix.lower() == ".urdf" else "mjcf" if root is None else "unknown"
+            return (
+                "urdf"
+                if Path(path).suffix.lower() == ".urdf"
+                else "mjcf"
+                if root is None
+                else "unknown"
+            )
         return "urdf" if tag == "robot" else "mjcf"
     if Path(path).suffix.lower() not in ("", ".yaml", ".yml"):
         return "unknown"
@@ -67,7 +75,14 @@ def check_file(path: str | Path) -> list[Finding]:
         return check_urdf(Path(path))
     if kind == "mjcf":
         return check_mjcf(Path(path))
-    return [Finding("error", str(path), "is of no kind that can be checked", "expects a design or motor (YAML), a URDF, or an MJCF file")]
+    return [
+        Finding(
+            "error",
+            str(path),
+            "is of no kind that can be checked",
+            "expects a design or motor (YAML), a URDF, or an MJCF file",
+        )
+    ]
 
 
 def finding_of(error: InputError, severity: str = "error") -> Finding:
@@ -78,7 +93,9 @@ def finding_of(error: InputError, severity: str = "error") -> Finding:
 
 
 def _check_design_file(path: str | Path) -> list[Finding]:
-    """A design that loads must also become a URDF without faults; one without a linkage model gets a warning."""
+    """A design that loads must also become a URDF without faults; one without a linkage model gets
+    a warning.
+    """
     from hyperleg_design.robot.description import urdf
 
     design = load_design(path)

@@ -18,7 +18,8 @@ DEEPEST_CONTACT = 0.01
 
 
 def check_mjcf(source: str | Path) -> list[Finding]:
-    """Everything wrong with an MJCF file: syntax, what MuJoCo's compiler refuses, and what it lets pass.
+    """Everything wrong with an MJCF file: syntax, what MuJoCo's compiler refuses, and what it lets
+    pass.
 
     Args:
         source: a path, or the text itself.
@@ -35,13 +36,29 @@ def check_mjcf(source: str | Path) -> list[Finding]:
     if root is None:
         return found
     if root.tag != "mujoco":
-        return [Finding("error", f"line {root.sourceline}", f"the root element is <{root.tag}>", "an MJCF file starts with <mujoco>")]
+        return [
+            Finding(
+                "error",
+                f"line {root.sourceline}",
+                f"the root element is <{root.tag}>",
+                "an MJCF file starts with <mujoco>",
+            )
+        ]
     is_text = isinstance(source, str) and source.lstrip().startswith("<")
     try:
-        spec = mujoco.MjSpec.from_string(source) if is_text else mujoco.MjSpec.from_file(str(source))
+        spec = (
+            mujoco.MjSpec.from_string(source) if is_text else mujoco.MjSpec.from_file(str(source))
+        )
         model = spec.compile()
     except (ValueError, RuntimeError, mujoco.FatalError) as error:
-        return [Finding("error", "<mujoco>", f"MuJoCo does not compile it: {in_short(error, 300)}", "correct what it names")]
+        return [
+            Finding(
+                "error",
+                "<mujoco>",
+                f"MuJoCo does not compile it: {in_short(error, 300)}",
+                "correct what it names",
+            )
+        ]
     found = _model(model) + _starts(model)
     return sorted(found, key=lambda f: f.severity != "error")
 
@@ -55,19 +72,42 @@ def _model(model: Any) -> list[Finding]:
     if not model.nu:
         found.append(Finding("warning", "<actuator>", "there are no actuators", "add one a motor"))
     if model.opt.timestep > LARGEST_TIME_STEP:
-        found.append(Finding("warning", "<option>", f"timestep is {model.opt.timestep:g} s", f"stay below {LARGEST_TIME_STEP:g} s"))
+        found.append(
+            Finding(
+                "warning",
+                "<option>",
+                f"timestep is {model.opt.timestep:g} s",
+                f"stay below {LARGEST_TIME_STEP:g} s",
+            )
+        )
     for index in range(model.nu):
         low, high = model.actuator_ctrlrange[index]
         if model.actuator_ctrllimited[index] and low >= high:
-            found.append(Finding("error", f"actuator {model.actuator(index).name}", f"control range is {low:g} .. {high:g}, empty", "widen it"))
+            found.append(
+                Finding(
+                    "error",
+                    f"actuator {model.actuator(index).name}",
+                    f"control range is {low:g} .. {high:g}, empty",
+                    "widen it",
+                )
+            )
     for index in range(model.njnt):
         place, (low, high) = f"joint {model.joint(index).name}", model.jnt_range[index]
-        if model.jnt_limited[index] or int(model.jnt_type[index]) not in (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE)):
+        if model.jnt_limited[index] or int(model.jnt_type[index]) not in (
+            int(mujoco.mjtJoint.mjJNT_HINGE),
+            int(mujoco.mjtJoint.mjJNT_SLIDE),
+        ):
             continue
         if low > high:  # MuJoCo takes it for a joint without limits
-            found.append(Finding("error", place, f"range is {low:.4g} .. {high:.4g}, reversed", "swap its ends"))
+            found.append(
+                Finding(
+                    "error", place, f"range is {low:.4g} .. {high:.4g}, reversed", "swap its ends"
+                )
+            )
         else:
-            found.append(Finding("warning", place, "has no range", "add range= if the joint has stops"))
+            found.append(
+                Finding("warning", place, "has no range", "add range= if the joint has stops")
+            )
     return found
 
 
@@ -83,17 +123,40 @@ def _starts(model: Any) -> list[Finding]:
             mujoco.mj_resetDataKeyframe(model, data, key)
         mujoco.mj_forward(model, data)
         if not np.all(np.isfinite(data.qacc)):
-            found.append(Finding("error", place, "accelerations are not finite", "check masses, inertias and contacts"))
+            found.append(
+                Finding(
+                    "error",
+                    place,
+                    "accelerations are not finite",
+                    "check masses, inertias and contacts",
+                )
+            )
         depth = -float(np.min(data.contact.dist, initial=0.0))
         if depth > DEEPEST_CONTACT:
-            found.append(Finding("warning", place, f"bodies overlap by {depth:.3g} m", "move them apart, or the robot jumps"))
+            found.append(
+                Finding(
+                    "warning",
+                    place,
+                    f"bodies overlap by {depth:.3g} m",
+                    "move them apart, or the robot jumps",
+                )
+            )
         for index in range(model.njnt):
-            if key < 0 or not model.jnt_limited[index] or int(model.jnt_type[index]) == int(mujoco.mjtJoint.mjJNT_BALL):
+            if (
+                key < 0
+                or not model.jnt_limited[index]
+                or int(model.jnt_type[index]) == int(mujoco.mjtJoint.mjJNT_BALL)
+            ):
                 continue
             value, (low, high) = float(data.qpos[model.jnt_qposadr[index]]), model.jnt_range[index]
             if not low - 1e-9 <= value <= high + 1e-9:
                 name = model.joint(index).name
                 found.append(
-                    Finding("warning", place, f"joint {name} is at {value:.4g}, outside {low:.4g} .. {high:.4g}", "move it inside its range")
+                    Finding(
+                        "warning",
+                        place,
+                        f"joint {name} is at {value:.4g}, outside {low:.4g} .. {high:.4g}",
+                        "move it inside its range",
+                    )
                 )
     return found

@@ -1,7 +1,7 @@
 """Whether a URDF describes a robot: any URDF, not only ours.
 
-Beyond what ROS's `check_urdf` sees (syntax, one root, names), this looks at the numbers: masses, inertias that a body can
-have, ranges that can be reached, axes.
+Beyond what ROS's `check_urdf` sees (syntax, one root, names), this looks at the numbers: masses,
+inertias that a body can have, ranges that can be reached, axes.
 """
 
 from __future__ import annotations
@@ -18,7 +18,12 @@ from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.robot.finding import Finding
 
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
-SIZES = {"box": ("size", 3), "cylinder": ("radius length", 1), "sphere": ("radius", 1), "capsule": ("radius length", 1)}
+SIZES = {
+    "box": ("size", 3),
+    "cylinder": ("radius length", 1),
+    "sphere": ("radius", 1),
+    "capsule": ("radius length", 1),
+}
 """Attributes of each primitive, and how many numbers each holds."""
 LARGEST_GYRATION = 5.0
 """Radius of gyration past which a robot's link looks like a mistake of unit [m]."""
@@ -40,11 +45,25 @@ def check_urdf(source: str | Path) -> list[Finding]:
     if root is None:
         return found
     if root.tag != "robot":
-        return [Finding("error", f"line {root.sourceline}", f"the root element is <{root.tag}>", "a URDF starts with <robot name=...>")]
+        return [
+            Finding(
+                "error",
+                f"line {root.sourceline}",
+                f"the root element is <{root.tag}>",
+                "a URDF starts with <robot name=...>",
+            )
+        ]
     if not root.get("name"):
         found.append(Finding("error", "<robot>", "has no name", "add name="))
     if any("}" in str(e.tag) for e in root.iter()):
-        return [Finding("error", "<robot>", "holds xacro elements", "expand it first: xacro FILE > robot.urdf")]
+        return [
+            Finding(
+                "error",
+                "<robot>",
+                "holds xacro elements",
+                "expand it first: xacro FILE > robot.urdf",
+            )
+        ]
     links, joints = root.findall("link"), root.findall("joint")
     found += _names(links) + _names(joints)
     if not links:
@@ -77,12 +96,23 @@ def parse_xml(source: str | Path) -> tuple[Any, list[Finding]]:
             content = path.read_bytes()
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
-            raise InputError(str(path), "", None, f"cannot be read ({reason}); give the path of a file") from None
+            raise InputError(
+                str(path), "", None, f"cannot be read ({reason}); give the path of a file"
+            ) from None
     try:
-        parser = etree.XMLParser(resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True)
+        parser = etree.XMLParser(
+            resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True
+        )
         return etree.fromstring(content, parser), []
     except etree.XMLSyntaxError as error:
-        return None, [Finding("error", f"line {error.lineno or 1}", f"is not XML: {error.msg}", "close and quote every element there")]
+        return None, [
+            Finding(
+                "error",
+                f"line {error.lineno or 1}",
+                f"is not XML: {error.msg}",
+                "close and quote every element there",
+            )
+        ]
 
 
 def _place(element: Any) -> str:
@@ -91,18 +121,31 @@ def _place(element: Any) -> str:
 
 def _names(elements: Iterable[Any]) -> list[Finding]:
     elements = list(elements)
-    found = [Finding("error", _place(e), "has no name", "add name=") for e in elements if not e.get("name")]
+    found = [
+        Finding("error", _place(e), "has no name", "add name=")
+        for e in elements
+        if not e.get("name")
+    ]
     counts = Counter(e.get("name") for e in elements if e.get("name"))
     for element in reversed(elements):
         if counts.get(element.get("name"), 0) > 1:
             counts[element.get("name")] = 0
-            found.append(Finding("error", _place(element), "has a name that stands twice", "names must be unique; rename one"))
+            found.append(
+                Finding(
+                    "error",
+                    _place(element),
+                    "has a name that stands twice",
+                    "names must be unique; rename one",
+                )
+            )
     return found
 
 
 def _ends(joint: Any) -> tuple[str | None, str | None]:
     parent, child = joint.find("parent"), joint.find("child")
-    return (None if parent is None else parent.get("link")), (None if child is None else child.get("link"))
+    return (None if parent is None else parent.get("link")), (
+        None if child is None else child.get("link")
+    )
 
 
 def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
@@ -115,14 +158,35 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
         parent, child = _ends(joint)
         for role, link in (("parent", parent), ("child", child)):
             if link is None:
-                found.append(Finding("error", _place(joint), f"has no <{role} link=...>", "a joint connects two links"))
+                found.append(
+                    Finding(
+                        "error",
+                        _place(joint),
+                        f"has no <{role} link=...>",
+                        "a joint connects two links",
+                    )
+                )
             elif link not in names:
-                found.append(Finding("error", _place(joint), f"its {role}, {link!r}, is no link", f"name one of the {len(names)} links"))
+                found.append(
+                    Finding(
+                        "error",
+                        _place(joint),
+                        f"its {role}, {link!r}, is no link",
+                        f"name one of the {len(names)} links",
+                    )
+                )
         if parent not in names or child not in names or parent is None or child is None:
             continue
         if child in joint_of:
             other = joint_of[child].get("name")
-            found.append(Finding("error", _place(joint), f"its child, {child!r}, hangs on joint {other!r} already", "a link has one parent"))
+            found.append(
+                Finding(
+                    "error",
+                    _place(joint),
+                    f"its child, {child!r}, hangs on joint {other!r} already",
+                    "a link has one parent",
+                )
+            )
             continue
         joint_of[child] = joint
         children.setdefault(parent, []).append(child)
@@ -140,13 +204,25 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
     looped = [name for name in names if name is not None and name not in reached]
     if looped:
         shown = ", ".join(looped[:5])
-        found.append(Finding("error", _place(names[looped[0]]), f"stands in a loop of joints ({shown})", "a URDF is a tree; open the loop"))
+        found.append(
+            Finding(
+                "error",
+                _place(names[looped[0]]),
+                f"stands in a loop of joints ({shown})",
+                "a URDF is a tree; open the loop",
+            )
+        )
     main = max(trees, key=lambda name: len(trees[name]), default=None)
     for name, tree in trees.items():
         if name != main:
             size = f" and {len(tree) - 1} behind it" if len(tree) > 1 else ""
             found.append(
-                Finding("error", _place(names[name]), f"is loose{size}: no joint connects it to {main!r}", "add the joint, or remove the link")
+                Finding(
+                    "error",
+                    _place(names[name]),
+                    f"is loose{size}: no joint connects it to {main!r}",
+                    "add the joint, or remove the link",
+                )
             )
     return found
 
@@ -161,7 +237,9 @@ def numbers(text: str | None, count: int) -> np.ndarray | None:
 
 
 def _inertial(link: Any, carried: bool) -> list[Finding]:
-    """Mass and inertia; `carried` says that the link is fixed to another, where a point without inertia does no harm."""
+    """Mass and inertia; `carried` says that the link is fixed to another, where a point without
+    inertia does no harm.
+    """
     part = link.find("inertial")
     if part is None:
         return []
@@ -171,16 +249,41 @@ def _inertial(link: Any, carried: bool) -> list[Finding]:
     weight = None if mass is None else numbers(mass.get("value"), 1)
     if weight is None:
         shown = None if mass is None else mass.get("value")
-        found.append(Finding("error", place, f"mass is {shown!r}", "expects <mass value=...>, one number in kg"))
+        found.append(
+            Finding(
+                "error", place, f"mass is {shown!r}", "expects <mass value=...>, one number in kg"
+            )
+        )
     elif weight[0] < 0:
         found.append(Finding("error", place, f"mass is {weight[0]:g} kg", "a mass is positive"))
     if inertia is None:
-        return [*found, Finding("error", place, "has a mass but no <inertia>", "add ixx, iyy, izz, ixy, ixz, iyz")]
-    values = [numbers(inertia.get(key, "0" if key in ("ixy", "ixz", "iyz") else None), 1) for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")]
+        return [
+            *found,
+            Finding(
+                "error", place, "has a mass but no <inertia>", "add ixx, iyy, izz, ixy, ixz, iyz"
+            ),
+        ]
+    values = [
+        numbers(inertia.get(key, "0" if key in ("ixy", "ixz", "iyz") else None), 1)
+        for key in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+    ]
     if any(v is None for v in values):
-        return [*found, Finding("error", place, "inertia lacks a number", "expects ixx, iyy, izz, ixy, ixz, iyz in kg m^2")]
+        return [
+            *found,
+            Finding(
+                "error",
+                place,
+                "inertia lacks a number",
+                "expects ixx, iyy, izz, ixy, ixz, iyz in kg m^2",
+            ),
+        ]
     if weight is not None and weight[0] > 0:
-        found += _tensor(np.array([float(v[0]) for v in values if v is not None]), float(weight[0]), place, carried)
+        found += _tensor(
+            np.array([float(v[0]) for v in values if v is not None]),
+            float(weight[0]),
+            place,
+            carried,
+        )
     return found
 
 
@@ -201,12 +304,22 @@ def _tensor(values: np.ndarray, mass: float, place: str, carried: bool) -> list[
     if principal[2] > (principal[0] + principal[1]) * (1 + 1e-9):
         return [
             Finding(
-                "error", place, f"no body has this inertia (principal moments {shown} kg m^2)", "the largest must not exceed the sum of the others"
+                "error",
+                place,
+                f"no body has this inertia (principal moments {shown} kg m^2)",
+                "the largest must not exceed the sum of the others",
             )
         ]
     gyration = math.sqrt(principal[2] / mass)
     if gyration > LARGEST_GYRATION:
-        return [Finding("warning", place, f"radius of gyration is {gyration:.3g} m", "check units: kg, m, kg m^2")]
+        return [
+            Finding(
+                "warning",
+                place,
+                f"radius of gyration is {gyration:.3g} m",
+                "check units: kg, m, kg m^2",
+            )
+        ]
     return []
 
 
@@ -214,8 +327,15 @@ def _origin(element: Any, place: str) -> list[Finding]:
     origin = element.find("origin")
     if origin is None:
         return []
-    bad = [key for key in ("xyz", "rpy") if origin.get(key) is not None and numbers(origin.get(key), 3) is None]
-    return [Finding("error", place, f"origin has {key}={origin.get(key)!r}", "expects three numbers") for key in bad]
+    bad = [
+        key
+        for key in ("xyz", "rpy")
+        if origin.get(key) is not None and numbers(origin.get(key), 3) is None
+    ]
+    return [
+        Finding("error", place, f"origin has {key}={origin.get(key)!r}", "expects three numbers")
+        for key in bad
+    ]
 
 
 def _drawings(link: Any) -> list[Finding]:
@@ -225,13 +345,27 @@ def _drawings(link: Any) -> list[Finding]:
         found += _origin(drawing, place)
         geometry = drawing.find("geometry")
         if geometry is None or len(geometry) != 1:
-            found.append(Finding("error", place, "has no geometry, or several", "expects one of box, cylinder, sphere, mesh in <geometry>"))
+            found.append(
+                Finding(
+                    "error",
+                    place,
+                    "has no geometry, or several",
+                    "expects one of box, cylinder, sphere, mesh in <geometry>",
+                )
+            )
             continue
         attributes, count = SIZES.get(geometry[0].tag, ("", 0))
         for key in attributes.split():
             size = numbers(geometry[0].get(key), count)
             if size is None or np.any(size <= 0):
-                found.append(Finding("error", place, f"{geometry[0].tag} has {key}={geometry[0].get(key)!r}", "expects positive lengths in m"))
+                found.append(
+                    Finding(
+                        "error",
+                        place,
+                        f"{geometry[0].tag} has {key}={geometry[0].get(key)!r}",
+                        "expects positive lengths in m",
+                    )
+                )
     return found
 
 
@@ -239,20 +373,34 @@ def _joint(joint: Any, names: set[str | None]) -> list[Finding]:
     place, kind = _place(joint), joint.get("type")
     found = _origin(joint, place)
     if kind not in JOINT_TYPES:
-        return [*found, Finding("error", place, f"type is {kind!r}", f"expects one of {', '.join(JOINT_TYPES)}")]
+        return [
+            *found,
+            Finding(
+                "error", place, f"type is {kind!r}", f"expects one of {', '.join(JOINT_TYPES)}"
+            ),
+        ]
     if kind in ("revolute", "continuous", "prismatic", "planar"):
         found += _axis(joint, place)
     if kind in ("revolute", "prismatic"):
         found += _limit(joint, place, kind)
     mimic = joint.find("mimic")
     if mimic is not None and mimic.get("joint") not in names:
-        found.append(Finding("error", place, f"mimics {mimic.get('joint')!r}, which is no joint", "name a joint of this robot"))
+        found.append(
+            Finding(
+                "error",
+                place,
+                f"mimics {mimic.get('joint')!r}, which is no joint",
+                "name a joint of this robot",
+            )
+        )
     dynamics = joint.find("dynamics")
     for key in ("damping", "friction"):
         value = None if dynamics is None else dynamics.get(key)
         number = numbers(value, 1)
         if value is not None and (number is None or number[0] < 0):
-            found.append(Finding("error", place, f"{key} is {value!r}", "expects a number, zero or more"))
+            found.append(
+                Finding("error", place, f"{key} is {value!r}", "expects a number, zero or more")
+            )
     return found
 
 
@@ -266,24 +414,47 @@ def _axis(joint: Any, place: str) -> list[Finding]:
     if length < 1e-9:
         return [Finding("error", place, "axis is zero", "give the axis a direction")]
     if abs(length - 1) > 1e-3:
-        return [Finding("warning", place, f"axis has length {length:.4g}", "programs differ in what they make of that; use a unit vector")]
+        return [
+            Finding(
+                "warning",
+                place,
+                f"axis has length {length:.4g}",
+                "programs differ in what they make of that; use a unit vector",
+            )
+        ]
     return []
 
 
 def _limit(joint: Any, place: str, kind: str) -> list[Finding]:
     limit = joint.find("limit")
     if limit is None:
-        return [Finding("error", place, "has no <limit>", f"a {kind} joint needs lower, upper, effort and velocity")]
+        return [
+            Finding(
+                "error",
+                place,
+                "has no <limit>",
+                f"a {kind} joint needs lower, upper, effort and velocity",
+            )
+        ]
     found: list[Finding] = []
     ends = {key: numbers(limit.get(key, "0"), 1) for key in ("lower", "upper")}
-    found += [Finding("error", place, f"{key} is {limit.get(key)!r}", "expects a number") for key, value in ends.items() if value is None]
+    found += [
+        Finding("error", place, f"{key} is {limit.get(key)!r}", "expects a number")
+        for key, value in ends.items()
+        if value is None
+    ]
     if ends["lower"] is not None and ends["upper"] is not None:
         found += _range(float(ends["lower"][0]), float(ends["upper"][0]), place, kind)
     for key, unit in (("effort", "Nm or N"), ("velocity", "rad/s or m/s")):
         value = numbers(limit.get(key), 1)
         if value is None or value[0] <= 0:
             found.append(
-                Finding("error", place, f"{key} is {limit.get(key)!r}", f"expects a positive number in {unit}; at zero the joint cannot move")
+                Finding(
+                    "error",
+                    place,
+                    f"{key} is {limit.get(key)!r}",
+                    f"expects a positive number in {unit}; at zero the joint cannot move",
+                )
             )
     return found
 
@@ -292,14 +463,34 @@ def _range(lower: float, upper: float, place: str, kind: str) -> list[Finding]:
     unit = "rad" if kind == "revolute" else "m"
     shown = f"range is {lower:.4g} .. {upper:.4g} {unit}"
     if lower > upper:
-        return [Finding("error", place, f"{shown}, reversed: no posture lies in it", "swap lower and upper")]
+        return [
+            Finding(
+                "error", place, f"{shown}, reversed: no posture lies in it", "swap lower and upper"
+            )
+        ]
     if lower == upper:
-        return [Finding("error", place, f"{shown}, empty: the joint cannot move", "widen it, or make the joint fixed")]
+        return [
+            Finding(
+                "error",
+                place,
+                f"{shown}, empty: the joint cannot move",
+                "widen it, or make the joint fixed",
+            )
+        ]
     if kind == "revolute" and max(abs(lower), abs(upper)) > 2 * math.pi + 1e-6:
-        return [Finding("warning", place, f"{shown}, more than a turn", "URDF takes radians, not degrees")]
+        return [
+            Finding(
+                "warning", place, f"{shown}, more than a turn", "URDF takes radians, not degrees"
+            )
+        ]
     if not lower <= 0 <= upper:
         return [
-            Finding("warning", place, f"{shown}, so the zero posture cannot be reached", "programs start there; shift the joint's frame if you can")
+            Finding(
+                "warning",
+                place,
+                f"{shown}, so the zero posture cannot be reached",
+                "programs start there; shift the joint's frame if you can",
+            )
         ]
     return []
 
@@ -326,11 +517,18 @@ def _weightless(links: list[Any], joints: list[Any]) -> list[Finding]:
     for link in links:
         mass = link.find("inertial/mass")
         value = None if mass is None else numbers(mass.get("value"), 1)
-        weight[head(link.get("name"))] = weight.get(head(link.get("name")), 0.0) + (0.0 if value is None else float(value[0]))
+        weight[head(link.get("name"))] = weight.get(head(link.get("name")), 0.0) + (
+            0.0 if value is None else float(value[0])
+        )
     by_name = {link.get("name"): link for link in links}
     remedy = "add an <inertial> with mass and inertia"
     return [
-        Finding("error", _place(by_name[name]), f"moves with joint {joint.get('name')!r} but has no mass", remedy)
+        Finding(
+            "error",
+            _place(by_name[name]),
+            f"moves with joint {joint.get('name')!r} but has no mass",
+            remedy,
+        )
         for name, joint in moving.items()
         if weight[head(name)] == 0
     ]
@@ -344,5 +542,12 @@ def _loads(root: Any) -> list[Finding]:
     try:
         pinocchio.buildModelFromXML(etree.tostring(root, encoding="unicode"))
     except (ValueError, RuntimeError) as error:
-        return [Finding("error", "<robot>", f"Pinocchio does not load it: {in_short(error, 200)}", "correct that element")]
+        return [
+            Finding(
+                "error",
+                "<robot>",
+                f"Pinocchio does not load it: {in_short(error, 200)}",
+                "correct that element",
+            )
+        ]
     return []

@@ -27,7 +27,13 @@ def tree_mapping(tree: Tree) -> dict[str, Any]:
 
 def tree_yaml(tree: Tree) -> str:
     """`tree_mapping` as YAML, numbers in full precision."""
-    return yaml.dump(tree_mapping(tree), Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper), sort_keys=False, default_flow_style=None, width=140)
+    return yaml.dump(
+        tree_mapping(tree),
+        Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper),
+        sort_keys=False,
+        default_flow_style=None,
+        width=140,
+    )
 
 
 def urdf(design: Design, tree: Tree | None = None) -> str:
@@ -42,8 +48,12 @@ def urdf(design: Design, tree: Tree | None = None) -> str:
     with tempfile.TemporaryDirectory(prefix="hyperleg-") as folder:
         path = Path(folder) / "tree.yaml"
         path.write_text(tree_yaml(tree))
-        document = xacro.process_file(str(resources.content_folder("descriptions") / TEMPLATE), mappings={"tree": str(path)})
-    document.documentElement.setAttribute("name", tree.name)  # xacro reads the root's attributes before any argument
+        document = xacro.process_file(
+            str(resources.content_folder("descriptions") / TEMPLATE), mappings={"tree": str(path)}
+        )
+    document.documentElement.setAttribute(
+        "name", tree.name
+    )  # xacro reads the root's attributes before any argument
     body: str = document.documentElement.toprettyxml(indent="  ")
     return f'<?xml version="1.0"?>\n{body}'
 
@@ -60,7 +70,11 @@ def _link(link: Link) -> dict[str, Any]:
 
 
 def _shape(shape: Shape) -> dict[str, Any]:
-    return {"kind": shape.kind, "size": [float(v) for v in shape.size], "position": [float(v) for v in shape.position]}
+    return {
+        "kind": shape.kind,
+        "size": [float(v) for v in shape.size],
+        "position": [float(v) for v in shape.position],
+    }
 
 
 def _joint(joint: TreeJoint) -> dict[str, Any]:

@@ -1,8 +1,9 @@
 """A robot design: typed parameters, read from YAML, overridden, batched.
 
-A design is the paper's kind of biped: a pelvis and two mirrored legs of seven joints, with motors coupled below the hip.
-Axes: x forward, y left, z up. Pitch axes point left, so hip flexion is negative, knee flexion, plantar flexion and toe
-flexion are positive; yaw and roll axes of the right leg mirror the left's, so equal angles are mirrored postures.
+A design is the paper's kind of biped: a pelvis and two mirrored legs of seven joints, with motors
+coupled below the hip. Axes: x forward, y left, z up. Pitch axes point left, so hip flexion is
+negative, knee flexion, plantar flexion and toe flexion are positive; yaw and roll axes of the right
+leg mirror the left's, so equal angles are mirrored postures.
 """
 
 from __future__ import annotations
@@ -78,7 +79,11 @@ class Design:
     def batch_sizes(self) -> dict[str, int]:
         """Length of the batch of each leaf that holds one, by dotted path."""
         values = ((path, rule, self[path]) for path, rule in parameters.rules(Design).items())
-        return {path: len(value) for path, rule, value in values if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0)}
+        return {
+            path: len(value)
+            for path, rule, value in values
+            if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0)
+        }
 
     def __getitem__(self, path: str) -> Any:
         """Value of a leaf by dotted path, `design["toe.mass"]`."""
@@ -87,13 +92,21 @@ class Design:
             try:
                 value = getattr(value, part)
             except AttributeError:
-                raise InputError(self.name, path, None, parameters.unknown(path, sorted(parameters.rules(Design)))) from None
+                raise InputError(
+                    self.name,
+                    path,
+                    None,
+                    parameters.unknown(path, sorted(parameters.rules(Design))),
+                ) from None
         return value
 
-    def with_values(self, values: Mapping[str, Any], where: str = "override", label: str = "user") -> Design:
+    def with_values(
+        self, values: Mapping[str, Any], where: str = "override", label: str = "user"
+    ) -> Design:
         """A copy with leaves replaced by dotted path.
 
-        A printed sum of masses (`masses.expected_total`, `masses.expected_leg`) lapses where a mass in it is replaced.
+        A printed sum of masses (`masses.expected_total`, `masses.expected_leg`) lapses where a mass
+        in it is replaced.
 
         Args:
             values: numbers, texts, or arrays of either with the batch in front.
@@ -107,7 +120,9 @@ class Design:
 
         origins = {**self.origins, **{str(p): Origin(label, where) for p in values}}
         unprinted = lapsed(self, values)
-        origins.update({p: Origin("derived", f"lapsed: a mass was replaced by {where}") for p in unprinted})
+        origins.update(
+            {p: Origin("derived", f"lapsed: a mass was replaced by {where}") for p in unprinted}
+        )
         try:
             made = parameters.with_values(self, {**values, **unprinted}, where, origins=origins)
             check_printed(made, where)
@@ -115,7 +130,13 @@ class Design:
         except InputError as error:
             if error.where == where:
                 raise
-            raise InputError(f"{self.source or self.name} with {where}", error.field, error.value, error.remedy, bad=error.bad) from None
+            raise InputError(
+                f"{self.source or self.name} with {where}",
+                error.field,
+                error.value,
+                error.remedy,
+                bad=error.bad,
+            ) from None
 
     def take(self, index: int) -> Design:
         """One robot of a batch; values keep their origins.
@@ -123,7 +144,9 @@ class Design:
         Raises:
             IndexError: the batch is not that long.
         """
-        values = {path: self[path][0 if size == 1 else index] for path, size in self.batch_sizes().items()}
+        values = {
+            path: self[path][0 if size == 1 else index] for path, size in self.batch_sizes().items()
+        }
         if not values:
             return self
         plain = {path: str(v) if isinstance(v, str) else v for path, v in values.items()}
@@ -139,7 +162,11 @@ class Design:
                 place = place.setdefault(section, {})
             origin = self.origins.get(path)
             plain = value.tolist() if isinstance(value, np.ndarray) else value
-            place[last] = plain if origin is None else {"value": plain, "label": origin.label, "source": origin.source}
+            place[last] = (
+                plain
+                if origin is None
+                else {"value": plain, "label": origin.label, "source": origin.source}
+            )
         return result
 
 
@@ -153,9 +180,9 @@ def load_design(
     """Read a design.
 
     Args:
-        name: a shipped name (`hyperleg`, or an ablation of it such as `toe_removed`) or a YAML file. A file holds a
-            whole design, whose `variant:` says what it is, or `base: NAME` with the leaves that differ and the `variant:`
-            to make of it.
+        name: a shipped name (`hyperleg`, or an ablation of it such as `toe_removed`) or a YAML
+            file. A file holds a whole design, whose `variant:` says what it is, or `base: NAME`
+            with the leaves that differ and the `variant:` to make of it.
         overrides: mapping of dotted paths to values, or texts `path=value`.
         overlays: YAML files with nested leaves, applied in order before `overrides`.
         variant: ablation to make of it, one of `VARIANTS`.
@@ -173,11 +200,21 @@ def load_design(
     if chosen:
         design = design.with_values(chosen, "--set")
     if own_variant and variant and own_variant != variant:
-        raise InputError("variant", "", variant, f"{design.name} is already the variant {own_variant}; start from its base")
+        raise InputError(
+            "variant",
+            "",
+            variant,
+            f"{design.name} is already the variant {own_variant}; start from its base",
+        )
     made = ablate(design, variant or own_variant or design.variant)
     for path, value in chosen.items():
         if not np.array_equal(made[path], design[path]):
-            raise InputError("--set", path, value, f"the variant {made.variant} sets this itself; use another variant or leave it out")
+            raise InputError(
+                "--set",
+                path,
+                value,
+                f"the variant {made.variant} sets this itself; use another variant or leave it out",
+            )
     return made
 
 
@@ -211,8 +248,13 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
         origins: dict[str, Origin] = {}
         return _build(rest, name, where, origins, variant or "toe"), None
     beside = path.with_name(f"{data['base']}.yaml")
-    base, base_variant = _read(beside if beside.is_file() else resources.find("descriptions", str(data["base"])), (*seen, path.resolve()))
-    return dataclasses.replace(_overlaid(base, rest, where), name=name, source=where), variant or base_variant
+    base, base_variant = _read(
+        beside if beside.is_file() else resources.find("descriptions", str(data["base"])),
+        (*seen, path.resolve()),
+    )
+    return dataclasses.replace(
+        _overlaid(base, rest, where), name=name, source=where
+    ), variant or base_variant
 
 
 def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, Any]:
@@ -235,13 +277,17 @@ def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, A
     return found
 
 
-def _build(data: dict[str, Any], name: str, where: str, origins: dict[str, Origin], variant: str) -> Design:
+def _build(
+    data: dict[str, Any], name: str, where: str, origins: dict[str, Origin], variant: str
+) -> Design:
     from hyperleg_design.robot.masses import check_printed
 
     sections = parameters.section_types(Design)
     for key in data:
         if key not in sections:
-            raise InputError(where, str(key), data[key], parameters.unknown(str(key), sorted(sections)))
+            raise InputError(
+                where, str(key), data[key], parameters.unknown(str(key), sorted(sections))
+            )
     parts: dict[str, Any] = {}
     for key, cls in sections.items():
         if key not in data:
@@ -256,7 +302,10 @@ def _build(data: dict[str, Any], name: str, where: str, origins: dict[str, Origi
     check_printed(design, where)
     stated = (design.toe.joint == "locked", design.actuators.toe_installed)
     if variant != "toe" and stated != (True, variant == "toe_locked"):
-        remedy = "does not fit toe.joint and actuators.toe_installed; a whole design states the variant that it is, `base:` makes one of another"
+        remedy = (
+            "does not fit toe.joint and actuators.toe_installed; a whole design states the "
+            "variant that it is, `base:` makes one of another"
+        )
         raise InputError(where, "variant", variant, remedy)
     return design
 

@@ -10,7 +10,8 @@ class Finding:
     """One thing that is wrong, or looks wrong, in a file."""
 
     severity: str
-    """`error` where the file cannot be used as it stands, `warning` where it may not mean what its author meant."""
+    """`error` where the file cannot be used as it stands, `warning` where it may not mean what its
+    author meant."""
     place: str
     """Element, field or line."""
     message: str

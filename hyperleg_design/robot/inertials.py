@@ -13,13 +13,23 @@ from hyperleg_design.robot import masses
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
 
-LEG_LINKS = ("hip_yaw_carrier", "hip_roll_carrier", "thigh", "shank", "ankle_cross", "foot", "toe_plate")
+LEG_LINKS = (
+    "hip_yaw_carrier",
+    "hip_roll_carrier",
+    "thigh",
+    "shank",
+    "ankle_cross",
+    "foot",
+    "toe_plate",
+)
 """Links of a leg, one behind each joint of `names.JOINTS`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Inertial:
-    """Inertial of a link in its own frame (at its joint, axes of the pelvis in the zero posture)."""
+    """Inertial of a link in its own frame (at its joint, axes of the pelvis in the zero
+    posture).
+    """
 
     mass: np.ndarray
     """[kg] `(...)`"""
@@ -48,7 +58,15 @@ def inertials(design: Design, side: float = 1.0) -> dict[str, Inertial]:
     zero = np.zeros(3)
     found = {
         "pelvis": _with_housed(
-            design, "pelvis", table, _declared(table.pelvis - _change(table, "pelvis", 2), design.pelvis.com, design.pelvis.gyration), 1.0
+            design,
+            "pelvis",
+            table,
+            _declared(
+                table.pelvis - _change(table, "pelvis", 2),
+                design.pelvis.com,
+                design.pelvis.gyration,
+            ),
+            1.0,
         ),
         "hip_yaw_carrier": _declared(design.hip.yaw_carrier_mass, zero, carrier),
         "hip_roll_carrier": _declared(design.hip.roll_carrier_mass, zero, carrier),
@@ -61,7 +79,11 @@ def inertials(design: Design, side: float = 1.0) -> dict[str, Inertial]:
         body = _declared(getattr(table, name) - _change(table, name, 1) - kept, com, gyration)
         found[name] = _with_housed(design, name, table, body, side)
     mirror = np.array([1.0, side, 1.0])
-    found["ankle_cross"] = _declared(design.foot.cross_mass, zero, np.asarray(design.foot.cross_gyration, float)[..., None] * np.ones(3))
+    found["ankle_cross"] = _declared(
+        design.foot.cross_mass,
+        zero,
+        np.asarray(design.foot.cross_gyration, float)[..., None] * np.ones(3),
+    )
     found["foot"] = _declared(foot_link, design.foot.com * mirror, design.foot.gyration)
     found["toe_plate"] = _declared(table.toe, design.toe.com * mirror, design.toe.gyration)
     return found
@@ -75,22 +97,32 @@ def _declared(mass: Any, com: Any, gyration: Any) -> Inertial:
     mass = np.asarray(mass, float)
     diagonal = mass[..., None] * np.asarray(gyration, float) ** 2
     com = np.asarray(com, float)
-    return Inertial(mass, np.broadcast_to(com, np.broadcast_shapes(com.shape, diagonal.shape)), diagonal[..., None] * np.eye(3))
+    return Inertial(
+        mass,
+        np.broadcast_to(com, np.broadcast_shapes(com.shape, diagonal.shape)),
+        diagonal[..., None] * np.eye(3),
+    )
 
 
 def _change(table: masses.MassTable, segment: str, legs: int) -> Any:
     return sum((h.change * legs for h in table.housed if h.segment == segment), start=np.zeros(()))
 
 
-def _with_housed(design: Design, segment: str, table: masses.MassTable, body: Inertial, side: float) -> Inertial:
-    """The body with the changes of housed actuators added as points; the same body where nothing changed."""
+def _with_housed(
+    design: Design, segment: str, table: masses.MassTable, body: Inertial, side: float
+) -> Inertial:
+    """The body with the changes of housed actuators added as points; the same body where nothing
+    changed.
+    """
     points: list[tuple[Any, np.ndarray]] = []
     for housed in table.housed:
         if housed.segment != segment or not np.any(housed.change):
             continue
         if segment == "pelvis":
             half = np.asarray(design.hip.spacing, float) / 2
-            points += [(housed.change, _vector(0 * half, sign * half, 0 * half)) for sign in (1, -1)]
+            points += [
+                (housed.change, _vector(0 * half, sign * half, 0 * half)) for sign in (1, -1)
+            ]
         else:
             depth = housed.fraction * getattr(design, segment).length
             points.append((housed.change, _vector(0.0 * depth, 0.0 * depth, -depth)))
@@ -99,19 +131,34 @@ def _with_housed(design: Design, segment: str, table: masses.MassTable, body: In
     mass = body.mass + sum(np.asarray(m) for m, _ in points)
     moment = body.mass[..., None] * body.com + sum(np.asarray(m)[..., None] * p for m, p in points)
     com = moment / mass[..., None]
-    inertia = body.inertia + _shifted(body.mass, body.com - com) + sum(_shifted(np.asarray(m), p - com) for m, p in points)
+    inertia = (
+        body.inertia
+        + _shifted(body.mass, body.com - com)
+        + sum(_shifted(np.asarray(m), p - com) for m, p in points)
+    )
     principal = np.linalg.eigvalsh(inertia)
-    bad = (principal[..., 0] <= 0) | (principal[..., 2] > principal[..., 0] + principal[..., 1] + 1e-12)
+    bad = (principal[..., 0] <= 0) | (
+        principal[..., 2] > principal[..., 0] + principal[..., 1] + 1e-12
+    )
     if np.any(bad):
         field = f"{segment}.gyration_fraction" if segment != "pelvis" else "pelvis.gyration"
-        remedy = "is too small for the actuators that leave this segment: its inertia would be no body's"
+        remedy = (
+            "is too small for the actuators that leave this segment: its inertia would be no body's"
+        )
         raise InputError(design.source or design.name, field, None, remedy, bad=bad)
-    # a body that nothing joined or left keeps its declared numbers to the bit, whatever else is in the batch
+    # a body that nothing joined or left keeps its declared numbers to the bit, whatever else is in
+    # the batch
     changed = np.any(np.stack(np.broadcast_arrays(*(np.asarray(m) != 0 for m, _ in points))), 0)
-    return Inertial(mass, np.where(changed[..., None], com, body.com), np.where(changed[..., None, None], inertia, body.inertia))
+    return Inertial(
+        mass,
+        np.where(changed[..., None], com, body.com),
+        np.where(changed[..., None, None], inertia, body.inertia),
+    )
 
 
 def _shifted(mass: Any, offset: np.ndarray) -> np.ndarray:
     """Inertia of a point mass about a point `offset` away, `(..., 3, 3)`."""
     squared = np.sum(offset**2, -1)[..., None, None] * np.eye(3)
-    return np.asarray(mass)[..., None, None] * (squared - offset[..., :, None] * offset[..., None, :])
+    return np.asarray(mass)[..., None, None] * (
+        squared - offset[..., :, None] * offset[..., None, :]
+    )

@@ -1,15 +1,17 @@
-"""Posture-dependent cooperative actuation: motor positions from joint positions, and their exact gradient.
+"""Posture-dependent cooperative actuation: motor positions from joint positions, and their exact
+gradient.
 
-The paper prints reductions in two postures; what lies between is an assumption of ours. Each motor below the hip turns a
-pulley on the knee axis by a belt. The pulley's crank drives the ankle through a four-bar along the shank; the toe motor's
-goes on through a second four-bar along the foot, from the ankle axis to the toe axis:
+The paper prints reductions in two postures; what lies between is an assumption of ours. Each motor
+below the hip turns a pulley on the knee axis by a belt. The pulley's crank drives the ankle through
+a four-bar along the shank; the toe motor's goes on through a second four-bar along the foot, from
+the ankle axis to the toe axis:
 
     motor_position = K (-knee + f(ankle pitch) +- k ankle roll)         the ankle motors
     motor_position = K (-knee + g(ankle pitch + h(toe)))                the toe motor
 
-with K the knee reduction and f, g, h the crank angles of four-bars. Lever length and phase of each are solved so that the
-printed reductions hold exactly in both postures. `joint_from_motor` is the gradient of these positions, so the work
-around any closed path of postures is zero.
+with K the knee reduction and f, g, h the crank angles of four-bars. Lever length and phase of each
+are solved so that the printed reductions hold exactly in both postures. `joint_from_motor` is the
+gradient of these positions, so the work around any closed path of postures is zero.
 """
 
 from __future__ import annotations
@@ -32,10 +34,12 @@ RATIOS = (0.02, 50.0)
 
 @dataclass(frozen=True)
 class FourBar:
-    """A four-bar linkage: the turn of its crank as a function of the turn of its lever, both zero when assembled.
+    """A four-bar linkage: the turn of its crank as a function of the turn of its lever, both zero
+    when assembled.
 
-    Angles are measured from the perpendicular to the ground bar. Past the ends of `turns` the ratio stays what it is
-    there, which keeps the map invertible outside the range that a real linkage would have.
+    Angles are measured from the perpendicular to the ground bar. Past the ends of `turns` the ratio
+    stays what it is there, which keeps the map invertible outside the range that a real linkage
+    would have.
     """
 
     crank: float
@@ -74,7 +78,16 @@ class FourBar:
 
     @classmethod
     def calibrated(
-        cls, at_rest: float, at_turn: float, turn: float, *, crank: float, ground: float, turns: tuple[float, float], crank_start: float, field: str
+        cls,
+        at_rest: float,
+        at_turn: float,
+        turn: float,
+        *,
+        crank: float,
+        ground: float,
+        turns: tuple[float, float],
+        crank_start: float,
+        field: str,
     ) -> FourBar:
         """The four-bar whose ratio is `at_rest` when assembled and `at_turn` at the lever's `turn`.
 
@@ -84,26 +97,44 @@ class FourBar:
         from scipy.optimize import least_squares
 
         def made(unknown: np.ndarray) -> FourBar:
-            return cls(crank, float(np.exp(np.clip(unknown[0], -9, 9))) * crank, ground, crank_start, float(unknown[1]), turns)
+            return cls(
+                crank,
+                float(np.exp(np.clip(unknown[0], -9, 9))) * crank,
+                ground,
+                crank_start,
+                float(unknown[1]),
+                turns,
+            )
 
         def misfit(unknown: np.ndarray) -> np.ndarray:
             bar = made(unknown)
             with np.errstate(invalid="ignore"):
-                ratios = np.array([bar(np.array(0.0))[1] - at_rest, bar(np.array(turn))[1] - at_turn])
+                ratios = np.array(
+                    [bar(np.array(0.0))[1] - at_rest, bar(np.array(turn))[1] - at_turn]
+                )
             return np.where(np.isfinite(ratios), ratios, 10.0)
 
         low, high = RATIOS
-        if low < min(at_rest, at_turn) and max(at_rest, at_turn) < high and turns[0] <= turn <= turns[1]:
-            best = least_squares(misfit, np.array([np.log(at_rest), 0.0]), xtol=1e-15, ftol=1e-15, gtol=1e-15)
+        if (
+            low < min(at_rest, at_turn)
+            and max(at_rest, at_turn) < high
+            and turns[0] <= turn <= turns[1]
+        ):
+            best = least_squares(
+                misfit, np.array([np.log(at_rest), 0.0]), xtol=1e-15, ftol=1e-15, gtol=1e-15
+            )
             bar = made(best.x)
             with np.errstate(invalid="ignore"):
                 sampled = bar(np.linspace(*turns, 181))[1]
             if np.max(np.abs(best.fun)) < 1e-9 and np.all((low < sampled) & (sampled < high)):
                 return bar
         raise InputError(
-            "transmission.linkage", field, round(float(np.rad2deg(turn)), 6),
-            f"no four-bar turns the ratio {at_rest:.4g} into {at_turn:.4g} at that angle; change the walking posture or the bars",
-        )  # fmt: skip
+            "transmission.linkage",
+            field,
+            round(float(np.rad2deg(turn)), 6),
+            f"no four-bar turns the ratio {at_rest:.4g} into {at_turn:.4g} at that angle; change "
+            f"the walking posture or the bars",
+        )
 
 
 def _range(design: Design, joint: str) -> tuple[float, float]:
@@ -111,9 +142,16 @@ def _range(design: Design, joint: str) -> tuple[float, float]:
     return float(np.deg2rad(limits.lower_deg)), float(np.deg2rad(limits.upper_deg))
 
 
-def _distance_squared(a: float, c: float, d: float, crank_angle: float, lever_angle: float) -> float:
+def _distance_squared(
+    a: float, c: float, d: float, crank_angle: float, lever_angle: float
+) -> float:
     return float(
-        a**2 + c**2 + d**2 - 2 * a * c * np.cos(crank_angle - lever_angle) + 2 * a * d * np.sin(crank_angle) - 2 * c * d * np.sin(lever_angle)
+        a**2
+        + c**2
+        + d**2
+        - 2 * a * c * np.cos(crank_angle - lever_angle)
+        + 2 * a * d * np.sin(crank_angle)
+        - 2 * c * d * np.sin(lever_angle)
     )
 
 
@@ -148,12 +186,18 @@ class LinkageModel:
             InputError: a batch, or reductions that no such linkage gives.
         """
         if design.batch_shape:
-            raise InputError(design.name, "transmission.linkage", None, "is made for one robot at a time; take one of the batch")
+            raise InputError(
+                design.name,
+                "transmission.linkage",
+                None,
+                "is made for one robot at a time; take one of the batch",
+            )
         reductions = {}
         for posture in POSTURES:
             printed, scale = getattr(design.transmission, posture), design.transmission.scale
             reductions[posture] = {
-                n: getattr(printed, n) * getattr(scale, n) for n in ("knee", "ankle_pitch", "ankle_roll", "toe_ankle_pitch", "toe")
+                n: getattr(printed, n) * getattr(scale, n)
+                for n in ("knee", "ankle_pitch", "ankle_roll", "toe_ankle_pitch", "toe")
             }
         walking, standing = reductions["walking"], reductions["standing"]
         for name in ("knee", "ankle_roll"):
@@ -162,54 +206,96 @@ class LinkageModel:
                     design.name,
                     f"transmission.walking.{name}",
                     walking[name],
-                    f"must equal the standing one, {standing[name]}: a belt's ratio does not change",
+                    f"must equal the standing one, {standing[name]}: a belt's ratio does not "
+                    f"change",
                 )
         if not standing["toe_ankle_pitch"] or not walking["toe_ankle_pitch"]:
             raise InputError(
-                design.name, "transmission.scale.toe_ankle_pitch", 0.0, "decouples the toe from the ankle; the linkage model has no such toe"
+                design.name,
+                "transmission.scale.toe_ankle_pitch",
+                0.0,
+                "decouples the toe from the ankle; the linkage model has no such toe",
             )
         assumed = design.transmission.linkage
         knee = standing["knee"]
-        ankle_turn, toe_turn = float(np.deg2rad(assumed.walking_ankle_pitch_deg)), float(np.deg2rad(assumed.walking_toe_deg))
+        ankle_turn, toe_turn = (
+            float(np.deg2rad(assumed.walking_ankle_pitch_deg)),
+            float(np.deg2rad(assumed.walking_toe_deg)),
+        )
         crank, idler = assumed.crank_length, float(np.deg2rad(assumed.idler_limit_deg))
         ankle = FourBar.calibrated(
-            standing["ankle_pitch"] / knee, walking["ankle_pitch"] / knee, ankle_turn,
-            crank=crank, ground=assumed.ankle_ground_length, turns=_range(design, "ankle_pitch"), crank_start=0.0, field="walking_ankle_pitch_deg",
-        )  # fmt: skip
+            standing["ankle_pitch"] / knee,
+            walking["ankle_pitch"] / knee,
+            ankle_turn,
+            crank=crank,
+            ground=assumed.ankle_ground_length,
+            turns=_range(design, "ankle_pitch"),
+            crank_start=0.0,
+            field="walking_ankle_pitch_deg",
+        )
         foot = FourBar.calibrated(
-            standing["toe"] / standing["toe_ankle_pitch"], walking["toe"] / walking["toe_ankle_pitch"], toe_turn,
-            crank=crank, ground=assumed.toe_ground_length, turns=_range(design, "toe"),
-            crank_start=float(np.deg2rad(assumed.toe_crank_deg)), field="walking_toe_deg",
-        )  # fmt: skip
+            standing["toe"] / standing["toe_ankle_pitch"],
+            walking["toe"] / walking["toe_ankle_pitch"],
+            toe_turn,
+            crank=crank,
+            ground=assumed.toe_ground_length,
+            turns=_range(design, "toe"),
+            crank_start=float(np.deg2rad(assumed.toe_crank_deg)),
+            field="walking_toe_deg",
+        )
         shank = FourBar.calibrated(
-            standing["toe_ankle_pitch"] / knee, walking["toe_ankle_pitch"] / knee, float(ankle_turn + foot(toe_turn)[0]),
-            crank=crank, ground=assumed.ankle_ground_length, turns=(-idler, idler), crank_start=0.0, field="walking_toe_deg",
-        )  # fmt: skip
+            standing["toe_ankle_pitch"] / knee,
+            walking["toe_ankle_pitch"] / knee,
+            float(ankle_turn + foot(toe_turn)[0]),
+            crank=crank,
+            ground=assumed.ankle_ground_length,
+            turns=(-idler, idler),
+            crank_start=0.0,
+            field="walking_toe_deg",
+        )
         gears = transmission.gear_ratios(design)
         return cls(
-            gears[:3], gears[3:], knee, standing["ankle_roll"], ankle, shank, foot,
-            len(transmission.joint_names(design)), len(transmission.motor_names(design)),
-        )  # fmt: skip
+            gears[:3],
+            gears[3:],
+            knee,
+            standing["ankle_roll"],
+            ankle,
+            shank,
+            foot,
+            len(transmission.joint_names(design)),
+            len(transmission.motor_names(design)),
+        )
 
     def _padded(self, position: np.ndarray) -> np.ndarray:
         position = np.asarray(position, float)
         if position.shape[-1] != self.joints:
-            raise ValueError(f"joint positions have shape {position.shape}; the last axis must be {self.joints}")
+            raise ValueError(
+                f"joint positions have shape {position.shape}; the last axis must be {self.joints}"
+            )
         if self.joints == 7:
             return position
         return np.concatenate([position, np.zeros((*position.shape[:-1], 1))], -1)
 
     def motor_position(self, position: np.ndarray) -> np.ndarray:
-        """Motor angles [rad] `(..., motors)` at joint angles [rad] `(..., joints)`; zero at zero."""
+        """Motor angles [rad] `(..., motors)` at joint angles [rad] `(..., joints)`; zero at
+        zero.
+        """
         q = self._padded(position)
         knee, pitch, roll = q[..., 3], q[..., 4], self.ankle_roll / self.knee * q[..., 5]
         pulley = self.ankle(pitch)[0]
         idler = pitch + self.toe_foot(q[..., 6])[0]
-        below = np.stack([-knee, -knee + pulley + roll, -knee + pulley - roll, -knee + self.toe_shank(idler)[0]], -1)
-        return np.concatenate([self.hip * q[..., :3], self.knee * self.gears * below], -1)[..., : self.motors]
+        below = np.stack(
+            [-knee, -knee + pulley + roll, -knee + pulley - roll, -knee + self.toe_shank(idler)[0]],
+            -1,
+        )
+        return np.concatenate([self.hip * q[..., :3], self.knee * self.gears * below], -1)[
+            ..., : self.motors
+        ]
 
     def joint_from_motor(self, position: np.ndarray) -> np.ndarray:
-        """M at joint angles, the transposed gradient of `motor_position`, `(..., joints)` -> `(..., joints, motors)` [-]."""
+        """M at joint angles, the transposed gradient of `motor_position`, `(..., joints)` -> `(...,
+        joints, motors)` [-].
+        """
         q = self._padded(position)
         matrix = np.zeros((*q.shape[:-1], 7, 7))
         matrix[..., range(3), range(3)] = self.hip
@@ -225,7 +311,9 @@ class LinkageModel:
         return matrix[..., : self.joints, : self.motors]
 
     def walking_posture(self, design: Design) -> np.ndarray:
-        """Joint angles at which the walking reductions hold [rad] `(joints,)`; those that do not matter are zero."""
+        """Joint angles at which the walking reductions hold [rad] `(joints,)`; those that do not
+        matter are zero.
+        """
         q = np.zeros(7)
         q[4] = np.deg2rad(design.transmission.linkage.walking_ankle_pitch_deg)
         q[6] = np.deg2rad(design.transmission.linkage.walking_toe_deg)

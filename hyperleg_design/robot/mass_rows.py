@@ -36,7 +36,8 @@ class MassRow:
     mass: float
     """Of one [kg]."""
     com: np.ndarray
-    """Centre of mass [m] `(3,)`: of a link or segment from its upper joint, of leg and robot from the pelvis's origin."""
+    """Centre of mass [m] `(3,)`: of a link or segment from its upper joint, of leg and robot from
+    the pelvis's origin."""
     principal: np.ndarray
     """Principal moments of inertia about the centre of mass, smallest first [kg m^2] `(3,)`."""
 
@@ -48,14 +49,25 @@ def mass_rows(design: Design) -> list[MassRow]:
         InputError: a batch of designs.
     """
     tree = build_tree(design)
-    places = {name: position for name, (_, position) in link_poses(tree).items()}  # frames are parallel in the zero posture
+    places = {
+        name: position for name, (_, position) in link_poses(tree).items()
+    }  # frames are parallel in the zero posture
     left = [link for link in tree.links if link.name.startswith("left_")]
 
     def row(kind: str, name: str, count: int, links: Iterable[Link], origin: np.ndarray) -> MassRow:
-        return MassRow(kind, name, count, *_together([(link, places[link.name] - origin) for link in links]))
+        return MassRow(
+            kind, name, count, *_together([(link, places[link.name] - origin) for link in links])
+        )
 
     rows = [
-        row("segment", name, 1 if name == "pelvis" else 2, [tree.link(n) for n in links], places[links[0]]) for name, links in SEGMENT_LINKS.items()
+        row(
+            "segment",
+            name,
+            1 if name == "pelvis" else 2,
+            [tree.link(n) for n in links],
+            places[links[0]],
+        )
+        for name, links in SEGMENT_LINKS.items()
     ]
     rows.append(row("leg", "leg", 2, left, np.zeros(3)))
     rows.append(row("robot", "robot", 1, tree.links, np.zeros(3)))

@@ -1,9 +1,9 @@
 """Masses that follow from the choice of motors, gears and lengths.
 
-Law `components`: a segment weighs what the design declares for its reference build, plus the actuators it houses now,
-less those it housed then, and its structure (the rest) grows in proportion to the segment's length.
-An actuator weighs its motor plus a gear in proportion to the gear's peak output torque. Another law is one function,
-registered with `mass_law`.
+Law `components`: a segment weighs what the design declares for its reference build, plus the
+actuators it houses now, less those it housed then, and its structure (the rest) grows in proportion
+to the segment's length. An actuator weighs its motor plus a gear in proportion to the gear's peak
+output torque. Another law is one function, registered with `mass_law`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,14 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
     from hyperleg_design.robot.sections import Actuator
 
-_REFERENCE_PART = {"hip_yaw": "hip", "hip_roll": "hip", "hip_pitch": "hip", "knee": "knee", "ankle": "ankle", "toe": "toe"}
+_REFERENCE_PART = {
+    "hip_yaw": "hip",
+    "hip_roll": "hip",
+    "hip_pitch": "hip",
+    "knee": "knee",
+    "ankle": "ankle",
+    "toe": "toe",
+}
 """Part of the reference build that each actuator stands for."""
 
 
@@ -32,7 +39,8 @@ class HousedMass:
 
     segment: str
     fraction: Any
-    """Where along thigh or shank, over the length from the upper joint [-], `(...)`; the pelvis has it at the hip."""
+    """Where along thigh or shank, over the length from the upper joint [-], `(...)`; the pelvis has
+    it at the hip."""
     change: Any
     """Against the reference build [kg], `(...)`."""
 
@@ -83,7 +91,12 @@ def mass_table(design: Design) -> MassTable:
         InputError: no such law.
     """
     if design.masses.law not in _LAWS:
-        raise InputError(design.source or design.name, "masses.law", design.masses.law, f"expects one of {', '.join(sorted(_LAWS))}")
+        raise InputError(
+            design.source or design.name,
+            "masses.law",
+            design.masses.law,
+            f"expects one of {', '.join(sorted(_LAWS))}",
+        )
     return _LAWS[design.masses.law](design)
 
 
@@ -102,18 +115,27 @@ def built_mass(design: Design, actuator: Actuator) -> Any:
 def reference_mass(design: Design, name: str) -> Any:
     """Mass of an actuator in the reference build [kg]; `name` as in `Actuators`."""
     part = _REFERENCE_PART[name]
-    motor, gear = getattr(design.reference, f"{part}_motor"), getattr(design.reference, f"{part}_gear")
+    motor, gear = (
+        getattr(design.reference, f"{part}_motor"),
+        getattr(design.reference, f"{part}_gear"),
+    )
     return actuator_mass(motor, gear, design.masses.gear_mass_per_torque)
 
 
 @mass_law("components")
 def components(design: Design) -> MassTable:
-    """Declared masses, corrected for other actuators, places and lengths than the reference build's."""
+    """Declared masses, corrected for other actuators, places and lengths than the reference
+    build's.
+    """
     housed: list[HousedMass] = []
     load: dict[str, Any] = dict.fromkeys(SEGMENTS, 0.0)
     for name in ACTUATOR_OF_MOTOR:  # both ankle motors
         before = reference_mass(design, name)
-        after = built_mass(design, getattr(design.actuators, name)) if design.actuators.toe_installed or name != "toe" else 0.0
+        after = (
+            built_mass(design, getattr(design.actuators, name))
+            if design.actuators.toe_installed or name != "toe"
+            else 0.0
+        )
         if name == "toe":
             after = after + design.masses.thigh_ballast
         housed += _moved(design, name, before, after)
@@ -124,7 +146,9 @@ def components(design: Design) -> MassTable:
 
 @mass_law("fixed")
 def fixed(design: Design) -> MassTable:
-    """The declared masses, whatever motors and lengths; a missing toe motor still counts, ballast as declared."""
+    """The declared masses, whatever motors and lengths; a missing toe motor still counts, ballast
+    as declared.
+    """
     lost = 0.0 if design.actuators.toe_installed else reference_mass(design, "toe")
     return _table(design, _moved(design, "toe", lost, design.masses.thigh_ballast), None)
 
@@ -137,13 +161,22 @@ def _legs(segment: str) -> int:
 def _moved(design: Design, name: str, before: Any, after: Any) -> list[HousedMass]:
     """Changes where an actuator was and where it is; one change where these are the same."""
     was, now = getattr(design.reference.places, name), getattr(design.actuators, name)
-    if was.housed_in == now.housed_in and np.array_equal(was.position_fraction, now.position_fraction):
+    if was.housed_in == now.housed_in and np.array_equal(
+        was.position_fraction, now.position_fraction
+    ):
         return [HousedMass(now.housed_in, now.position_fraction, after - before)]
-    return [HousedMass(was.housed_in, was.position_fraction, -before), HousedMass(now.housed_in, now.position_fraction, after)]
+    return [
+        HousedMass(was.housed_in, was.position_fraction, -before),
+        HousedMass(now.housed_in, now.position_fraction, after),
+    ]
 
 
-def _table(design: Design, housed: Iterable[HousedMass], load: Mapping[str, Any] | None) -> MassTable:
-    """Masses from changes and from the actuators in the reference build; no growth with length without the latter."""
+def _table(
+    design: Design, housed: Iterable[HousedMass], load: Mapping[str, Any] | None
+) -> MassTable:
+    """Masses from changes and from the actuators in the reference build; no growth with length
+    without the latter.
+    """
     housed = tuple(housed)
     change: dict[str, Any] = dict.fromkeys(SEGMENTS, 0.0)
     for part in housed:
@@ -158,7 +191,13 @@ def _table(design: Design, housed: Iterable[HousedMass], load: Mapping[str, Any]
             grown = grown * (part.length / getattr(design.reference, f"{name}_length"))
         structure[name] = grown
         mass[name] = grown + (carried + change[name])
-    return MassTable(foot=np.asarray(design.foot.mass)[()], toe=np.asarray(design.toe.mass)[()], housed=housed, structure=structure, **mass)
+    return MassTable(
+        foot=np.asarray(design.foot.mass)[()],
+        toe=np.asarray(design.toe.mass)[()],
+        housed=housed,
+        structure=structure,
+        **mass,
+    )
 
 
 def check_masses(design: Design, where: str) -> None:
@@ -175,12 +214,27 @@ def check_masses(design: Design, where: str) -> None:
             raise InputError(where, f"{segment}.mass", float(np.min(mass)), remedy, bad=mass <= 0)
         hollow = np.asarray(table.structure.get(segment, 1.0)) <= 0
         if np.any(hollow):
-            remedy = "is less than the actuators that the reference build houses there; raise it or lower masses.gear_mass_per_torque"
-            raise InputError(where, f"{segment}.mass", float(np.min(design[f"{segment}.mass"])), remedy, bad=hollow)
+            remedy = (
+                "is less than the actuators that the reference build houses there; raise it "
+                "or lower masses.gear_mass_per_torque"
+            )
+            raise InputError(
+                where,
+                f"{segment}.mass",
+                float(np.min(design[f"{segment}.mass"])),
+                remedy,
+                bad=hollow,
+            )
     carriers = design.hip.yaw_carrier_mass + design.hip.roll_carrier_mass
     empty = np.asarray(table.thigh) <= carriers
     if np.any(empty):
-        raise InputError(where, "thigh.mass", float(np.min(table.thigh)), "leaves nothing for the thigh below the hip carriers", bad=empty)
+        raise InputError(
+            where,
+            "thigh.mass",
+            float(np.min(table.thigh)),
+            "leaves nothing for the thigh below the hip carriers",
+            bad=empty,
+        )
 
 
 def check_printed(design: Design, where: str) -> None:
@@ -194,12 +248,25 @@ def check_printed(design: Design, where: str) -> None:
         printed = getattr(design.masses, field)
         wrong = np.asarray((printed != 0) & (np.abs(found - printed) > 1e-6))
         if np.any(wrong):
-            printed, found = (np.broadcast_to(v, wrong.shape)[wrong].flat[0] for v in (printed, found))
-            raise InputError(where, f"masses.{field}", float(printed), f"the declared segments add up to {found:.6g} kg; correct one or the other")
+            printed, found = (
+                np.broadcast_to(v, wrong.shape)[wrong].flat[0] for v in (printed, found)
+            )
+            raise InputError(
+                where,
+                f"masses.{field}",
+                float(printed),
+                f"the declared segments add up to {found:.6g} kg; correct one or the other",
+            )
 
 
 def lapsed(design: Design, values: Iterable[str]) -> dict[str, float]:
-    """Printed sums that no longer hold when these leaves are replaced, each set to 0, which means no check."""
+    """Printed sums that no longer hold when these leaves are replaced, each set to 0, which means
+    no check.
+    """
     leg = {f"{segment}.mass" for segment in SEGMENTS[1:]}
     parts = {"masses.expected_leg": leg, "masses.expected_total": leg | {"pelvis.mass"}}
-    return {field: 0.0 for field, masses in parts.items() if masses & set(values) and field not in values and np.any(design[field])}
+    return {
+        field: 0.0
+        for field, masses in parts.items()
+        if masses & set(values) and field not in values and np.any(design[field])
+    }

@@ -1,8 +1,10 @@
-"""From a design to MuJoCo: the URDF's tree, a floating base, sole pads, sensors, and motors on fixed tendons.
+"""From a design to MuJoCo: the URDF's tree, a floating base, sole pads, sensors, and motors on
+fixed tendons.
 
-Each motor is one fixed tendon whose coefficients are that motor's column of `joint_from_motor`. Torque on the tendon then
-reaches the joints as M tau_motor, the tendon's velocity is the motor's, and its `armature`, the rotor inertia, appears at
-the joints as M diag(J) M^T, off-diagonal terms included.
+Each motor is one fixed tendon whose coefficients are that motor's column of `joint_from_motor`.
+Torque on the tendon then reaches the joints as M tau_motor, the tendon's velocity is the motor's,
+and its `armature`, the rotor inertia, appears at the joints as M diag(J) M^T, off-diagonal terms
+included.
 """
 
 from __future__ import annotations
@@ -39,7 +41,8 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
 
     Args:
         design: the robot.
-        friction: joint friction (Coulomb and viscous) by MuJoCo; leave it out where an actuator model brings its own.
+        friction: joint friction (Coulomb and viscous) by MuJoCo; leave it out where an actuator
+            model brings its own.
         floor: add a floor and a light.
 
     Raises:
@@ -59,16 +62,26 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
     for joint in tree.moving:
         made = spec.joint(joint.name)
         made.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE
-        made.damping = [joint.viscous if friction else 0.0, 0.0, 0.0] if np.ndim(made.damping) else (joint.viscous if friction else 0.0)
+        made.damping = (
+            [joint.viscous if friction else 0.0, 0.0, 0.0]
+            if np.ndim(made.damping)
+            else (joint.viscous if friction else 0.0)
+        )
         made.frictionloss = joint.coulomb if friction else 0.0
         made.armature = 0.0
     _add_drives(spec, design)
     _add_sensors(spec, design, tree)
     if floor:
         spec.worldbody.add_geom(
-            name=FLOOR, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], contype=1, conaffinity=0, friction=_friction(design),
-            solref=[design.contact.time_constant, design.contact.damping_ratio], rgba=[0.93, 0.93, 0.91, 1],
-        )  # fmt: skip
+            name=FLOOR,
+            type=mujoco.mjtGeom.mjGEOM_PLANE,
+            size=[0, 0, 1],
+            contype=1,
+            conaffinity=0,
+            friction=_friction(design),
+            solref=[design.contact.time_constant, design.contact.damping_ratio],
+            rgba=[0.93, 0.93, 0.91, 1],
+        )
         spec.worldbody.add_light(pos=[1, 1, 4], dir=[-0.2, -0.2, -1], castshadow=False)
     _add_stand(spec, tree)
     return spec
@@ -115,8 +128,17 @@ def _dress_geoms(spec: mujoco.MjSpec, design: Design, tree: Tree) -> None:
                 colliding += 1
         if link.pads:
             places = np.array([p.position for p in link.pads])
-            low, high = places.min(0) - 1.5 * design.contact.pad_radius, places.max(0) + 1.5 * design.contact.pad_radius
-            body.add_site(name=f"{link.name}_sole", type=mujoco.mjtGeom.mjGEOM_BOX, pos=(low + high) / 2, size=(high - low) / 2, group=5)
+            low, high = (
+                places.min(0) - 1.5 * design.contact.pad_radius,
+                places.max(0) + 1.5 * design.contact.pad_radius,
+            )
+            body.add_site(
+                name=f"{link.name}_sole",
+                type=mujoco.mjtGeom.mjGEOM_BOX,
+                pos=(low + high) / 2,
+                size=(high - low) / 2,
+                group=5,
+            )
 
 
 def _add_drives(spec: mujoco.MjSpec, design: Design) -> None:
@@ -127,14 +149,20 @@ def _add_drives(spec: mujoco.MjSpec, design: Design) -> None:
     constants = motor_arrays(design)
     for side in SIDES:
         for column, motor in enumerate(names):
-            tendon = spec.add_tendon(name=f"{side}_{motor}", armature=constants.rotor_inertia[column])
+            tendon = spec.add_tendon(
+                name=f"{side}_{motor}", armature=constants.rotor_inertia[column]
+            )
             for row, joint in enumerate(joints):
                 if matrix[row, column]:
                     tendon.wrap_joint(f"{side}_{joint}", matrix[row, column])
             peak = constants.peak_torque[column]
             spec.add_actuator(
-                name=f"{side}_{motor}", target=f"{side}_{motor}", trntype=mujoco.mjtTrn.mjTRN_TENDON, ctrllimited=True, ctrlrange=[-peak, peak]
-            )  # fmt: skip
+                name=f"{side}_{motor}",
+                target=f"{side}_{motor}",
+                trntype=mujoco.mjtTrn.mjTRN_TENDON,
+                ctrllimited=True,
+                ctrlrange=[-peak, peak],
+            )
 
 
 def _add_sensors(spec: mujoco.MjSpec, design: Design, tree: Tree) -> None:
@@ -142,20 +170,51 @@ def _add_sensors(spec: mujoco.MjSpec, design: Design, tree: Tree) -> None:
 
     kind, place = mujoco.mjtSensor, mujoco.mjtObj
     spec.body("pelvis").add_site(name="imu", pos=[0.0, 0.0, 0.0], group=5)
-    for name, sensor in (("gyro", kind.mjSENS_GYRO), ("accelerometer", kind.mjSENS_ACCELEROMETER), ("velocimeter", kind.mjSENS_VELOCIMETER)):
+    for name, sensor in (
+        ("gyro", kind.mjSENS_GYRO),
+        ("accelerometer", kind.mjSENS_ACCELEROMETER),
+        ("velocimeter", kind.mjSENS_VELOCIMETER),
+    ):
         spec.add_sensor(name=name, type=sensor, objtype=place.mjOBJ_SITE, objname="imu")
-    spec.add_sensor(name="base_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=place.mjOBJ_SITE, objname="imu")
+    spec.add_sensor(
+        name="base_orientation", type=kind.mjSENS_FRAMEQUAT, objtype=place.mjOBJ_SITE, objname="imu"
+    )
     for joint in tree.moving:
-        spec.add_sensor(name=f"{joint.name}_position", type=kind.mjSENS_JOINTPOS, objtype=place.mjOBJ_JOINT, objname=joint.name)
-        spec.add_sensor(name=f"{joint.name}_velocity", type=kind.mjSENS_JOINTVEL, objtype=place.mjOBJ_JOINT, objname=joint.name)
+        spec.add_sensor(
+            name=f"{joint.name}_position",
+            type=kind.mjSENS_JOINTPOS,
+            objtype=place.mjOBJ_JOINT,
+            objname=joint.name,
+        )
+        spec.add_sensor(
+            name=f"{joint.name}_velocity",
+            type=kind.mjSENS_JOINTVEL,
+            objtype=place.mjOBJ_JOINT,
+            objname=joint.name,
+        )
     for side in SIDES:
         for motor in transmission.motor_names(design):
             name = f"{side}_{motor}"
-            spec.add_sensor(name=f"{name}_motor_velocity", type=kind.mjSENS_TENDONVEL, objtype=place.mjOBJ_TENDON, objname=name)
-            spec.add_sensor(name=f"{name}_motor_torque", type=kind.mjSENS_ACTUATORFRC, objtype=place.mjOBJ_ACTUATOR, objname=name)
+            spec.add_sensor(
+                name=f"{name}_motor_velocity",
+                type=kind.mjSENS_TENDONVEL,
+                objtype=place.mjOBJ_TENDON,
+                objname=name,
+            )
+            spec.add_sensor(
+                name=f"{name}_motor_torque",
+                type=kind.mjSENS_ACTUATORFRC,
+                objtype=place.mjOBJ_ACTUATOR,
+                objname=name,
+            )
     for link in tree.links:
         if link.pads:
-            spec.add_sensor(name=f"{link.name}_load", type=kind.mjSENS_TOUCH, objtype=place.mjOBJ_SITE, objname=f"{link.name}_sole")
+            spec.add_sensor(
+                name=f"{link.name}_load",
+                type=kind.mjSENS_TOUCH,
+                objtype=place.mjOBJ_SITE,
+                objname=f"{link.name}_sole",
+            )
 
 
 def _add_stand(spec: mujoco.MjSpec, tree: Tree) -> None:
@@ -167,14 +226,20 @@ def _add_stand(spec: mujoco.MjSpec, tree: Tree) -> None:
     for joint in tree.moving:
         data.joint(joint.name).qpos = joint.default
     mujoco.mj_kinematics(model, data)
-    lowest = min(float(data.geom(i).xpos[2] - model.geom_size[i, 0]) for i in range(model.ngeom) if model.geom_conaffinity[i] == 1)
+    lowest = min(
+        float(data.geom(i).xpos[2] - model.geom_size[i, 0])
+        for i in range(model.ngeom)
+        if model.geom_conaffinity[i] == 1
+    )
     data.qpos[2] -= lowest
     spec.add_key(name=STAND, qpos=data.qpos.copy())
 
 
 @contextmanager
 def _full_precision() -> Iterator[None]:
-    """MuJoCo writes six digits; its library has a setting for more that the Python interface does not show."""
+    """MuJoCo writes six digits; its library has a setting for more that the Python interface does
+    not show.
+    """
     import mujoco
 
     found = sorted(Path(mujoco.__file__).parent.glob("libmujoco*"))

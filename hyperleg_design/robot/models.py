@@ -1,7 +1,9 @@
-"""Rigid-body dynamics of one robot in Pinocchio, rotor inertia included, and how its states read in MuJoCo.
+"""Rigid-body dynamics of one robot in Pinocchio, rotor inertia included, and how its states read in
+MuJoCo.
 
-Pinocchio's own armature is diagonal; coupled motors reflect a full matrix M diag(J) M^T, which is added here. It does not
-depend on posture, because M is that of a printed posture, so it adds no velocity-dependent term.
+Pinocchio's own armature is diagonal; coupled motors reflect a full matrix M diag(J) M^T, which is
+added here. It does not depend on posture, because M is that of a printed posture, so it adds no
+velocity-dependent term.
 """
 
 from __future__ import annotations
@@ -25,8 +27,9 @@ if TYPE_CHECKING:
 class RigidBodyModel:
     """A floating (or fixed) robot in Pinocchio's coordinates.
 
-    `q` is base position, base quaternion x y z w, then joints left leg first; `v` is base velocity in the base's own
-    frame (linear, angular), then joint velocities. A fixed base has the joints only.
+    `q` is base position, base quaternion x y z w, then joints left leg first; `v` is base velocity
+    in the base's own frame (linear, angular), then joint velocities. A fixed base has the joints
+    only.
     """
 
     design: Design
@@ -73,7 +76,11 @@ class RigidBodyModel:
         """Velocity of a link's origin (linear, then angular, world axes) over `v`, `(6, nv)`."""
         import pinocchio as pin
 
-        return np.array(pin.computeFrameJacobian(self.model, self.data, q, self.model.getFrameId(link), pin.LOCAL_WORLD_ALIGNED))
+        return np.array(
+            pin.computeFrameJacobian(
+                self.model, self.data, q, self.model.getFrameId(link), pin.LOCAL_WORLD_ALIGNED
+            )
+        )
 
     def neutral(self) -> np.ndarray:
         """Zero posture, base at the height at which straight legs touch the floor."""
@@ -86,8 +93,12 @@ class RigidBodyModel:
             q[2] = leg_length(self.design)
         return q
 
-    def to_mujoco(self, q: np.ndarray, v: np.ndarray | None = None, a: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
-        """The same state in MuJoCo's coordinates: quaternion w first, linear velocity and acceleration of the base in the world."""
+    def to_mujoco(
+        self, q: np.ndarray, v: np.ndarray | None = None, a: np.ndarray | None = None
+    ) -> tuple[np.ndarray, ...]:
+        """The same state in MuJoCo's coordinates: quaternion w first, linear velocity and
+        acceleration of the base in the world.
+        """
         state = [q.copy()]
         if self.floating:
             state[0][3:7] = q[[6, 3, 4, 5]]
@@ -132,7 +143,11 @@ def rigid_body_model(design: Design, *, floating: bool = True) -> RigidBodyModel
 
     tree = build_tree(design)
     text = description.urdf(design, tree)
-    model: Any = pin.buildModelFromXML(text, pin.JointModelFreeFlyer()) if floating else pin.buildModelFromXML(text)
+    model: Any = (
+        pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
+        if floating
+        else pin.buildModelFromXML(text)
+    )
     names = [j.name for j in tree.moving]
     own = list(model.names)[2:] if floating else list(model.names)[1:]
     if own != names:

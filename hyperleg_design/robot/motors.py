@@ -1,9 +1,12 @@
-"""The motor catalogue: constants as published, with convention, source and confidence; the rest is computed.
+"""The motor catalogue: constants as published, with convention, source and confidence; the rest is
+computed.
 
-Power constant: Joule heat over squared torque, `Cp = f R / Kt^2` with R line to line and f by the current that Kt divides
-by: 1 for direct current through two phases, 3/4 for the amplitude of a sinusoidal phase current, 3/2 for its rms.
-Stall torque: the DC-motor line `tau = tau_stall (1 - omega / omega_0)`, with `tau_stall = omega_0 / Cp`, because
-`V = R i + Ke omega` and `Ke = Kt` give `R V / (R Ke) = omega_0 Kt^2 / R`.
+Power constant: Joule heat over squared torque, `Cp = f R / Kt^2` with R line to line and f by the
+current that Kt divides
+by: 1 for direct current through two phases, 3/4 for the amplitude of a sinusoidal phase current,
+    3/2 for its rms.
+Stall torque: the DC-motor line `tau = tau_stall (1 - omega / omega_0)`, with `tau_stall = omega_0 /
+Cp`, because `V = R i + Ke omega` and `Ke = Kt` give `R V / (R Ke) = omega_0 Kt^2 / R`.
 """
 
 from __future__ import annotations
@@ -123,16 +126,24 @@ class Motor:
         return self._value("resistance") * (2.0 if self.resistance_convention == "phase" else 1.0)
 
     def power_constant(self, constants: str = "paper") -> float:
-        """Joule heat over squared torque, Cp [W/Nm^2]; a preset's value where the motor has that preset."""
+        """Joule heat over squared torque, Cp [W/Nm^2]; a preset's value where the motor has that
+        preset.
+        """
         preset = self.presets.get(constants)
         if preset is not None:
             return preset["power_constant"].value
-        return _HEAT_FACTOR[self.current_convention] * self.line_resistance / self.torque_constant**2
+        return (
+            _HEAT_FACTOR[self.current_convention] * self.line_resistance / self.torque_constant**2
+        )
 
     def no_load_speed(self, constants: str = "paper") -> float:
         """At nominal voltage [rad/s]."""
         preset = self.presets.get(constants)
-        return preset["no_load_speed"].value if preset is not None else self._value("no_load_speed_rpm") * RPM
+        return (
+            preset["no_load_speed"].value
+            if preset is not None
+            else self._value("no_load_speed_rpm") * RPM
+        )
 
     def peak_torque(self, constants: str = "paper") -> float:
         """[Nm]"""
@@ -145,7 +156,11 @@ class Motor:
 
     def corner_speed(self, constants: str = "paper") -> float:
         """Speed up to which the peak torque is there [rad/s]; 0 where the line never reaches it."""
-        return max(0.0, self.no_load_speed(constants) * (1 - self.peak_torque(constants) / self.stall_torque(constants)))
+        return max(
+            0.0,
+            self.no_load_speed(constants)
+            * (1 - self.peak_torque(constants) / self.stall_torque(constants)),
+        )
 
     def motor_constant(self, constants: str = "paper") -> float:
         """Torque over the root of the heat, Km = Cp^-1/2 [Nm/W^1/2]."""
@@ -162,12 +177,17 @@ class Motor:
     def peak_power(self, constants: str = "paper") -> float:
         """Largest mechanical power inside the envelope [W]."""
         speed = max(self.corner_speed(constants), self.no_load_speed(constants) / 2)
-        return speed * min(self.peak_torque(constants), self.stall_torque(constants) * (1 - speed / self.no_load_speed(constants)))
+        return speed * min(
+            self.peak_torque(constants),
+            self.stall_torque(constants) * (1 - speed / self.no_load_speed(constants)),
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class MotorArrays:
-    """Constants of the seven motors of one leg, batched; every array is `(..., 7)` in the order of `MOTORS`."""
+    """Constants of the seven motors of one leg, batched; every array is `(..., 7)` in the order of
+    `MOTORS`.
+    """
 
     no_load_speed: np.ndarray
     """At the design's bus voltage [rad/s]."""
@@ -193,7 +213,11 @@ def load_motor(path: Path) -> Motor:
     """
     data = read_yaml(path)
     where = short_name(path)
-    _known(data, ("name", "vendor", "product", "kind", "description", "constants", "convention", "presets"), where)
+    _known(
+        data,
+        ("name", "vendor", "product", "kind", "description", "constants", "convention", "presets"),
+        where,
+    )
     for key in ("name", "vendor", "product", "kind", "constants", "convention"):
         if key not in data:
             raise InputError(where, key, None, "is missing")
@@ -201,7 +225,9 @@ def load_motor(path: Path) -> Motor:
         raise InputError(where, "name", data["name"], f"must equal the file's name, {path.stem}")
     convention = data["convention"]
     if not isinstance(convention, dict):
-        raise InputError(where, "convention", convention, "expects a mapping with resistance and current")
+        raise InputError(
+            where, "convention", convention, "expects a mapping with resistance and current"
+        )
     _known(convention, ("resistance", "current", "source", "confidence"), where, "convention.")
     _one_of(convention.get("resistance"), ("line_line", "phase"), where, "convention.resistance")
     _one_of(convention.get("current"), tuple(_HEAT_FACTOR), where, "convention.current")
@@ -224,7 +250,9 @@ def load_motor(path: Path) -> Motor:
         presets=presets,
     )
     if motor.rated_torque > motor._value("peak_torque"):
-        raise InputError(where, "constants.rated_torque", motor.rated_torque, "must not exceed peak_torque")
+        raise InputError(
+            where, "constants.rated_torque", motor.rated_torque, "must not exceed peak_torque"
+        )
     return motor
 
 
@@ -240,7 +268,9 @@ def _one_of(value: Any, choices: tuple[str, ...], where: str, field: str) -> Non
         raise InputError(where, field, value, f"expects one of {', '.join(choices)}")
 
 
-def _constants(data: Any, required: Mapping[str, Rule], optional: Mapping[str, Rule], where: str, path: str) -> dict[str, Constant]:
+def _constants(
+    data: Any, required: Mapping[str, Rule], optional: Mapping[str, Rule], where: str, path: str
+) -> dict[str, Constant]:
     if not isinstance(data, Mapping):
         raise InputError(where, path, data, f"expects a mapping with {', '.join(required)}")
     rules = {**required, **optional}
@@ -253,12 +283,16 @@ def _constants(data: Any, required: Mapping[str, Rule], optional: Mapping[str, R
             continue
         entry = data[key]
         if not isinstance(entry, Mapping) or "value" not in entry:
-            raise InputError(where, f"{path}.{key}", entry, "expects value, label, source and confidence")
+            raise InputError(
+                where, f"{path}.{key}", entry, "expects value, label, source and confidence"
+            )
         _known(entry, ("value", "label", "source", "confidence"), where, f"{path}.{key}.")
         _one_of(entry.get("label"), LABELS, where, f"{path}.{key}.label")
         _one_of(entry.get("confidence"), CONFIDENCES, where, f"{path}.{key}.confidence")
         value = parameters.checked(entry["value"], rule, where, f"{path}.{key}")
-        found[key] = Constant(value, entry["label"], str(entry.get("source", "")), entry["confidence"])
+        found[key] = Constant(
+            value, entry["label"], str(entry.get("source", "")), entry["confidence"]
+        )
     return found
 
 
@@ -280,7 +314,12 @@ def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
     """
     motors = catalogue()
     if name not in motors:
-        raise InputError(where, field, name, parameters.unknown(name, sorted(motors)).replace("such field", "such motor"))
+        raise InputError(
+            where,
+            field,
+            name,
+            parameters.unknown(name, sorted(motors)).replace("such field", "such motor"),
+        )
     return motors[name]
 
 
@@ -294,7 +333,9 @@ def check_names(design: Design, where: str) -> None:
         for name in np.unique(getattr(design.actuators, actuator).motor):
             find_motor(str(name), where, f"actuators.{actuator}.motor")
     for part in ("hip", "knee", "ankle", "toe"):
-        find_motor(str(getattr(design.reference, f"{part}_motor")), where, f"reference.{part}_motor")
+        find_motor(
+            str(getattr(design.reference, f"{part}_motor")), where, f"reference.{part}_motor"
+        )
 
 
 def gather(names: Any, value: Any) -> np.ndarray:
@@ -302,14 +343,18 @@ def gather(names: Any, value: Any) -> np.ndarray:
     if isinstance(names, str):
         return np.asarray(value(find_motor(names)), float)
     unique, inverse = np.unique(np.asarray(names), return_inverse=True)
-    return np.array([value(find_motor(str(n))) for n in unique], float)[inverse].reshape(np.shape(names))
+    return np.array([value(find_motor(str(n))) for n in unique], float)[inverse].reshape(
+        np.shape(names)
+    )
 
 
 def motor_arrays(design: Design) -> MotorArrays:
     """Constants of the seven motors of one leg of a design or batch, each `(..., 7)`."""
     kind = design.electrical.constants
     if isinstance(kind, np.ndarray):
-        raise InputError(design.name, "electrical.constants", kind.tolist(), "cannot differ within a batch")
+        raise InputError(
+            design.name, "electrical.constants", kind.tolist(), "cannot differ within a batch"
+        )
     batch = design.batch_shape
     motors_of = [getattr(design.actuators, a).motor for a in ACTUATOR_OF_MOTOR]
     voltage = np.broadcast_to(np.asarray(design.electrical.voltage_ratio, float), batch)[..., None]
@@ -328,4 +373,14 @@ def motor_arrays(design: Design) -> MotorArrays:
     )
 
 
-__all__ = ["MOTORS", "Constant", "Motor", "MotorArrays", "catalogue", "find_motor", "gather", "load_motor", "motor_arrays"]
+__all__ = [
+    "MOTORS",
+    "Constant",
+    "Motor",
+    "MotorArrays",
+    "catalogue",
+    "find_motor",
+    "gather",
+    "load_motor",
+    "motor_arrays",
+]

@@ -1,8 +1,12 @@
-"""Typed parameters: from YAML to frozen, validated dataclasses, with units, bounds and the origin of each value.
+"""Typed parameters: from YAML to frozen, validated dataclasses, with units, bounds and the origin
+of each value.
 
-A leaf stands in a file as a plain value, or as a mapping `{value, label, source}` where the label says how far to trust
-it: `paper` (printed there), `vendor` (a data sheet), `derived` (follows from those), `assumed` (an engineer's choice).
-A leaf holds one value, or, in a batch of designs, an array of them with the batch in front: `(n,)`, `(n, 3)`.
+A leaf stands in a file as a plain value, or as a mapping `{value, label, source}` where the label
+says how far to trust
+it: `paper` (printed there), `vendor` (a data sheet), `derived` (follows from those), `assumed` (an
+    engineer's choice).
+A leaf holds one value, or, in a batch of designs, an array of them with the batch in front: `(n,)`,
+`(n, 3)`.
 """
 
 from __future__ import annotations
@@ -49,7 +53,8 @@ class Rule:
     unit: str = ""
     """SI unit, or the unit that the field's name ends in."""
     low: float = -math.inf
-    """Smallest value that makes sense; outside it the value is taken for a mistake of unit or sign."""
+    """Smallest value that makes sense; outside it the value is taken for a mistake of unit or
+    sign."""
     high: float = math.inf
     """Largest value that makes sense."""
     size: int = 0
@@ -60,13 +65,22 @@ class Rule:
     """Whether the designs of a batch may differ in it."""
 
 
-def number(unit: str, low: float = -math.inf, high: float = math.inf, *, size: int = 0, default: Any = dataclasses.MISSING) -> Any:
+def number(
+    unit: str,
+    low: float = -math.inf,
+    high: float = math.inf,
+    *,
+    size: int = 0,
+    default: Any = dataclasses.MISSING,
+) -> Any:
     """A dataclass field for a number, or a vector of `size` numbers, inside `[low, high]`."""
     return _field(Rule("number", unit, low, high, size), default)
 
 
 def text(*choices: str, default: Any = dataclasses.MISSING, varies: bool = False) -> Any:
-    """A dataclass field for a text, one of `choices` where given; `varies` lets the designs of a batch differ in it."""
+    """A dataclass field for a text, one of `choices` where given; `varies` lets the designs of a
+    batch differ in it.
+    """
     return _field(Rule("text", choices=choices, varies=varies), default)
 
 
@@ -104,7 +118,13 @@ def section_types(cls: type) -> Mapping[str, type]:
 @cache
 def _section_types(cls: Any) -> Mapping[str, type]:
     hints = typing.get_type_hints(cls)
-    return MappingProxyType({f.name: hints[f.name] for f in dataclasses.fields(cls) if dataclasses.is_dataclass(hints[f.name])})
+    return MappingProxyType(
+        {
+            f.name: hints[f.name]
+            for f in dataclasses.fields(cls)
+            if dataclasses.is_dataclass(hints[f.name])
+        }
+    )
 
 
 def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
@@ -117,13 +137,20 @@ def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
         InputError: wrong type, shape, unit (by magnitude), sign, or not finite.
     """
     if isinstance(value, np.ndarray) and value.ndim and not rule.varies:
-        raise InputError(where, path, value.tolist(), "cannot differ within a batch; make one batch for each")
+        raise InputError(
+            where, path, value.tolist(), "cannot differ within a batch; make one batch for each"
+        )
     if rule.kind == "flag":
         if isinstance(value, bool | np.bool_):
             return bool(value)
         raise InputError(where, path, value, "expects true or false")
     if rule.kind == "text":
-        if isinstance(value, np.ndarray) and value.ndim == 1 and value.size and all(isinstance(v, str) for v in value.tolist()):
+        if (
+            isinstance(value, np.ndarray)
+            and value.ndim == 1
+            and value.size
+            and all(isinstance(v, str) for v in value.tolist())
+        ):
             bad = [str(v) for v in np.unique(value) if rule.choices and v not in rule.choices]
             if not bad:
                 value = value.astype(str)
@@ -132,7 +159,12 @@ def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
             value = bad[0]
         elif isinstance(value, str) and (not rule.choices or value in rule.choices):
             return value
-        raise InputError(where, path, value, f"expects {'one of ' + ', '.join(rule.choices) if rule.choices else 'a text'}")
+        raise InputError(
+            where,
+            path,
+            value,
+            f"expects {'one of ' + ', '.join(rule.choices) if rule.choices else 'a text'}",
+        )
     return _checked_number(value, rule, where, path)
 
 
@@ -143,16 +175,22 @@ def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
         try:
             value = float(value)
         except ValueError:
-            raise InputError(where, path, value, f"expects {what}, without a unit after it") from None
+            raise InputError(
+                where, path, value, f"expects {what}, without a unit after it"
+            ) from None
     try:
-        if isinstance(value, bool) or (isinstance(value, list | tuple) and any(isinstance(v, bool) for v in value)):
+        if isinstance(value, bool) or (
+            isinstance(value, list | tuple) and any(isinstance(v, bool) for v in value)
+        ):
             raise TypeError
         if isinstance(value, list | tuple):
             value = [float(v) if isinstance(v, str) else v for v in value]
         array = np.array(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
         raise InputError(where, path, value, f"expects {what}") from None
-    if (rule.size and (array.ndim == 0 or array.shape[-1] != rule.size)) or array.ndim > (2 if rule.size else 1):
+    if (rule.size and (array.ndim == 0 or array.shape[-1] != rule.size)) or array.ndim > (
+        2 if rule.size else 1
+    ):
         raise InputError(where, path, value, f"expects {what}")
     if not rule.size and isinstance(value, list | tuple):
         raise InputError(where, path, value, f"expects {what}")
@@ -163,7 +201,12 @@ def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
     outside = (array < rule.low) | (array > rule.high)
     if np.any(outside):
         worst = float(array[outside].flat[0]) if array.ndim else float(array)
-        raise InputError(where, path, worst, f"expects {what} within {rule.low:g} .. {rule.high:g}; check unit and sign")
+        raise InputError(
+            where,
+            path,
+            worst,
+            f"expects {what} within {rule.low:g} .. {rule.high:g}; check unit and sign",
+        )
     if array.ndim == 0:
         return float(array)
     array.setflags(write=False)
@@ -175,10 +218,16 @@ def check_all(instance: Any, where: str, path: str = "") -> None:
     for field in dataclasses.fields(instance):
         if is_leaf(field):
             name = f"{path}.{field.name}" if path else field.name
-            object.__setattr__(instance, field.name, checked(getattr(instance, field.name), rule_of(field), where, name))
+            object.__setattr__(
+                instance,
+                field.name,
+                checked(getattr(instance, field.name), rule_of(field), where, name),
+            )
 
 
-def from_mapping(cls: type[T], data: Any, where: str, path: str = "", origins: dict[str, Origin] | None = None) -> T:
+def from_mapping(
+    cls: type[T], data: Any, where: str, path: str = "", origins: dict[str, Origin] | None = None
+) -> T:
     """Build a dataclass of leaves and sections from nested mappings.
 
     Args:
@@ -192,7 +241,12 @@ def from_mapping(cls: type[T], data: Any, where: str, path: str = "", origins: d
         InputError: unknown or missing field, or a leaf that breaks its rule.
     """
     if not isinstance(data, Mapping):
-        raise InputError(where, path, data, f"expects a mapping with {', '.join(f.name for f in dataclasses.fields(cls))}")  # type: ignore[arg-type]
+        raise InputError(
+            where,
+            path,
+            data,
+            f"expects a mapping with {', '.join(f.name for f in dataclasses.fields(cls))}",  # type: ignore[arg-type]
+        )
     fields = {f.name: f for f in dataclasses.fields(cls)}  # type: ignore[arg-type]
     sections = section_types(cls)
     known = {n for n, f in fields.items() if n in sections or is_leaf(f)}
@@ -207,11 +261,17 @@ def from_mapping(cls: type[T], data: Any, where: str, path: str = "", origins: d
         if name in sections:
             if name in data:
                 values[name] = from_mapping(sections[name], data[name], where, dot + name, origins)
-            elif field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
+            elif (
+                field.default is dataclasses.MISSING
+                and field.default_factory is dataclasses.MISSING
+            ):
                 raise InputError(where, dot + name, None, "is missing")
             continue
         if name not in data:
-            if field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
+            if (
+                field.default is dataclasses.MISSING
+                and field.default_factory is dataclasses.MISSING
+            ):
                 unit = f" [{rule_of(field).unit}]" if rule_of(field).unit else ""
                 raise InputError(where, dot + name, None, f"is missing{unit}")
             if origins is not None:
@@ -230,7 +290,9 @@ def labelled(data: Any, where: str, path: str) -> tuple[Any, Origin]:
         return data, Origin("user")
     extra = [k for k in data if k not in ("value", "label", "source", "confidence")]
     if extra or "value" not in data:
-        raise InputError(where, path, dict(data), "expects a value, or a mapping with value, label, source")
+        raise InputError(
+            where, path, dict(data), "expects a value, or a mapping with value, label, source"
+        )
     label = data.get("label", "user")
     if label not in LABELS:
         raise InputError(where, f"{path}.label", label, f"expects one of {', '.join(LABELS)}")
@@ -240,7 +302,11 @@ def labelled(data: Any, where: str, path: str) -> tuple[Any, Origin]:
 def unknown(name: str, known: list[str]) -> str:
     """Remedy for a name that does not exist: the nearest one, or all."""
     near = difflib.get_close_matches(name[:100], known, n=1)
-    return f"no such field; did you mean {near[0]}?" if near else f"no such field; there are {some(known)}"
+    return (
+        f"no such field; did you mean {near[0]}?"
+        if near
+        else f"no such field; there are {some(known)}"
+    )
 
 
 def some(names: Iterable[str]) -> str:
@@ -248,7 +314,9 @@ def some(names: Iterable[str]) -> str:
     names = list(names)
     if len(names) <= MOST_NAMES:
         return ", ".join(names)
-    sections = list(dict.fromkeys(f"{name.partition('.')[0]}.*" if "." in name else name for name in names))
+    sections = list(
+        dict.fromkeys(f"{name.partition('.')[0]}.*" if "." in name else name for name in names)
+    )
     return ", ".join(sections if 1 < len(sections) <= MOST_NAMES else [*names[:MOST_NAMES], "..."])
 
 
@@ -279,7 +347,9 @@ def rules(cls: type, path: str = "") -> Mapping[str, Rule]:
     return MappingProxyType(found)
 
 
-def with_values(instance: T, values: Mapping[str, Any], where: str, prefix: str = "", **others: Any) -> T:
+def with_values(
+    instance: T, values: Mapping[str, Any], where: str, prefix: str = "", **others: Any
+) -> T:
     """A copy with leaves replaced by dotted path; values may be batches.
 
     Args:
@@ -303,9 +373,19 @@ def with_values(instance: T, values: Mapping[str, Any], where: str, prefix: str 
         elif head in fields and not rest and is_leaf(fields[head]):
             own[head] = checked(value, rule_of(fields[head]), where, prefix + head)
         elif head in sections:
-            raise InputError(where, f"{prefix}{path}", value, f"is a section; name one of {some(rules(sections[head], prefix + head))}")
+            raise InputError(
+                where,
+                f"{prefix}{path}",
+                value,
+                f"is a section; name one of {some(rules(sections[head], prefix + head))}",
+            )
         else:
-            raise InputError(where, f"{prefix}{path}", value, unknown(f"{prefix}{path}", sorted(leaves(instance, prefix[:-1]))))
+            raise InputError(
+                where,
+                f"{prefix}{path}",
+                value,
+                unknown(f"{prefix}{path}", sorted(leaves(instance, prefix[:-1]))),
+            )
     for head, part in inner.items():
         own[head] = with_values(getattr(instance, head), part, where, f"{prefix}{head}.")
     return dataclasses.replace(instance, **own, **others)  # type: ignore[type-var]

@@ -49,6 +49,8 @@ def default_angles(tree: Tree) -> dict[str, float]:
 def lowest_point(tree: Tree, poses: Mapping[str, Pose]) -> float:
     """Height of the lowest sole pad in the pelvis's frame [m]."""
     heights = [
-        float((poses[link.name][0] @ np.array(pad.position) + poses[link.name][1])[2]) - pad.size[0] for link in tree.links for pad in link.pads
+        float((poses[link.name][0] @ np.array(pad.position) + poses[link.name][1])[2]) - pad.size[0]
+        for link in tree.links
+        for pad in link.pads
     ]
     return min(heights)

@@ -36,7 +36,9 @@ class Pelvis(_Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Hip(_Checked):
-    """Three intersecting axes, yaw, roll, pitch; the two carriers between them belong to the thigh's mass."""
+    """Three intersecting axes, yaw, roll, pitch; the two carriers between them belong to the
+    thigh's mass.
+    """
 
     spacing: Any = number("m", 0.02, 1)
     """Between the two hip centres [m]."""
@@ -175,7 +177,9 @@ class Actuators:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Reductions(_Checked):
-    """Total reductions in one posture, with the reference build's gears: magnitudes of the entries of `joint_from_motor`."""
+    """Total reductions in one posture, with the reference build's gears: magnitudes of the entries
+    of `joint_from_motor`.
+    """
 
     knee: Any = number("", 0.1, 1000)
     """Knee over each of the knee, ankle and toe motors [-]."""
@@ -191,7 +195,9 @@ class Reductions(_Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LinkageScale(_Checked):
-    """Factors on the reductions behind the gears, in every posture: what another pulley or lever would do."""
+    """Factors on the reductions behind the gears, in every posture: what another pulley or lever
+    would do.
+    """
 
     knee: Any = number("", 0.05, 20, default=1.0)
     """On the knee's [-]."""
@@ -222,7 +228,8 @@ class Linkage(_Checked):
     toe_crank_deg: Any = number("deg", -60, 60)
     """Angle of the foot's crank from the perpendicular to its ground bar, standing [deg]."""
     idler_limit_deg: Any = number("deg", 20, 90)
-    """Turn of the toe's idler at the ankle, either way, past which its ratio stays constant [deg]."""
+    """Turn of the toe's idler at the ankle, either way, past which its ratio stays constant
+    [deg]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -301,7 +308,8 @@ class MassModel(_Checked):
     """How masses follow from the choice of motors, gears and lengths."""
 
     law: Any = text(default="components")
-    """Name of a registered law: `components`, or `fixed` for the declared masses whatever the motors."""
+    """Name of a registered law: `components`, or `fixed` for the declared masses whatever the
+    motors."""
     gear_mass_per_torque: Any = number("kg/Nm", 0, 0.2)
     """Gear mass over its peak output torque [kg/Nm]."""
     thigh_ballast: Any = number("kg", 0, 20, default=0.0)

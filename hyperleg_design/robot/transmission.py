@@ -4,8 +4,9 @@
 
     joint_torque = M motor_torque          motor_velocity = M^T joint_velocity
 
-so power is the same on both sides, and rotors of inertia J appear at the joints as `M diag(J) M^T`. The paper's J_m is
-M^-T, and its Eq. (3) prints M where it means the inverse. Any leading batch dimensions pass through.
+so power is the same on both sides, and rotors of inertia J appear at the joints as `M diag(J) M^T`.
+The paper's J_m is M^-T, and its Eq. (3) prints M where it means the inverse. Any leading batch
+dimensions pass through.
 """
 
 from __future__ import annotations
@@ -29,12 +30,16 @@ M_KNEE, M_ANKLE_LEFT, M_ANKLE_RIGHT, M_TOE = 3, 4, 5, 6
 
 
 def gear_ratios(design: Design) -> np.ndarray:
-    """Gears over those of the reference build, below the hip; the gears themselves at the hip [-], `(..., 7)`."""
+    """Gears over those of the reference build, below the hip; the gears themselves at the hip [-],
+    `(..., 7)`.
+    """
     reference = {"knee": "knee_gear", "ankle": "ankle_gear", "toe": "toe_gear"}
     parts = []
     for name in ACTUATOR_OF_MOTOR:
         gear = getattr(design.actuators, name).gear
-        parts.append(gear / getattr(design.reference, reference[name]) if name in reference else gear)
+        parts.append(
+            gear / getattr(design.reference, reference[name]) if name in reference else gear
+        )
     return np.stack(np.broadcast_arrays(*parts), -1).astype(float)
 
 
@@ -88,7 +93,9 @@ def joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
 
     A locked toe whose motor stays gives a 6 x 7 matrix: that motor still helps knee and ankle.
     """
-    return full_joint_from_motor(design, posture)[..., : len(joint_names(design)), : len(motor_names(design))]
+    return full_joint_from_motor(design, posture)[
+        ..., : len(joint_names(design)), : len(motor_names(design))
+    ]
 
 
 def joint_torque(matrix: np.ndarray, motor_torque: np.ndarray) -> np.ndarray:
@@ -101,17 +108,25 @@ def motor_velocity(matrix: np.ndarray, joint_velocity: np.ndarray) -> np.ndarray
     return np.einsum("...jm,...j->...m", matrix, joint_velocity)
 
 
-def motor_torque(matrix: np.ndarray, torque: np.ndarray, power_constant: np.ndarray | None = None) -> np.ndarray:
+def motor_torque(
+    matrix: np.ndarray, torque: np.ndarray, power_constant: np.ndarray | None = None
+) -> np.ndarray:
     """Motor torques that give the joint torques, `(..., joints)` -> `(..., motors)` [Nm].
 
-    Where motors outnumber joints, those of least Joule heat, given `power_constant` [W/Nm^2] `(..., motors)` (equal ones
-    by default): tau = C^-1 M^T (M C^-1 M^T)^-1 tau_joint.
+    Where motors outnumber joints, those of least Joule heat, given `power_constant` [W/Nm^2] `(...,
+    motors)` (equal ones by default): tau = C^-1 M^T (M C^-1 M^T)^-1 tau_joint.
     """
     if matrix.shape[-1] == matrix.shape[-2]:
         return np.linalg.solve(matrix, torque[..., None])[..., 0]
-    ease = 1.0 / (np.ones(matrix.shape[-1]) if power_constant is None else np.asarray(power_constant))
+    ease = 1.0 / (
+        np.ones(matrix.shape[-1]) if power_constant is None else np.asarray(power_constant)
+    )
     weighted = matrix * ease[..., None, :]
-    return np.einsum("...jm,...j->...m", weighted, np.linalg.solve(weighted @ np.swapaxes(matrix, -1, -2), torque[..., None])[..., 0])
+    return np.einsum(
+        "...jm,...j->...m",
+        weighted,
+        np.linalg.solve(weighted @ np.swapaxes(matrix, -1, -2), torque[..., None])[..., 0],
+    )
 
 
 def reflected_inertia(matrix: np.ndarray, rotor_inertia: np.ndarray) -> np.ndarray:
@@ -120,20 +135,26 @@ def reflected_inertia(matrix: np.ndarray, rotor_inertia: np.ndarray) -> np.ndarr
 
 
 def derate(design: Design) -> np.ndarray:
-    """Fraction of the summed peak torque counted on at each joint that moves, `(..., joints)` [-]."""
+    """Fraction of the summed peak torque counted on at each joint that moves, `(..., joints)`
+    [-].
+    """
     of_joint = {"ankle_pitch": "ankle", "ankle_roll": "ankle"}
     parts = [getattr(design.actuators, of_joint.get(j, j)).derate for j in joint_names(design)]
     return np.stack(np.broadcast_arrays(*parts), -1).astype(float)
 
 
 def max_joint_torque(design: Design, posture: str = "standing") -> np.ndarray:
-    """Largest torque of each joint alone, derated as in Table I, `(..., joints)` [Nm]: derate * sum |M| tau_peak."""
+    """Largest torque of each joint alone, derated as in Table I, `(..., joints)` [Nm]: derate * sum
+    |M| tau_peak.
+    """
     peak = motor_arrays(design).peak_torque[..., : len(motor_names(design))]
     return derate(design) * joint_torque(np.abs(joint_from_motor(design, posture)), peak)
 
 
 def single_joint_speed(design: Design, posture: str = "walking") -> np.ndarray:
-    """No-load speed of each joint while the others stand still, `(..., joints)` [rad/s]: min over motors of omega_0 / |M|."""
+    """No-load speed of each joint while the others stand still, `(..., joints)` [rad/s]: min over
+    motors of omega_0 / |M|.
+    """
     free = motor_arrays(design).no_load_speed[..., : len(motor_names(design))]
     matrix = np.abs(joint_from_motor(design, posture))
     with np.errstate(divide="ignore"):
@@ -150,5 +171,11 @@ def check_invertible(design: Design, where: str) -> None:
         condition: Any = np.linalg.cond(joint_from_motor(design, posture))
         if np.any(~(condition < 1e6)):
             worst = float(np.max(condition))
-            remedy = "is the condition number of joint_from_motor, as good as singular: some joint has no drive; check reductions, scale, gears"
-            raise InputError(where, f"transmission.{posture}", worst, remedy, bad=~(condition < 1e6))
+            remedy = (
+                "is the condition number of joint_from_motor, as good as singular: some "
+                "joint "
+                "has no drive; check reductions, scale, gears"
+            )
+            raise InputError(
+                where, f"transmission.{posture}", worst, remedy, bad=~(condition < 1e6)
+            )

@@ -1,4 +1,6 @@
-"""The kinematic tree of one robot: the single source of URDF, Pinocchio and MuJoCo models, and of pictures."""
+"""The kinematic tree of one robot: the single source of URDF, Pinocchio and MuJoCo models, and of
+pictures.
+"""
 
 from __future__ import annotations
 
@@ -75,7 +77,9 @@ class TreeJoint:
 
 @dataclass(frozen=True)
 class Tree:
-    """Links from the pelvis outward, and the joints between them in the order left leg, right leg."""
+    """Links from the pelvis outward, and the joints between them in the order left leg, right
+    leg.
+    """
 
     name: str
     links: tuple[Link, ...]
@@ -98,7 +102,9 @@ def build_tree(design: Design) -> Tree:
         InputError: a batch of designs.
     """
     if design.batch_shape:
-        raise InputError(design.name, "", None, "holds a batch of designs; take one of them for a model")
+        raise InputError(
+            design.name, "", None, "holds a batch of designs; take one of them for a model"
+        )
     links: list[Link] = []
     joints: list[TreeJoint] = []
     for side in SIDES:
@@ -106,10 +112,21 @@ def build_tree(design: Design) -> Tree:
         found = inertials(design, sign)
         if side == "left":
             body = found["pelvis"]
-            links.append(Link("pelvis", float(body.mass), body.com, body.inertia, _visuals(design, "pelvis")))
+            links.append(
+                Link("pelvis", float(body.mass), body.com, body.inertia, _visuals(design, "pelvis"))
+            )
         for name in LEG_LINKS:
             body = found[name]
-            links.append(Link(f"{side}_{name}", float(body.mass), body.com, body.inertia, _visuals(design, name), _pads(design, name)))
+            links.append(
+                Link(
+                    f"{side}_{name}",
+                    float(body.mass),
+                    body.com,
+                    body.inertia,
+                    _visuals(design, name),
+                    _pads(design, name),
+                )
+            )
         joints += _leg_joints(design, side, sign)
     return Tree(design.name, tuple(links), tuple(joints))
 
@@ -124,7 +141,11 @@ def _leg_joints(design: Design, side: str, sign: float) -> list[TreeJoint]:
         "ankle_pitch": (0.0, 0.0, -design.shank.length),
         "toe": (design.foot.ball_length, 0.0, -(design.foot.ankle_height - design.toe.axis_height)),
     }
-    axes = {"hip_yaw": (0.0, 0.0, -sign), "hip_roll": (sign, 0.0, 0.0), "ankle_roll": (sign, 0.0, 0.0)}
+    axes = {
+        "hip_yaw": (0.0, 0.0, -sign),
+        "hip_roll": (sign, 0.0, 0.0),
+        "ankle_roll": (sign, 0.0, 0.0),
+    }
     made = []
     parent = "pelvis"
     for index, (name, child) in enumerate(zip(JOINTS, LEG_LINKS, strict=True)):
@@ -166,10 +187,22 @@ def _visuals(design: Design, link: str) -> tuple[Shape, ...]:
     if link == "foot":
         foot, thick = design.foot, design.toe.axis_height * 1.6
         length = foot.heel_length + foot.ball_length
-        return (Shape("box", (length, foot.width, thick), ((foot.ball_length - foot.heel_length) / 2, 0.0, -foot.ankle_height + thick / 2)),)
+        return (
+            Shape(
+                "box",
+                (length, foot.width, thick),
+                ((foot.ball_length - foot.heel_length) / 2, 0.0, -foot.ankle_height + thick / 2),
+            ),
+        )
     if link == "toe_plate":
         toe, thick = design.toe, design.toe.axis_height * 1.4
-        return (Shape("box", (toe.length, design.foot.width, thick), (toe.length / 2, 0.0, -toe.axis_height + thick / 2)),)
+        return (
+            Shape(
+                "box",
+                (toe.length, design.foot.width, thick),
+                (toe.length / 2, 0.0, -toe.axis_height + thick / 2),
+            ),
+        )
     return ()
 
 
@@ -183,4 +216,6 @@ def _pads(design: Design, link: str) -> tuple[Shape, ...]:
         places = [(design.toe.length - radius, -design.toe.axis_height + radius)]
     else:
         return ()
-    return tuple(Shape("sphere", (radius,), (x, sign * half, z)) for x, z in places for sign in (1.0, -1.0))
+    return tuple(
+        Shape("sphere", (radius,), (x, sign * half, z)) for x, z in places for sign in (1.0, -1.0)
+    )

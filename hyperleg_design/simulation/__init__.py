@@ -1,1 +1,3 @@
-"""Simulation: many robots in MuJoCo, their motors' limits and friction, and the tasks they learn and are tested on."""
+"""Simulation: many robots in MuJoCo, their motors' limits and friction, and the tasks they learn
+and are tested on.
+"""

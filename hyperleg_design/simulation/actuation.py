@@ -1,4 +1,5 @@
-"""Cooperative actuation in simulation: from joint targets to what the joints feel, pure and batched.
+"""Cooperative actuation in simulation: from joint targets to what the joints feel, pure and
+batched.
 
 One simulation step, as in Section III of the paper:
 
@@ -7,14 +8,16 @@ One simulation step, as in Section III of the paper:
     tau_motor = clip(tau_motor) at motor_velocity = M^T q_dot      four-quadrant envelope
     tau_cmd   = M tau_motor - (f_c tanh(q_dot / v_m) + f_v q_dot)  Eq. (4)
 
-Motor torques go to MuJoCo as controls on the tendons whose coefficients are the columns of M, which multiplies by M.
-Friction goes in explicitly as that formula prints it, or implicitly, the default: with `D = f_c tanh(|q_dot| / v_m) /
-|q_dot| + f_v` of the velocity before the step as a damping, `D q_dot` of the velocity after it. Both tend to the same
-friction as the step shrinks. At 200 Hz the explicit one is unstable on the light distal joints: f_c h / (v_m I) is 24 at
-the toe, where 2 is the bound, and foot and toe chatter in the air.
+Motor torques go to MuJoCo as controls on the tendons whose coefficients are the columns of M, which
+multiplies by M. Friction goes in explicitly as that formula prints it, or implicitly, the default:
+with `D = f_c tanh(|q_dot| / v_m) / |q_dot| + f_v` of the velocity before the step as a damping, `D
+q_dot` of the velocity after it. Both tend to the same friction as the step shrinks. At 200 Hz the
+explicit one is unstable on the light distal joints: f_c h / (v_m I) is 24 at the toe, where 2 is
+the bound, and foot and toe chatter in the air.
 
-Arrays are `(..., legs, joints)` and `(..., legs, motors)`; those of the model broadcast against them.
-"""
+Arrays are `(..., legs, joints)` and `(..., legs, motors)`; those of the model broadcast against
+them.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -61,14 +64,24 @@ def actuation_model(design: Design) -> ActuationModel:
     arrays = motor_arrays(design)
 
     def legs(values: np.ndarray, core: int) -> np.ndarray:
-        return np.expand_dims(np.broadcast_to(values, (*design.batch_shape, *values.shape[values.ndim - core :])), -core - 1) if batched else values
+        return (
+            np.expand_dims(
+                np.broadcast_to(values, (*design.batch_shape, *values.shape[values.ndim - core :])),
+                -core - 1,
+            )
+            if batched
+            else values
+        )
 
     def of_joints(field: str) -> np.ndarray:
         values = [getattr(getattr(design.joints, joint), field) for joint in joints]
         return legs(np.stack(np.broadcast_arrays(*values), -1).astype(float), 1)
 
     envelope = motor_envelope(design)
-    limits = {n: legs(getattr(envelope, n), 1) for n in ("no_load_speed", "stall_torque", "peak_torque", "power_constant")}
+    limits = {
+        n: legs(getattr(envelope, n), 1)
+        for n in ("no_load_speed", "stall_torque", "peak_torque", "power_constant")
+    }
     matrix = transmission.joint_from_motor(design)
     return ActuationModel(
         joint_from_motor=legs(matrix, 2),
@@ -83,10 +96,11 @@ def actuation_model(design: Design) -> ActuationModel:
 
 
 def motor_from_joint(matrix: np.ndarray, power_constant: np.ndarray) -> np.ndarray:
-    """The linear map from joint torques to motor torques, `(..., motors, joints)`: M^-1, or that of least Joule heat.
+    """The linear map from joint torques to motor torques, `(..., motors, joints)`: M^-1, or that of
+    least Joule heat.
 
-    C^-1 M^T (M C^-1 M^T)^-1 with C the motors' power constants [W/Nm^2]; where motors outnumber joints it leaves the
-    others at the cheapest.
+    C^-1 M^T (M C^-1 M^T)^-1 with C the motors' power constants [W/Nm^2]; where motors outnumber
+    joints it leaves the others at the cheapest.
     """
     if matrix.shape[-1] == matrix.shape[-2]:
         return np.linalg.inv(matrix)
@@ -95,11 +109,15 @@ def motor_from_joint(matrix: np.ndarray, power_constant: np.ndarray) -> np.ndarr
 
 
 def smoothed_action(previous: np.ndarray, action: np.ndarray, weight: float) -> np.ndarray:
-    """Exponential moving average, `(..., J)`: weight * action + (1 - weight) * previous, once a policy step."""
+    """Exponential moving average, `(..., J)`: weight * action + (1 - weight) * previous, once a
+    policy step.
+    """
     return previous + weight * (action - previous)
 
 
-def controller_torque(model: ActuationModel, target: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+def controller_torque(
+    model: ActuationModel, target: np.ndarray, position: np.ndarray, velocity: np.ndarray
+) -> np.ndarray:
     """Joint torque that the joint controller wants [Nm], `(..., legs, joints)`."""
     return model.stiffness * (target - position) - model.damping * velocity
 
@@ -109,7 +127,9 @@ def motor_speed(matrix: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     return applied(np.swapaxes(matrix, -1, -2), velocity)
 
 
-def driven_torque(model: ActuationModel, wanted: np.ndarray, speed: np.ndarray, to_motor: np.ndarray | None = None) -> np.ndarray:
+def driven_torque(
+    model: ActuationModel, wanted: np.ndarray, speed: np.ndarray, to_motor: np.ndarray | None = None
+) -> np.ndarray:
     """Motor torques that the drives give [Nm], `(..., legs, motors)`.
 
     Args:
@@ -119,7 +139,8 @@ def driven_torque(model: ActuationModel, wanted: np.ndarray, speed: np.ndarray, 
         to_motor: map from joint to motor torques in place of the model's, `(..., motors, joints)`.
     """
     torque = applied(model.motor_from_joint if to_motor is None else to_motor, wanted)
-    # `sizing.envelope.clip_torque` with the bounds taken one after the other, in place: this runs in every simulation step.
+    # `sizing.envelope.clip_torque` with the bounds taken one after the other, in place: this runs
+    # in every simulation step.
     stall, peak = model.envelope.stall_torque, model.envelope.peak_torque
     droop = stall / model.envelope.no_load_speed * speed
     np.minimum(torque, stall - droop, out=torque)
@@ -129,12 +150,16 @@ def driven_torque(model: ActuationModel, wanted: np.ndarray, speed: np.ndarray, 
     return np.maximum(torque, -peak, out=torque)
 
 
-def friction_torque(coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any) -> np.ndarray:
+def friction_torque(
+    coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any
+) -> np.ndarray:
     """f_c tanh(v / v_m) + f_v v [Nm], the part subtracted in Eq. (4); `(...)`."""
     return coulomb * np.tanh(velocity / width) + viscous * velocity
 
 
-def friction_damping(coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any) -> np.ndarray:
+def friction_damping(
+    coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any
+) -> np.ndarray:
     """The damping D with D v = `friction_torque` [Nms/rad], `(...)`; f_c / v_m + f_v at rest."""
     ratio = np.abs(velocity)
     ratio /= width
@@ -149,9 +174,9 @@ def friction_damping(coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndar
 def motor_friction(design: Design) -> tuple[np.ndarray, np.ndarray]:
     """Friction at the motors that comes nearest to the printed friction at the joints.
 
-    Table I prints friction per joint, measured with motors that move several joints. Non-negative Coulomb torques f and
-    viscous coefficients d at the motors are fitted, in least squares, so that each joint moving alone meets
-    `sum |M| f` and `sum M^2 d`; they cannot meet all of them.
+    Table I prints friction per joint, measured with motors that move several joints. Non-negative
+    Coulomb torques f and viscous coefficients d at the motors are fitted, in least squares, so that
+    each joint moving alone meets `sum |M| f` and `sum M^2 d`; they cannot meet all of them.
 
     Returns:
         Coulomb [Nm] and viscous [Nms/rad], `(motors,)` each, of one robot.
@@ -163,7 +188,9 @@ def motor_friction(design: Design) -> tuple[np.ndarray, np.ndarray]:
 
 
 def motor_friction_width(matrix: np.ndarray, width: float) -> np.ndarray:
-    """Motor speeds that match the joints' v_m: v_m times each motor's largest reduction [rad/s], `(..., motors)`."""
+    """Motor speeds that match the joints' v_m: v_m times each motor's largest reduction [rad/s],
+    `(..., motors)`.
+    """
     return np.asarray(width * np.max(np.abs(matrix), -2))
 
 
@@ -178,7 +205,11 @@ def mechanical_power(torque: np.ndarray, velocity: np.ndarray) -> np.ndarray:
 
 
 def applied(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """Product of matrix and vector over the last axes; one product for all rows where the matrix is shared."""
+    """Product of matrix and vector over the last axes; one product for all rows where the matrix is
+    shared.
+    """
     if matrix.ndim == 2:
-        return (vector.reshape(-1, matrix.shape[1]) @ matrix.T).reshape(*vector.shape[:-1], matrix.shape[0])
+        return (vector.reshape(-1, matrix.shape[1]) @ matrix.T).reshape(
+            *vector.shape[:-1], matrix.shape[0]
+        )
     return np.matmul(matrix, vector[..., None])[..., 0]

@@ -1,4 +1,5 @@
-"""Alterations: what can be added to a simulation that its model lacks, without the simulation knowing what it stands for.
+"""Alterations: what can be added to a simulation that its model lacks, without the simulation
+knowing what it stands for.
 
 An `Alteration` changes a simulation in up to three places, each of which it may leave out:
 
@@ -6,9 +7,10 @@ An `Alteration` changes a simulation in up to three places, each of which it may
     machine(machine)    constants: what the controller believes, what motors and transmission are
     live(...)           hooks in every simulation step, with a hidden state of their own: `Live`
 
-`Chain` runs the hooks in order. Nothing here knows a `Design`: joints, motors and constants are arrays with names, so that
-any simulator can use it. Arrays of hooks are `(n, J)` joints and `(n, K)` motors, n simulations in front. Constants of an
-alteration are numbers, or `(n,)`, one a simulation.
+`Chain` runs the hooks in order. Nothing here knows a `Design`: joints, motors and constants are
+arrays with names, so that any simulator can use it. Arrays of hooks are `(n, J)` joints and `(n,
+K)` motors, n simulations in front. Constants of an alteration are numbers, or `(n,)`, one a
+simulation.
 """
 
 from __future__ import annotations
@@ -28,12 +30,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """Controller, motors and transmission of a robot of J joints and K motors; each array may lead with the simulations."""
+    """Controller, motors and transmission of a robot of J joints and K motors; each array may lead
+    with the simulations.
+    """
 
     joints: tuple[str, ...]
     motors: tuple[str, ...]
     joint_from_motor: np.ndarray
-    """M of the transmission as it is, `(J, K)` [-]: joint torque M tau, motor velocity M^T q_dot."""
+    """M of the transmission as it is, `(J, K)` [-]: joint torque M tau, motor velocity M^T
+    q_dot."""
     motor_from_joint: np.ndarray
     """By which the controller turns joint torques into motor torques, `(K, J)` [-]."""
     stiffness: np.ndarray
@@ -60,7 +65,11 @@ class Machine:
     @property
     def rigid_inertia(self) -> np.ndarray:
         """Rotor inertia that belongs into the simulator's model [kg m^2], `(K,)`."""
-        return np.asarray(self.rotor_inertia if self.free is None else np.where(self.free, 0.0, self.rotor_inertia))
+        return np.asarray(
+            self.rotor_inertia
+            if self.free is None
+            else np.where(self.free, 0.0, self.rotor_inertia)
+        )
 
     def joint(self, name: str) -> int:
         """Place of a joint."""
@@ -80,7 +89,9 @@ class Machine:
         """
         old = np.asarray(getattr(self, field), float)
         new = np.asarray(change(old[..., place]), float)
-        values = np.array(np.broadcast_to(old, (*np.broadcast_shapes(old.shape[:-1], new.shape), old.shape[-1])))
+        values = np.array(
+            np.broadcast_to(old, (*np.broadcast_shapes(old.shape[:-1], new.shape), old.shape[-1]))
+        )
         values[..., place] = new
         changes: dict[str, Any] = {field: values}
         return dataclasses.replace(self, **changes)
@@ -95,10 +106,19 @@ class Limits:
     peak_torque: np.ndarray
 
     def clip(self, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Torque inside the four-quadrant envelope at a motor velocity [Nm], `(n, K)`; as `sizing.envelope`."""
+        """Torque inside the four-quadrant envelope at a motor velocity [Nm], `(n, K)`; as
+        `sizing.envelope`.
+        """
         with np.errstate(invalid="ignore"):
-            droop = np.where(np.isfinite(self.stall_torque), self.stall_torque / self.no_load_speed, 0.0) * speed
-        torque = np.maximum(np.minimum(torque, self.stall_torque - droop), -self.stall_torque - droop)
+            droop = (
+                np.where(
+                    np.isfinite(self.stall_torque), self.stall_torque / self.no_load_speed, 0.0
+                )
+                * speed
+            )
+        torque = np.maximum(
+            np.minimum(torque, self.stall_torque - droop), -self.stall_torque - droop
+        )
         return np.asarray(np.maximum(np.minimum(torque, self.peak_torque), -self.peak_torque))
 
 
@@ -113,7 +133,8 @@ class Tick:
     """True, of the joints `(n, J)` [rad, rad/s], at the start of the step."""
     motor_position: np.ndarray
     motor_velocity: np.ndarray
-    """Of the rotors `(n, K)` [rad, rad/s]: M^T q, or an alteration's own where it lets them move apart from the joints."""
+    """Of the rotors `(n, K)` [rad, rad/s]: M^T q, or an alteration's own where it lets them move
+    apart from the joints."""
     last_torque: np.ndarray
     """That the motors gave in the step before `(n, K)` [Nm]; zero in the first."""
     temperature: np.ndarray | None
@@ -121,7 +142,8 @@ class Tick:
     battery: np.ndarray | None
     """Voltage `(n,)` [V], where somebody measured it."""
     command: np.ndarray | None = None
-    """Motor torque that the controller asked for, before any hook `(n, K)` [Nm]; None where torque is replayed."""
+    """Motor torque that the controller asked for, before any hook `(n, K)` [Nm]; None where torque
+    is replayed."""
     torque: np.ndarray | None = None
     """At the rotors, `(n, K)` [Nm]: after `motor_torque`."""
     joint_torque: np.ndarray | None = None
@@ -131,8 +153,8 @@ class Tick:
 class Live:
     """Hooks of one alteration at work, with its hidden state; each hook by itself changes nothing.
 
-    A hook may write into arrays it is given and return them, except into the tick's. `measured` and `imu` are also called
-    between steps, so they must leave the state alone.
+    A hook may write into arrays it is given and return them, except into the tick's. `measured` and
+    `imu` are also called between steps, so they must leave the state alone.
     """
 
     kept: ClassVar[tuple[str, ...]] = ()
@@ -146,19 +168,25 @@ class Live:
         """Find places by name, make the hidden state."""
 
     def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
-        """Some simulations start anew from joint states `(len(ids), J)`; by default their hidden state becomes zero."""
+        """Some simulations start anew from joint states `(len(ids), J)`; by default their hidden
+        state becomes zero.
+        """
         for name in self.kept:
             getattr(self, name)[ids] = 0
 
     def begin(self, tick: Tick) -> None:
-        """First in each step: take in the new joint state; may write the rotors' state into the tick."""
+        """First in each step: take in the new joint state; may write the rotors' state into the
+        tick.
+        """
 
     def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Joint state that the controller and the policy are told, `(n, J)` each."""
         return position, velocity
 
     def imu(self, angular_velocity: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Angular velocity [rad/s] and specific force [m/s^2] that gyro and accelerometer tell, in the base's frame, `(n, 3)` each."""
+        """Angular velocity [rad/s] and specific force [m/s^2] that gyro and accelerometer tell, in
+        the base's frame, `(n, 3)` each.
+        """
         return angular_velocity, force
 
     def target(self, target: np.ndarray, tick: Tick) -> np.ndarray:
@@ -166,7 +194,9 @@ class Live:
         return target
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
-        """From the motor torque that the controller asks for to the one that the drive tries to give `(n, K)` [Nm]."""
+        """From the motor torque that the controller asks for to the one that the drive tries to
+        give `(n, K)` [Nm].
+        """
         return command
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:
@@ -174,13 +204,17 @@ class Live:
         return limits
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
-        """From the torque within the limits, which the drive believes, to the torque at the rotor `(n, K)` [Nm]."""
+        """From the torque within the limits, which the drive believes, to the torque at the rotor
+        `(n, K)` [Nm].
+        """
         return torque
 
     def motor_damping(self, tick: Tick) -> np.ndarray | None:
-        """Resistance at the rotors D >= 0 `(n, K)` [Nms/rad]: D times the motor velocity *after* the step is taken off.
+        """Resistance at the rotors D >= 0 `(n, K)` [Nms/rad]: D times the motor velocity *after*
+        the step is taken off.
 
-        Friction f(v) of any kind is D = f(v) / v at the present velocity, bounded at rest; see `resistance`.
+        Friction f(v) of any kind is D = f(v) / v at the present velocity, bounded at rest; see
+        `resistance`.
         """
         return None
 
@@ -189,25 +223,35 @@ class Live:
         return None
 
     def joint_torque(self, tick: Tick) -> np.ndarray | None:
-        """Torque added at the joints, taken as it is `(n, J)` [Nm]; stiff springs belong into `edit`."""
+        """Torque added at the joints, taken as it is `(n, J)` [Nm]; stiff springs belong into
+        `edit`.
+        """
         return None
 
-    def transmitted(self, torque: np.ndarray, damping: np.ndarray | None, tick: Tick) -> tuple[np.ndarray, np.ndarray | None]:
-        """From torque and resistance at the rotors to those on the motor's side of a rigid M, `(n, K)` each."""
+    def transmitted(
+        self, torque: np.ndarray, damping: np.ndarray | None, tick: Tick
+    ) -> tuple[np.ndarray, np.ndarray | None]:
+        """From torque and resistance at the rotors to those on the motor's side of a rigid M, `(n,
+        K)` each.
+        """
         return torque, damping
 
 
 @dataclass(frozen=True, eq=False)
 class Alteration:
-    """Something added to a simulation; this one changes nothing. Subclasses are frozen dataclasses of constants."""
+    """Something added to a simulation; this one changes nothing. Subclasses are frozen dataclasses
+    of constants.
+    """
 
     live: ClassVar[type[Live] | None] = None
     """Its hooks, if it has any."""
 
     def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
-        """Change a compiled model in place; whoever calls runs `mj_setConst` afterwards (`edited` does both).
+        """Change a compiled model in place; whoever calls runs `mj_setConst` afterwards (`edited`
+        does both).
 
-        Joint and tendon damping belong into the hooks instead, which a simulator sums up with its own.
+        Joint and tendon damping belong into the hooks instead, which a simulator sums up with its
+        own.
 
         Args:
             model: of MuJoCo.
@@ -233,7 +277,9 @@ def made(alterations: Alterations | None, design: Design) -> tuple[Alteration, .
     return tuple(alterations(design) if callable(alterations) else alterations or ())
 
 
-def edited(model: mujoco.MjModel, alterations: Sequence[Alteration], simulation: int = 0) -> mujoco.MjModel:
+def edited(
+    model: mujoco.MjModel, alterations: Sequence[Alteration], simulation: int = 0
+) -> mujoco.MjModel:
     """A model with the edits of alterations; the same one if there are none, a copy otherwise."""
     import copy
 
@@ -249,12 +295,18 @@ def edited(model: mujoco.MjModel, alterations: Sequence[Alteration], simulation:
 
 
 def damps_motors(alterations: Sequence[Alteration]) -> bool:
-    """Whether any of them resists at the rotors; MuJoCo then needs an integrator that is implicit in tendon damping."""
-    return any(overrides(a.live, "motor_damping") or overrides(a.live, "transmitted") for a in alterations)
+    """Whether any of them resists at the rotors; MuJoCo then needs an integrator that is implicit
+    in tendon damping.
+    """
+    return any(
+        overrides(a.live, "motor_damping") or overrides(a.live, "transmitted") for a in alterations
+    )
 
 
 def resistance(torque: np.ndarray, velocity: np.ndarray, width: float) -> np.ndarray:
-    """The D of friction whose size `torque` [Nm] grows from zero over a `width` [rad/s] of velocity: torque tanh(|v| / w) / |v|."""
+    """The D of friction whose size `torque` [Nm] grows from zero over a `width` [rad/s] of
+    velocity: torque tanh(|v| / w) / |v|.
+    """
     speed = np.maximum(np.abs(velocity), 1e-9 * width)
     return np.asarray(torque * np.tanh(speed / width) / speed)
 

@@ -1,7 +1,8 @@
-"""Helping forces on the pelvis at the start of training, to be taken away before it ends; never the paper's, never in a test.
+"""Helping forces on the pelvis at the start of training, to be taken away before it ends; never the
+paper's, never in a test.
 
-Without them no reward tried so far taught this biped its first steps. They act in an environment only while one is given
-its `Assist`, which none is by default.
+Without them no reward tried so far taught this biped its first steps. They act in an environment
+only while one is given its `Assist`, which none is by default.
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ OFF_BELOW = 0.01
 
 @dataclass
 class Assist:
-    """A forward force toward the commanded speed and an uprighting torque, scaled by a gain that only decays."""
+    """A forward force toward the commanded speed and an uprighting torque, scaled by a gain that
+    only decays.
+    """
 
     gain: float = 1.0
     """1 full, 0 gone [-]."""

@@ -1,4 +1,5 @@
-"""From targets to what joints feel, with alterations: the order in which their hooks act in one simulation step.
+"""From targets to what joints feel, with alterations: the order in which their hooks act in one
+simulation step.
 
     joint state --measured--> controller <--target-- target
     controller: K (target - q) - D q_dot, then M^-1              or a motor command that is replayed
@@ -53,15 +54,20 @@ class Chain:
         step: of the simulation [s].
     """
 
-    def __init__(self, machine: Machine, alterations: Sequence[Alteration], count: int, step: float) -> None:
+    def __init__(
+        self, machine: Machine, alterations: Sequence[Alteration], count: int, step: float
+    ) -> None:
         alterations = joined(alterations)
         self.nominal = machine
         for alteration in alterations:
             machine = alteration.machine(machine)
         self.machine = machine
-        """With the alterations; where `rigid_inertia` or M differ from those of `nominal`, the simulator must change its model."""
+        """With the alterations; where `rigid_inertia` or M differ from those of `nominal`, the
+        simulator must change its model."""
         self.count, self.step = count, step
-        self.lives: list[Live] = [a.live(a, machine, count, step) for a in alterations if a.live is not None]
+        self.lives: list[Live] = [
+            a.live(a, machine, count, step) for a in alterations if a.live is not None
+        ]
         self.last_torque = np.zeros((count, len(machine.motors)))
         self._limits = Limits(machine.no_load_speed, machine.stall_torque, machine.peak_torque)
 
@@ -78,7 +84,9 @@ class Chain:
             "joint_torque",
             "transmitted",
         )
-        self._hooks = {hook: [live for live in self.lives if overrides(type(live), hook)] for hook in hooks}
+        self._hooks = {
+            hook: [live for live in self.lives if overrides(type(live), hook)] for hook in hooks
+        }
 
     def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
         """Some simulations start anew, from joint states `(len(ids), J)`."""
@@ -94,7 +102,9 @@ class Chain:
         return position, velocity
 
     def imu(self, angular_velocity: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What the IMU tells of angular velocity [rad/s] and specific force [m/s^2], `(n, 3)` each; copies."""
+        """What the IMU tells of angular velocity [rad/s] and specific force [m/s^2], `(n, 3)` each;
+        copies.
+        """
         angular_velocity, force = angular_velocity.copy(), force.copy()
         for live in self._hooks["imu"]:
             angular_velocity, force = live.imu(angular_velocity, force)
@@ -131,7 +141,14 @@ class Chain:
         to_motor = machine.motor_from_joint if motor_from_joint is None else motor_from_joint
         transposed = np.swapaxes(matrix, -1, -2)
         tick = Tick(
-            self.step, position, velocity, applied(transposed, position), applied(transposed, velocity), self.last_torque, temperature, battery
+            self.step,
+            position,
+            velocity,
+            applied(transposed, position),
+            applied(transposed, velocity),
+            self.last_torque,
+            temperature,
+            battery,
         )
         for live in self._hooks["begin"]:
             live.begin(tick)
@@ -171,7 +188,9 @@ class Chain:
         for live in self._hooks["target"]:
             target = live.target(target, tick)
         position, velocity = self.measured(tick.position, tick.velocity)
-        return np.asarray(self.machine.stiffness * (target - position) - self.machine.damping * velocity)
+        return np.asarray(
+            self.machine.stiffness * (target - position) - self.machine.damping * velocity
+        )
 
     def _sum(self, hook: str, tick: Tick) -> np.ndarray | None:
         total = None
@@ -183,7 +202,11 @@ class Chain:
 
     def state(self) -> dict[str, np.ndarray]:
         """All hidden state, copied."""
-        kept = {f"{i}.{name}": np.array(getattr(live, name)) for i, live in enumerate(self.lives) for name in live.kept}
+        kept = {
+            f"{i}.{name}": np.array(getattr(live, name))
+            for i, live in enumerate(self.lives)
+            for name in live.kept
+        }
         return {"last_torque": self.last_torque.copy(), **kept}
 
     def put_state(self, state: dict[str, np.ndarray]) -> None:

@@ -1,8 +1,10 @@
-"""Some of an environment's simulations, stepped together: physics, rewards, ends, resets and observations.
+"""Some of an environment's simulations, stepped together: physics, rewards, ends, resets and
+observations.
 
-Threads take turns in Python and run side by side in MuJoCo: left to the interpreter's own lock, which NumPy lets go of in
-every longer operation, they would hand it to and fro thousands of times a second. Everything in a chunk depends on its own
-simulations and its own random stream only, so a trajectory does not depend on how many threads work on the chunks.
+Threads take turns in Python and run side by side in MuJoCo: left to the interpreter's own lock,
+which NumPy lets go of in every longer operation, they would hand it to and fro thousands of times a
+second. Everything in a chunk depends on its own simulations and its own random stream only, so a
+trajectory does not depend on how many threads work on the chunks.
 """
 
 from __future__ import annotations
@@ -38,12 +40,15 @@ FASTEST = 1e4
 """Speed of a coordinate past which a simulation counts as diverged [m/s or rad/s]."""
 _ROTORS_BEFORE = 6
 _BROKEN = slice(1, 6)
-"""MuJoCo's warnings that mark a step as wrong: contacts or constraints left out, bad position, velocity, acceleration."""
+"""MuJoCo's warnings that mark a step as wrong: contacts or constraints left out, bad position,
+velocity, acceleration."""
 
 
 @dataclass(frozen=True, eq=False)
 class Divergence:
-    """A simulation that left what can be computed, with the state from which it did within one policy step."""
+    """A simulation that left what can be computed, with the state from which it did within one
+    policy step.
+    """
 
     simulation: int
     episode_step: int
@@ -59,7 +64,9 @@ class Divergence:
 
 @dataclass(eq=False)
 class Step:
-    """What one policy step of n simulations gives back; ended simulations have been started anew already."""
+    """What one policy step of n simulations gives back; ended simulations have been started anew
+    already.
+    """
 
     observations: dict[str, np.ndarray]
     """By group, `(n, size)`, single precision; of the new episode where one ended."""
@@ -72,7 +79,8 @@ class Step:
     ending: np.ndarray
     """Index into `ENDINGS`, `(n,)`."""
     reward_terms: np.ndarray
-    """Each term, weighted, `(n, terms)` in the order of the task's rewards; they sum to the reward."""
+    """Each term, weighted, `(n, terms)` in the order of the task's rewards; they sum to the
+    reward."""
     ended: np.ndarray
     """Simulations that ended, `(m,)`."""
     final_observations: dict[str, np.ndarray]
@@ -105,14 +113,20 @@ class Chunk:
 
         self.task, self.layout, self.first, self.count, self.rng = task, layout, first, count, rng
         self.batch = batch.Batch(model, count, threads)
-        # A second batch finds how high to start: what is bound in the first is copied out after each of its steps.
+        # A second batch finds how high to start: what is bound in the first is copied out after
+        # each of its steps.
         self._starter = batch.Batch(model, count, 1)
         if designs_models is not None:
             _give_models(self.batch, designs_models)
             _give_models(self._starter, designs_models)
         _vary_models(self.batch, task, rng)
-        self.drive = Drive(design, layout, task.physics, self.batch, task.randomisation, rng, alterations)
-        self._rated, self._heat = self.drive.flat(self.drive.model.rated_torque), self.drive.flat(self.drive.model.envelope.power_constant)
+        self.drive = Drive(
+            design, layout, task.physics, self.batch, task.randomisation, rng, alterations
+        )
+        self._rated, self._heat = (
+            self.drive.flat(self.drive.model.rated_torque),
+            self.drive.flat(self.drive.model.envelope.power_constant),
+        )
         self._sensors, self._push = self.batch.bind("sensordata"), self.batch.bind("xfrc_applied")
         self._places, self._tried = self._starter.bind("geom_xpos"), self._starter.bind("qpos")
         self.batch.reset(None, 0, 0)
@@ -120,18 +134,32 @@ class Chunk:
         self._pelvis = model.body("pelvis").id
         self._pad_ids = [model.geom(pad).id for pad in layout.pads]
         self._pad_radius = float(model.geom(layout.pads[0]).size[0])
-        joints, motors, substeps = len(layout.joints), len(layout.motors), int(task.physics.substeps)
+        joints, motors, substeps = (
+            len(layout.joints),
+            len(layout.motors),
+            int(task.physics.substeps),
+        )
         start = task.start
         self._spread = np.r_[
-            [start.joint_position] * joints, [start.joint_velocity] * joints, [start.linear_velocity] * 2, [start.tilt] * 2, start.yaw
+            [start.joint_position] * joints,
+            [start.joint_velocity] * joints,
+            [start.linear_velocity] * 2,
+            [start.tilt] * 2,
+            start.yaw,
         ]
-        self.action, self.previous_action, self.smoothed = (np.zeros((count, joints)) for _ in range(3))
-        self.motor_torque, self.motor_velocity = np.zeros((substeps, count, motors)), np.zeros((substeps, count, motors))
+        self.action, self.previous_action, self.smoothed = (
+            np.zeros((count, joints)) for _ in range(3)
+        )
+        self.motor_torque, self.motor_velocity = (
+            np.zeros((substeps, count, motors)),
+            np.zeros((substeps, count, motors)),
+        )
         self.sensors = np.zeros((substeps, count, self._sensors.shape[-1]))
         self.states = np.zeros((substeps, count, 13 + 2 * joints))
         """MuJoCo's position and velocity before each substep, kept while `recording`."""
         self.altered = None if self.drive.chain is None else np.zeros((substeps, 2, count, joints))
-        """Torque through the transmission and friction that alterations make of them, kept while `recording`."""
+        """Torque through the transmission and friction that alterations make of them, kept while
+        `recording`."""
         self.told = None if self.drive.chain is None else Told(self.drive.chain, substeps)
         self.target = np.zeros((count, joints))
         """Joint angles that the controller was asked for in the last policy step [rad]."""
@@ -156,7 +184,10 @@ class Chunk:
     def step(self, action: np.ndarray) -> Step:
         """One policy step with finite actions `(n, J)`."""
         task, duration = self.task, self.task.physics.policy_step
-        self.previous_action, self.action = self.action, np.clip(action, -task.control.limit, task.control.limit)
+        self.previous_action, self.action = (
+            self.action,
+            np.clip(action, -task.control.limit, task.control.limit),
+        )
         self.smoothed = smoothed_action(self.smoothed, self.action, task.control.smoothing)
         position_before, velocity_before = self.drive.qpos.copy(), self.drive.qvel.copy()
         self._pushes(duration)
@@ -165,12 +196,16 @@ class Chunk:
         divergences = self._find_diverged(position_before, velocity_before)
         self.motion = read_motion(self.drive.qpos, self.drive.qvel)
         self.goal = self.commander.judge(self.motion)
-        ending = terminations.ending(self.motion, self.goal, self.episode_step, task.limits, duration)
+        ending = terminations.ending(
+            self.motion, self.goal, self.episode_step, task.limits, duration
+        )
         diverged = [d.simulation - self.first for d in divergences]
         if diverged:
             ending[diverged] = terminations.DIVERGED
         terminated = terminations.fell(ending)
-        state = self._state(self.thermal.advance(self.motor_torque / self._rated, duration), terminated)
+        state = self._state(
+            self.thermal.advance(self.motor_torque / self._rated, duration), terminated
+        )
         reward_terms = self._rewards(state) * duration
         if diverged:
             reward_terms[diverged] = 0.0
@@ -213,7 +248,10 @@ class Chunk:
         assisted = self.assist is not None and self.assist.active
         for substep in range(len(self.sensors)):
             if self.recording:
-                self.states[substep, :, : 7 + joints], self.states[substep, :, 7 + joints :] = self.drive.qpos, self.drive.qvel
+                self.states[substep, :, : 7 + joints], self.states[substep, :, 7 + joints :] = (
+                    self.drive.qpos,
+                    self.drive.qvel,
+                )
             self.drive.apply(target, self.motor_torque[substep], self.motor_velocity[substep])
             if self.told is not None and self.recording:
                 self._keep_altered(self.told, substep)
@@ -228,13 +266,19 @@ class Chunk:
         driven, altered = self.drive.driven, self.altered
         assert driven is not None
         assert altered is not None
-        matrix, velocity, kept = told.chain.machine.joint_from_motor, self.drive.qvel[:, 6:], altered[substep]
+        matrix, velocity, kept = (
+            told.chain.machine.joint_from_motor,
+            self.drive.qvel[:, 6:],
+            altered[substep],
+        )
         told.keep(substep, driven, self.drive.qpos[:, 7:], velocity, self.drive.qvel[:, 3:6])
         kept[0], kept[1] = applied(matrix, driven.transmitted), 0.0
         if driven.joint_damping is not None:
             kept[1] = driven.joint_damping * velocity
         if driven.motor_damping is not None:
-            kept[1] += applied(matrix, driven.motor_damping * applied(np.swapaxes(matrix, -1, -2), velocity))
+            kept[1] += applied(
+                matrix, driven.motor_damping * applied(np.swapaxes(matrix, -1, -2), velocity)
+            )
 
     def _advance(self) -> None:
         from mujoco.batch import SimulationError
@@ -248,7 +292,9 @@ class Chunk:
         finally:
             self._turn.acquire()
         if failed is not None:
-            self.drive.qpos[failed] = np.nan  # found, reported and started anew after the policy step
+            self.drive.qpos[failed] = (
+                np.nan
+            )  # found, reported and started anew after the policy step
 
     def _help(self) -> None:
         assert self.assist is not None
@@ -291,21 +337,34 @@ class Chunk:
         if chain is None:
             return None
         rows = slice(None) if ids is None else ids
-        given = motion.joint_position, motion.joint_velocity, motion.angular_velocity, motion.gravity
+        given = (
+            motion.joint_position,
+            motion.joint_velocity,
+            motion.angular_velocity,
+            motion.gravity,
+        )
         whole = [np.zeros((self.count, values.shape[-1])) for values in given]
         for place, values in zip(whole, given, strict=True):
             place[rows] = values
         position, velocity = chain.measured(*whole[:2])
         angular_velocity, force = chain.imu(whole[2], -GRAVITY * whole[3])
         down = -force[rows]
-        return Sensed(angular_velocity[rows], down / np.linalg.norm(down, axis=-1, keepdims=True), position[rows], velocity[rows])
+        return Sensed(
+            angular_velocity[rows],
+            down / np.linalg.norm(down, axis=-1, keepdims=True),
+            position[rows],
+            velocity[rows],
+        )
 
     def _started(self, ids: np.ndarray) -> State:
         """Start simulations and give the state of their rows; nothing has touched or moved yet."""
         motion = self._start(ids)
         goal = self.commander.reset(ids, motion, self.rng)
         count, substeps, joints = len(ids), len(self.sensors), len(self.layout.joints)
-        motors, pads = np.zeros((substeps, count, len(self.layout.motors))), np.zeros((substeps, count, len(self.layout.pads)))
+        motors, pads = (
+            np.zeros((substeps, count, len(self.layout.motors))),
+            np.zeros((substeps, count, len(self.layout.pads))),
+        )
         none = np.zeros(count)
         return State(
             motion=motion,
@@ -329,11 +388,17 @@ class Chunk:
         values = np.zeros((len(self.rewards), self.count))
         for row, (name, reward) in enumerate(self.rewards.items()):
             if reward.weight:
-                np.multiply(TERMS[name].function(state, self.robot, **reward.parameters), reward.weight, out=values[row])
+                np.multiply(
+                    TERMS[name].function(state, self.robot, **reward.parameters),
+                    reward.weight,
+                    out=values[row],
+                )
         return values.T
 
     def _find_diverged(self, position: np.ndarray, velocity: np.ndarray) -> list[Divergence]:
-        """Simulations gone wrong in this step; they are put back to standing so that the others can go on."""
+        """Simulations gone wrong in this step; they are put back to standing so that the others can
+        go on.
+        """
         if self._sound():
             return []
         with np.errstate(invalid="ignore"):
@@ -343,8 +408,19 @@ class Chunk:
         ids = np.flatnonzero(lost | warned)
         found = []
         for i in ids:
-            reason = self.batch.error(int(i)) or ("speed or position without bounds" if lost[i] else "warning of MuJoCo")
-            found.append(Divergence(self.first + int(i), int(self.episode_step[i]), reason, position[i], velocity[i], self.action[i].copy()))
+            reason = self.batch.error(int(i)) or (
+                "speed or position without bounds" if lost[i] else "warning of MuJoCo"
+            )
+            found.append(
+                Divergence(
+                    self.first + int(i),
+                    int(self.episode_step[i]),
+                    reason,
+                    position[i],
+                    velocity[i],
+                    self.action[i].copy(),
+                )
+            )
         if len(ids):
             self._start(ids)
             for values in (self.motor_torque, self.motor_velocity, self.sensors, self.states):
@@ -357,7 +433,11 @@ class Chunk:
         """Whether all simulations are well."""
         speed, position = self.drive.qvel, self.drive.qpos
         bounded = np.einsum("nj,nj->", speed, speed) < FASTEST**2  # false for what is not a number
-        return bool(bounded and np.isfinite(np.einsum("nj->", position)) and not self.batch.warning[:, _BROKEN, 1].any())
+        return bool(
+            bounded
+            and np.isfinite(np.einsum("nj->", position))
+            and not self.batch.warning[:, _BROKEN, 1].any()
+        )
 
     def _start(self, ids: np.ndarray) -> Motion:
         """Put robots on the floor near their default posture; motion of these rows."""
@@ -367,9 +447,14 @@ class Chunk:
         self.batch.state[ids] = self._standing[ids]
         self.batch.warning[ids] = 0
         position, velocity = self.drive.qpos[ids], np.zeros((count, 6 + joints))
-        position[:, 7:] = np.minimum(np.maximum(position[:, 7:] + offset[:, :joints], layout.lower), layout.upper)
+        position[:, 7:] = np.minimum(
+            np.maximum(position[:, 7:] + offset[:, :joints], layout.lower), layout.upper
+        )
         position[:, 3:7] = _quaternion(*offset[:, -3:].T)
-        velocity[:, 6:], velocity[:, :2] = offset[:, joints : 2 * joints], offset[:, 2 * joints : 2 * joints + 2]
+        velocity[:, 6:], velocity[:, :2] = (
+            offset[:, joints : 2 * joints],
+            offset[:, 2 * joints : 2 * joints + 2],
+        )
         self._tried[ids] = position
         self._starter.forward(ids, 1)
         position[:, 2] -= self._places[ids][:, self._pad_ids, 2].min(-1) - self._pad_radius
@@ -389,7 +474,9 @@ class Chunk:
         legs = (substeps, self.count, LEGS, -1)
         matrix = self.drive.model.joint_from_motor
         torque = np.einsum("...jm,...m->...j", matrix, self.motor_torque.reshape(legs))
-        friction = self.drive.friction(velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs))
+        friction = self.drive.friction(
+            velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs)
+        )
         shaped = {"driven_joint_torque": torque, "joint_friction": friction}
         found = {name: values.reshape(substeps, self.count, -1) for name, values in shaped.items()}
         if self.altered is not None:
@@ -414,12 +501,16 @@ class Chunk:
 
 
 def _give_models(batch: Any, models: list[mujoco.MjModel]) -> None:
-    """Give each simulation the values of a model of its own; all are compiled from designs with the same structure."""
+    """Give each simulation the values of a model of its own; all are compiled from designs with the
+    same structure.
+    """
     from mujoco.batch import MODEL_FIELDS
 
     for name in sorted(MODEL_FIELDS):
         first = getattr(models[0], name, None)
-        if isinstance(first, np.ndarray) and any(not np.array_equal(first, getattr(m, name)) for m in models[1:]):
+        if isinstance(first, np.ndarray) and any(
+            not np.array_equal(first, getattr(m, name)) for m in models[1:]
+        ):
             own = batch.expand(name)
             own[:] = np.stack([getattr(m, name) for m in models])[:, : own.shape[1]]
 
@@ -431,7 +522,9 @@ def _vary_models(batch: Any, task: Task, rng: np.random.Generator) -> None:
         batch.expand("body_mass")[:] *= factor
         batch.expand("body_inertia")[:] *= factor[..., None]
     if settings.floor_friction:
-        batch.expand("geom_friction")[..., 0] *= rng.uniform(1 - settings.floor_friction, 1 + settings.floor_friction, (batch.nsim, 1))
+        batch.expand("geom_friction")[..., 0] *= rng.uniform(
+            1 - settings.floor_friction, 1 + settings.floor_friction, (batch.nsim, 1)
+        )
     if settings.mass:
         batch.set_const()
 
@@ -439,4 +532,12 @@ def _vary_models(batch: Any, task: Task, rng: np.random.Generator) -> None:
 def _quaternion(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> np.ndarray:
     """Unit quaternions w x y z of yaw, then pitch, then roll, `(n, 4)`."""
     (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a / 2), np.sin(a / 2)) for a in (roll, pitch, yaw))
-    return np.stack([cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy], -1)
+    return np.stack(
+        [
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        ],
+        -1,
+    )

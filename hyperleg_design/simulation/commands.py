@@ -58,15 +58,26 @@ class WaypointCommands(Checked):
     """Courses: points [m] in a frame at the start, x ahead."""
 
     def __post_init__(self) -> None:
-        # Qualified, because a dataclass of its own cannot reach its base by `super()` before it is made.
+        # Qualified, because a dataclass of its own cannot reach its base by `super()` before it is
+        # made.
         Checked.__post_init__(self)
         for course in self.courses:
             points = np.asarray(course, float)
-            if points.ndim != 2 or points.shape[1] != 2 or not len(points) or not np.all(np.isfinite(points)):
+            if (
+                points.ndim != 2
+                or points.shape[1] != 2
+                or not len(points)
+                or not np.all(np.isfinite(points))
+            ):
                 raise InputError("waypoints", "courses", course, "expects points [x, y] in metres")
             legs = np.linalg.norm(np.diff(points, axis=0, prepend=np.zeros((1, 2))), axis=1)
             if np.any(legs <= self.arrival):
-                raise InputError("waypoints", "courses", course, f"has a leg no longer than the arrival radius, {self.arrival} m")
+                raise InputError(
+                    "waypoints",
+                    "courses",
+                    course,
+                    f"has a leg no longer than the arrival radius, {self.arrival} m",
+                )
         if self.course_share and not self.courses:
             raise InputError("waypoints", "course_share", self.course_share, "needs courses")
 
@@ -77,13 +88,19 @@ class Commander(Protocol):
     settings: Any
 
     def reset(self, ids: np.ndarray, motion: Motion, rng: np.random.Generator) -> Goal | None:
-        """New commands at the start of episodes, and where they stand to them; `motion` holds the rows of `ids`."""
+        """New commands at the start of episodes, and where they stand to them; `motion` holds the
+        rows of `ids`.
+        """
 
     def judge(self, motion: Motion) -> Goal | None:
         """Where each simulation stands to its waypoint, if there are any."""
 
-    def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator) -> None:
-        """Go on by one policy step, after it was judged; rows of `goal` that got a new waypoint then describe that."""
+    def advance(
+        self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator
+    ) -> None:
+        """Go on by one policy step, after it was judged; rows of `goal` that got a new waypoint
+        then describe that.
+        """
 
     def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
         """The command that a policy sees, `(n, 3)`; of `ids`, whose goals are given, or of all."""
@@ -116,7 +133,9 @@ class VelocityCommander:
     def judge(self, motion: Motion) -> None:
         """No waypoints."""
 
-    def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator) -> None:
+    def advance(
+        self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator
+    ) -> None:
         """New commands where the old ones' time is over."""
         self.left -= duration
         over = np.flatnonzero(self.left < 0.5 * duration)
@@ -137,7 +156,11 @@ class WaypointCommander:
 
     def __init__(self, settings: WaypointCommands, count: int) -> None:
         self.settings = settings
-        self.last, self.target, self.following = np.zeros((count, 2)), np.zeros((count, 2)), np.zeros((count, 2))
+        self.last, self.target, self.following = (
+            np.zeros((count, 2)),
+            np.zeros((count, 2)),
+            np.zeros((count, 2)),
+        )
         self.best = np.zeros(count)
         """Least distance to the waypoint so far, d* [m]."""
         self.reached = np.zeros(count, int)
@@ -150,7 +173,12 @@ class WaypointCommander:
         """First waypoints, from where the robots stand, ahead of them."""
         count, s = len(ids), self.settings
         here = motion.position[:, :2]
-        self._origin[ids], self._heading[ids], self.last[ids], self.reached[ids] = here, motion.heading, here, 0
+        self._origin[ids], self._heading[ids], self.last[ids], self.reached[ids] = (
+            here,
+            motion.heading,
+            here,
+            0,
+        )
         on_course = rng.uniform(size=count) < s.course_share
         self.course[ids] = np.where(on_course, rng.integers(max(len(s.courses), 1), size=count), -1)
         self.target[ids] = self._drawn(here, motion.heading, rng)
@@ -169,7 +197,9 @@ class WaypointCommander:
         self.best = np.minimum(self.best, goal.distance)
         return goal
 
-    def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator) -> None:
+    def advance(
+        self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator
+    ) -> None:
         """The next waypoint for those that arrived; a finished course keeps its last."""
         assert goal is not None
         ids = np.flatnonzero(goal.arrived & ~goal.finished)
@@ -177,7 +207,9 @@ class WaypointCommander:
             return
         self.reached[ids] += 1
         self.last[ids], self.target[ids] = self.target[ids], self.following[ids]
-        self.following[ids] = self._drawn(self.target[ids], _unit(self.target[ids] - self.last[ids]), rng)
+        self.following[ids] = self._drawn(
+            self.target[ids], _unit(self.target[ids] - self.last[ids]), rng
+        )
         self._from_course(ids)
         here = motion.position[ids, :2]
         self.best[ids] = np.linalg.norm(self.target[ids] - here, axis=1)
@@ -208,22 +240,33 @@ class WaypointCommander:
             finished=none.copy(),
         )
 
-    def _drawn(self, start: np.ndarray, direction: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    def _drawn(
+        self, start: np.ndarray, direction: np.ndarray, rng: np.random.Generator
+    ) -> np.ndarray:
         s, count = self.settings, len(start)
-        distance, turn = rng.uniform(s.near, s.far, count), rng.uniform(-s.bearing, s.bearing, count)
-        return start + distance[:, None] * to_world(direction, np.column_stack([np.cos(turn), np.sin(turn)]))
+        distance, turn = (
+            rng.uniform(s.near, s.far, count),
+            rng.uniform(-s.bearing, s.bearing, count),
+        )
+        return start + distance[:, None] * to_world(
+            direction, np.column_stack([np.cos(turn), np.sin(turn)])
+        )
 
     def _course_length(self) -> np.ndarray:
         lengths = np.array([len(c) for c in self.settings.courses] + [0])
         return np.asarray(lengths[self.course])
 
     def _from_course(self, ids: np.ndarray) -> None:
-        """Target and the one after it from the course, where there is one; the last point follows itself."""
+        """Target and the one after it from the course, where there is one; the last point follows
+        itself.
+        """
         for which, points in enumerate(self.settings.courses):
             chosen = ids[self.course[ids] == which]
             for array, ahead in ((self.target, 0), (self.following, 1)):
                 index = np.minimum(self.reached[chosen] + ahead, len(points) - 1)
-                array[chosen] = self._origin[chosen] + to_world(self._heading[chosen], np.asarray(points, float)[index])
+                array[chosen] = self._origin[chosen] + to_world(
+                    self._heading[chosen], np.asarray(points, float)[index]
+                )
 
 
 def clipped(offset: np.ndarray) -> np.ndarray:
@@ -241,9 +284,15 @@ def segment_distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> n
     return np.hypot(nearest[:, 0], nearest[:, 1])
 
 
-def commander(settings: VelocityCommands | WaypointCommands, count: int) -> VelocityCommander | WaypointCommander:
+def commander(
+    settings: VelocityCommands | WaypointCommands, count: int
+) -> VelocityCommander | WaypointCommander:
     """Runtime of a kind of command for a number of simulations."""
-    return VelocityCommander(settings, count) if isinstance(settings, VelocityCommands) else WaypointCommander(settings, count)
+    return (
+        VelocityCommander(settings, count)
+        if isinstance(settings, VelocityCommands)
+        else WaypointCommander(settings, count)
+    )
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

@@ -1,4 +1,6 @@
-"""Actuation inside a MuJoCo batch: reads the state, writes motor torques and joint friction before each simulation step."""
+"""Actuation inside a MuJoCo batch: reads the state, writes motor torques and joint friction before
+each simulation step.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +31,9 @@ LEGS = 2
 class Drive:
     """Actuation of all robots of one batch.
 
-    With `physics.posture_dependent` the tendons' coefficients follow the linkage model before each step, so motor torque,
-    motor velocity and rotor inertia are those of the posture; the rotors' velocity term `M J dM^T/dt q_dot` is left out.
+    With `physics.posture_dependent` the tendons' coefficients follow the linkage model before each
+    step, so motor torque, motor velocity and rotor inertia are those of the posture; the rotors'
+    velocity term `M J dM^T/dt q_dot` is left out.
     """
 
     def __init__(
@@ -59,19 +62,29 @@ class Drive:
         self._width: np.ndarray = np.array(physics.friction_velocity)
         if physics.friction_space == "motor":
             self.coulomb, self.viscous = actuation.motor_friction(design)
-            self._width = actuation.motor_friction_width(self.model.joint_from_motor, physics.friction_velocity)
+            self._width = actuation.motor_friction_width(
+                self.model.joint_from_motor, physics.friction_velocity
+            )
         self._spread()
         self._damping = None
         if physics.friction == "implicit":
-            self._damping = batch.expand("dof_damping")[:, 6:] if physics.friction_space == "joint" else batch.expand("tendon_damping")
+            self._damping = (
+                batch.expand("dof_damping")[:, 6:]
+                if physics.friction_space == "joint"
+                else batch.expand("tendon_damping")
+            )
         self.chain: Chain | None = None
         """Of the alterations; None without."""
         if alterations:
             self._alter(design, layout, batch, alterations)
 
-    def _alter(self, design: Design, layout: Layout, batch: Batch, alterations: Sequence[Alteration]) -> None:
+    def _alter(
+        self, design: Design, layout: Layout, batch: Batch, alterations: Sequence[Alteration]
+    ) -> None:
         inertia = rotor_inertia(design)
-        machine = machine_from(self.model, layout.joints, layout.motors, inertia, bus_voltage(design))
+        machine = machine_from(
+            self.model, layout.joints, layout.motors, inertia, bus_voltage(design)
+        )
         chain = self.chain = Chain(machine, alterations, self.count, float(self.physics.time_step))
         altered, nominal = chain.machine, chain.nominal
         if not np.array_equal(altered.rigid_inertia, nominal.rotor_inertia):
@@ -79,12 +92,26 @@ class Drive:
             batch.set_const()
         if altered.joint_from_motor is not nominal.joint_from_motor:
             if self._linkage is not None:
-                raise InputError("physics", "posture_dependent", True, "must be false with an alteration of the transmission")
+                raise InputError(
+                    "physics",
+                    "posture_dependent",
+                    True,
+                    "must be false with an alteration of the transmission",
+                )
             leg, joint, motor = _wrap_places(batch, layout)
-            matrix, rows, columns = altered.joint_from_motor, leg * layout.leg_joints + joint, leg * layout.leg_motors + motor
+            matrix, rows, columns = (
+                altered.joint_from_motor,
+                leg * layout.leg_joints + joint,
+                leg * layout.leg_motors + motor,
+            )
             batch.expand("wrap_prm")[:] = matrix[..., rows, columns]
-        self._joint_damping, self._motor_damping = batch.expand("dof_damping")[:, 6:], batch.expand("tendon_damping")
-        self._own_damping = [np.array(values) for values in (self._joint_damping, self._motor_damping)]
+        self._joint_damping, self._motor_damping = (
+            batch.expand("dof_damping")[:, 6:],
+            batch.expand("tendon_damping"),
+        )
+        self._own_damping = [
+            np.array(values) for values in (self._joint_damping, self._motor_damping)
+        ]
         self.driven: Driven | None = None
         """What the chain gave in the last step."""
 
@@ -94,10 +121,14 @@ class Drive:
             self.chain.reset(ids, position, velocity)
 
     def _spread(self) -> None:
-        """Constants written out for every simulation and leg, so that NumPy runs through them in one go."""
+        """Constants written out for every simulation and leg, so that NumPy runs through them in
+        one go.
+        """
 
         def full(values: np.ndarray) -> np.ndarray:
-            return np.ascontiguousarray(np.broadcast_to(values, (self.count, LEGS, values.shape[-1])))
+            return np.ascontiguousarray(
+                np.broadcast_to(values, (self.count, LEGS, values.shape[-1]))
+            )
 
         one = self.model.envelope
         names = ("no_load_speed", "stall_torque", "peak_torque", "power_constant")
@@ -105,7 +136,11 @@ class Drive:
         gains = {n: full(getattr(self.model, n)) for n in ("rated_torque", "stiffness", "damping")}
         self.model = dataclasses.replace(self.model, envelope=envelope, **gains)
         self.coulomb, self.viscous = full(self.coulomb), full(self.viscous)
-        self._width = full(np.broadcast_to(self._width, self.coulomb.shape[-1:])) if self._width.ndim < 3 else full(self._width)
+        self._width = (
+            full(np.broadcast_to(self._width, self.coulomb.shape[-1:]))
+            if self._width.ndim < 3
+            else full(self._width)
+        )
 
     def flat(self, values: np.ndarray) -> np.ndarray:
         """Constants `(n, 2, k)` as rows over both legs, `(n, 2 k)`."""
@@ -119,7 +154,10 @@ class Drive:
             torque: filled with the motor torques [Nm], `(n, K)`.
             speed: filled with the motor velocities [rad/s], `(n, K)`.
         """
-        position, velocity = self.qpos[:, 7:].copy().reshape(self._shape), self.qvel[:, 6:].copy().reshape(self._shape)
+        position, velocity = (
+            self.qpos[:, 7:].copy().reshape(self._shape),
+            self.qvel[:, 6:].copy().reshape(self._shape),
+        )
         if self.chain is not None:
             self._apply_chain(self.chain, target, position, velocity, torque, speed)
             return
@@ -137,16 +175,29 @@ class Drive:
         self._resist(velocity, motor_speed)
 
     def _apply_chain(
-        self, chain: Chain, target: np.ndarray, position: np.ndarray, velocity: np.ndarray, torque: np.ndarray, speed: np.ndarray
+        self,
+        chain: Chain,
+        target: np.ndarray,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        torque: np.ndarray,
+        speed: np.ndarray,
     ) -> None:
         matrix, whole, to_motor = self.model.joint_from_motor, None, None
         if self._linkage is not None:
             matrix = self._linkage.joint_from_motor(position)
-            whole, to_motor = legs_matrix(matrix), legs_matrix(actuation.motor_from_joint(matrix, self.model.envelope.power_constant))
+            whole, to_motor = (
+                legs_matrix(matrix),
+                legs_matrix(actuation.motor_from_joint(matrix, self.model.envelope.power_constant)),
+            )
             leg, joint, motor = self._places
             self._coefficients[:] = matrix[:, leg, joint, motor]
         driven = self.driven = chain.drive(
-            self.flat(position), self.flat(velocity), target=self.flat(target), joint_from_motor=whole, motor_from_joint=to_motor
+            self.flat(position),
+            self.flat(velocity),
+            target=self.flat(target),
+            joint_from_motor=whole,
+            motor_from_joint=to_motor,
         )
         torque[:], speed[:] = driven.torque, driven.motor_velocity
         self._ctrl[:], self._applied[:, 6:] = driven.transmitted, 0.0
@@ -162,7 +213,9 @@ class Drive:
             self._applied[:, 6:] += driven.joint_torque
 
     def friction(self, velocity: np.ndarray, motor_speed: np.ndarray) -> np.ndarray:
-        """Friction torque at the joints [Nm], `(..., 2, joints)` and `(..., 2, motors)` -> `(..., 2, joints)`."""
+        """Friction torque at the joints [Nm], `(..., 2, joints)` and `(..., 2, motors)` -> `(...,
+        2, joints)`.
+        """
         if self.physics.friction_space == "joint":
             return actuation.friction_torque(self.coulomb, self.viscous, velocity, self._width)
         torque = actuation.friction_torque(self.coulomb, self.viscous, motor_speed, self._width)
@@ -175,13 +228,20 @@ class Drive:
             damping = actuation.friction_damping(self.coulomb, self.viscous, moving, self._width)
             self._damping[:] = damping.reshape(self.count, -1)
         elif at_joints:
-            self._applied[:, 6:] = -actuation.friction_torque(self.coulomb, self.viscous, moving, self._width).reshape(self.count, -1)
+            self._applied[:, 6:] = -actuation.friction_torque(
+                self.coulomb, self.viscous, moving, self._width
+            ).reshape(self.count, -1)
         else:
-            self._ctrl[:] -= actuation.friction_torque(self.coulomb, self.viscous, moving, self._width).reshape(self.count, -1)
+            self._ctrl[:] -= actuation.friction_torque(
+                self.coulomb, self.viscous, moving, self._width
+            ).reshape(self.count, -1)
 
 
 def _varied(
-    model: actuation.ActuationModel, shape: tuple[int, int, int], randomisation: Randomisation, rng: np.random.Generator
+    model: actuation.ActuationModel,
+    shape: tuple[int, int, int],
+    randomisation: Randomisation,
+    rng: np.random.Generator,
 ) -> actuation.ActuationModel:
     def drawn(values: np.ndarray, spread: float) -> np.ndarray:
         return values * rng.uniform(1 - spread, 1 + spread, shape) if spread else values

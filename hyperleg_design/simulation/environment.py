@@ -4,8 +4,9 @@
     observations = environment.reset()
     step = environment.step(policy(observations["policy"]))
 
-Simulations are worked on in chunks, each with its own random stream and its own `mujoco.batch.Batch`; while one chunk is in
-Python, for its actuators, rewards and observations, others are in MuJoCo. The same seed gives the same bytes with any number of threads.
+Simulations are worked on in chunks, each with its own random stream and its own
+`mujoco.batch.Batch`; while one chunk is in Python, for its actuators, rewards and observations,
+others are in MuJoCo. The same seed gives the same bytes with any number of threads.
 """
 
 from __future__ import annotations
@@ -54,7 +55,8 @@ class Environment:
         seed: of all randomness.
         threads: that step them; all processors by default.
         assist: helping forces, for training only.
-        alterations: of the simulated robot, or what makes them for a design; without, nothing changes.
+        alterations: of the simulated robot, or what makes them for a design; without, nothing
+            changes.
     """
 
     def __init__(
@@ -73,27 +75,45 @@ class Environment:
         if threads is not None and threads < 1:
             raise InputError("environment", "threads", threads, "expects at least 1")
         if design.batch_shape not in ((), (simulations,)):
-            raise InputError("environment", "simulations", simulations, f"must equal the number of designs, {design.batch_shape[0]}")
+            raise InputError(
+                "environment",
+                "simulations",
+                simulations,
+                f"must equal the number of designs, {design.batch_shape[0]}",
+            )
         self.design, self.task, self.simulations, self.seed = design, task, simulations, seed
         self.layout: Layout = layout_of(design)
         """Names and order of joints, motors and pads."""
         batched = bool(design.batch_shape)
         self.alterations = made(alterations, design.take(0) if batched else design)
         """Of each of the simulated robots."""
-        each = [simulation_model(design.take(i), task.physics, self.alterations) for i in range(simulations)] if batched else None
-        self.model: mujoco.MjModel = each[0] if each else simulation_model(design, task.physics, self.alterations)
+        each = (
+            [
+                simulation_model(design.take(i), task.physics, self.alterations)
+                for i in range(simulations)
+            ]
+            if batched
+            else None
+        )
+        self.model: mujoco.MjModel = (
+            each[0] if each else simulation_model(design, task.physics, self.alterations)
+        )
         """MuJoCo model that is simulated; the first one's of a batch of designs."""
         if any(alteration.edits for alteration in self.alterations):
-            self.layout = dataclasses.replace(self.layout, weight=float(self.model.body_mass.sum()) * GRAVITY)
+            self.layout = dataclasses.replace(
+                self.layout, weight=float(self.model.body_mass.sum()) * GRAVITY
+            )
         for model in each or [self.model]:
             check_standing(model, self.layout, task.limits, design.name)
-        # A trajectory depends on the chunks through their random streams, so they follow from the number of simulations alone.
+        # A trajectory depends on the chunks through their random streams, so they follow from the
+        # number of simulations alone.
         count = max(-(-simulations // CHUNK), 2 if simulations >= SMALLEST_SPLIT else 1)
         bounds = np.linspace(0, simulations, count + 1).astype(int)
         streams = np.random.SeedSequence(seed).spawn(count)
         threads = threads or os.cpu_count() or 1
         workers = min(threads, count)
-        # Twice as many threads in MuJoCo as workers: while one chunk is in Python, another's physics has the whole machine.
+        # Twice as many threads in MuJoCo as workers: while one chunk is in Python, another's
+        # physics has the whole machine.
         each_threads = min(threads, -(-2 * threads // workers))
         self._turn = threading.Lock()
         self.chunks = []
@@ -102,7 +122,19 @@ class Environment:
             own = each[low:high] if each else None
             rng = np.random.default_rng(stream)
             self.chunks.append(
-                Chunk(part, task, self.layout, self.model, own, int(low), int(high - low), rng, self._turn, each_threads, self.alterations)
+                Chunk(
+                    part,
+                    task,
+                    self.layout,
+                    self.model,
+                    own,
+                    int(low),
+                    int(high - low),
+                    rng,
+                    self._turn,
+                    each_threads,
+                    self.alterations,
+                )
             )
         self._pool = ThreadPoolExecutor(workers) if workers > 1 else None
         self.divergences: list[Divergence] = []
@@ -120,12 +152,18 @@ class Environment:
     @property
     def observation_sizes(self) -> dict[str, int]:
         """Numbers in each group of observations."""
-        return {group: observations.size(parts, self.layout) for group, parts in self.task.observations.items()}
+        return {
+            group: observations.size(parts, self.layout)
+            for group, parts in self.task.observations.items()
+        }
 
     @property
     def observation_columns(self) -> dict[str, list[str]]:
         """A name for each number of each group."""
-        return {group: observations.column_names(parts, self.layout) for group, parts in self.task.observations.items()}
+        return {
+            group: observations.column_names(parts, self.layout)
+            for group, parts in self.task.observations.items()
+        }
 
     @property
     def reward_names(self) -> list[str]:
@@ -155,7 +193,10 @@ class Environment:
 
     def mirror_maps(self) -> dict[str, mirror.MirrorMap]:
         """Left-right mirror of each observation group, and of actions under `action`."""
-        maps = {group: mirror.mirror_observation(parts, self.layout) for group, parts in self.task.observations.items()}
+        maps = {
+            group: mirror.mirror_observation(parts, self.layout)
+            for group, parts in self.task.observations.items()
+        }
         return {**maps, "action": mirror.mirror_joints(self.layout)}
 
     def set_reward(self, name: str, weight: float | None = None, **parameters: float) -> None:
@@ -166,8 +207,15 @@ class Environment:
         """
         old = self.chunks[0].rewards.get(name)
         if old is None:
-            raise InputError(self.task.name, f"rewards.{name}", weight, f"is not in the task; it has {', '.join(self.reward_names)}")
-        new = Reward(old.weight if weight is None else float(weight), {**old.parameters, **parameters})
+            raise InputError(
+                self.task.name,
+                f"rewards.{name}",
+                weight,
+                f"is not in the task; it has {', '.join(self.reward_names)}",
+            )
+        new = Reward(
+            old.weight if weight is None else float(weight), {**old.parameters, **parameters}
+        )
         check_reward(self.task.name, name, new, isinstance(self.task.commands, WaypointCommands))
         for chunk in self.chunks:
             chunk.rewards[name] = new
@@ -182,7 +230,12 @@ class Environment:
         known = [f.name for f in dataclasses.fields(current)]
         for name, value in values.items():
             if name not in known:
-                raise InputError(self.task.name, f"commands.{name}", value, f"no such setting; there are {', '.join(known)}")
+                raise InputError(
+                    self.task.name,
+                    f"commands.{name}",
+                    value,
+                    f"no such setting; there are {', '.join(known)}",
+                )
         changed = dataclasses.replace(current, **values)
         for chunk in self.chunks:
             chunk.commander.settings = changed
@@ -195,7 +248,8 @@ class Environment:
         """One policy step; simulations whose episode ends start a new one.
 
         Args:
-            action: `(n, J)`; joint targets are the default posture plus `control.scale` times its moving average.
+            action: `(n, J)`; joint targets are the default posture plus `control.scale` times its
+                moving average.
 
         Raises:
             InputError: wrong shape, or values that are not finite.
@@ -203,12 +257,24 @@ class Environment:
         action = np.asarray(action)
         if action.shape != (self.simulations, self.action_size):
             expected = (self.simulations, self.action_size)
-            raise InputError("policy", "action", action.shape, f"must have the shape {expected}; is the policy made for another robot?")
+            raise InputError(
+                "policy",
+                "action",
+                action.shape,
+                f"must have the shape {expected}; is the policy made for another robot?",
+            )
         if not np.isfinite(action.sum()) and not np.all(np.isfinite(action)):
             bad = np.flatnonzero(~np.isfinite(action).all(1))
-            raise InputError("policy", "action", action[bad[0]].tolist(), f"is not finite in {len(bad)} simulations, first in {bad[0]}")
+            raise InputError(
+                "policy",
+                "action",
+                action[bad[0]].tolist(),
+                f"is not finite in {len(bad)} simulations, first in {bad[0]}",
+            )
         action = action.astype(float)
-        parts = self._each(Chunk.step, [(action[c.first : c.first + c.count],) for c in self.chunks])
+        parts = self._each(
+            Chunk.step, [(action[c.first : c.first + c.count],) for c in self.chunks]
+        )
         step = parts[0] if len(parts) == 1 else _merged(parts)
         if step.divergences:
             self.divergence_count += len(step.divergences)
@@ -226,17 +292,24 @@ class Environment:
             chunk.recording = on
 
     def signals(self) -> dict[str, np.ndarray]:
-        """What happened within the last policy step, at the start of each substep; needs `recording`.
+        """What happened within the last policy step, at the start of each substep; needs
+        `recording`.
 
         Returns:
-            `(n, substeps, ...)` each: `base_position`, `base_velocity` (world), `base_orientation` (w x y z),
-            `base_angular_velocity` (pelvis frame), `joint_target`, `joint_position`, `joint_velocity`, `driven_joint_torque`
-            (M times the motor torque, before friction), `joint_friction`, `motor_torque`, `motor_velocity`, `pad_force` (of
-            the floor on each pad, world), `pad_slip`; with alterations also those of `told.Told`. Zero for a simulation that
-            diverged; for others that ended, of the episode that did.
+            `(n, substeps, ...)` each: `base_position`, `base_velocity` (world), `base_orientation`
+            (w x y z), `base_angular_velocity` (pelvis frame), `joint_target`, `joint_position`,
+            `joint_velocity`, `driven_joint_torque` (M times the motor torque, before friction),
+            `joint_friction`, `motor_torque`, `motor_velocity`, `pad_force` (of the floor on each
+            pad, world), `pad_slip`; with alterations also those of `told.Told`. Zero for a
+            simulation that diverged; for others that ended, of the episode that did.
         """
         if not self.recording:
-            raise InputError("environment", "recording", False, "must be set before the step whose signals are read")
+            raise InputError(
+                "environment",
+                "recording",
+                False,
+                "must be set before the step whose signals are read",
+            )
         return _joined([c.signals() for c in self.chunks])
 
     def close(self) -> None:
@@ -251,7 +324,10 @@ class Environment:
 
         if self._pool is None:
             return [work(chunk, a) for chunk, a in zip(self.chunks, arguments, strict=True)]
-        waiting = [self._pool.submit(work, chunk, a) for chunk, a in zip(self.chunks, arguments, strict=True)]
+        waiting = [
+            self._pool.submit(work, chunk, a)
+            for chunk, a in zip(self.chunks, arguments, strict=True)
+        ]
         return [w.result() for w in waiting]
 
 
@@ -259,7 +335,8 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
     """Whether a robot can stand in its default posture.
 
     Raises:
-        InputError: its pelvis would be under the height that counts as fallen, or its weight beside its soles.
+        InputError: its pelvis would be under the height that counts as fallen, or its weight beside
+        its soles.
     """
     import mujoco
 
@@ -268,28 +345,50 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
     mujoco.mj_forward(model, data)
     height = float(data.qpos[2])
     if height <= limits.height:
-        remedy = f"the pelvis stands lower than a fall, {limits.height} m; set limits.height of the task, or longer legs"
+        remedy = (
+            f"the pelvis stands lower than a fall, {limits.height} m; set limits.height of "
+            f"the task, or longer legs"
+        )
         raise InputError(name, "", round(height, 4), remedy)
     pads = np.array([data.geom(pad).xpos[:2] for pad in layout.pads])
     middle = data.subtree_com[1][:2]
     if np.any(middle < pads.min(0)) or np.any(middle > pads.max(0)):
-        remedy = "the centre of mass lies beside the soles in the default posture; change joints.*.default_deg"
+        remedy = (
+            "the centre of mass lies beside the soles in the default posture; change "
+            "joints.*.default_deg"
+        )
         raise InputError(name, "", np.round(middle, 4).tolist(), remedy)
 
 
 def _taken(design: Design, low: int, high: int) -> Design:
     """Some robots of a batch of designs."""
-    values = {path: design[path] if size == 1 else design[path][low:high] for path, size in design.batch_sizes().items()}
+    values = {
+        path: design[path] if size == 1 else design[path][low:high]
+        for path, size in design.batch_sizes().items()
+    }
     return design.with_values(values, f"{design.name}[{low}:{high}]")
 
 
 def _joined(parts: Iterable[Any]) -> dict[str, np.ndarray]:
     parts = list(parts)
-    return {name: np.concatenate([p[name] for p in parts]) if len(parts) > 1 else np.asarray(parts[0][name]) for name in parts[0]}
+    return {
+        name: np.concatenate([p[name] for p in parts])
+        if len(parts) > 1
+        else np.asarray(parts[0][name])
+        for name in parts[0]
+    }
 
 
 def _merged(parts: list[Step]) -> Step:
-    arrays = ("reward", "terminated", "truncated", "ending", "reward_terms", "ended", "episode_steps")
+    arrays = (
+        "reward",
+        "terminated",
+        "truncated",
+        "ending",
+        "reward_terms",
+        "ended",
+        "episode_steps",
+    )
     return Step(
         observations=_joined(p.observations for p in parts),
         final_observations=_joined(p.final_observations for p in parts),

@@ -1,4 +1,6 @@
-"""The environment behind Gymnasium's interface for vector environments; needs the package `gymnasium`."""
+"""The environment behind Gymnasium's interface for vector environments; needs the package
+`gymnasium`.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ ACTION_BOUND = 10.0
 
 
 class GymnasiumVector(VectorEnv):  # type: ignore[misc]
-    """Observations of one group; episodes start anew within the step that ends them, with `final_obs` in the info."""
+    """Observations of one group; episodes start anew within the step that ends them, with
+    `final_obs` in the info.
+    """
 
     def __init__(self, environment: Environment, group: str = "policy") -> None:
         self.environment, self.group = environment, group
@@ -23,15 +27,25 @@ class GymnasiumVector(VectorEnv):  # type: ignore[misc]
         self.metadata = {"autoreset_mode": AutoresetMode.SAME_STEP}
         size = environment.observation_sizes[group]
         self.single_observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (size,), np.float32)
-        self.single_action_space = gymnasium.spaces.Box(-ACTION_BOUND, ACTION_BOUND, (environment.action_size,), np.float32)
-        self.observation_space = gymnasium.vector.utils.batch_space(self.single_observation_space, self.num_envs)
-        self.action_space = gymnasium.vector.utils.batch_space(self.single_action_space, self.num_envs)
+        self.single_action_space = gymnasium.spaces.Box(
+            -ACTION_BOUND, ACTION_BOUND, (environment.action_size,), np.float32
+        )
+        self.observation_space = gymnasium.vector.utils.batch_space(
+            self.single_observation_space, self.num_envs
+        )
+        self.action_space = gymnasium.vector.utils.batch_space(
+            self.single_action_space, self.num_envs
+        )
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[np.ndarray, dict[str, Any]]:
         """Start all simulations; the seed is the environment's own, given when it was made."""
         return self.environment.reset()[self.group], {}
 
-    def step(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
+    def step(
+        self, actions: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """One policy step."""
         step = self.environment.step(actions)
         info: dict[str, Any] = {}

@@ -1,4 +1,6 @@
-"""Order of joints, motors and sole pads in every array of this room: left leg first, each leg from the hip down."""
+"""Order of joints, motors and sole pads in every array of this room: left leg first, each leg from
+the hip down.
+"""
 
 from __future__ import annotations
 
@@ -30,11 +32,13 @@ class Layout:
     motors: tuple[str, ...]
     """Names with the side in front, `(K,)`."""
     pads: tuple[str, ...]
-    """Geoms of the sole pads in the MuJoCo model, as many of the left foot as of the right, `(P,)`."""
+    """Geoms of the sole pads in the MuJoCo model, as many of the left foot as of the right,
+    `(P,)`."""
     pad_foot: np.ndarray
     """Foot of each pad, 0 left, 1 right, `(P,)`."""
     pad_position: np.ndarray
-    """Centre of each pad from the ankle in its foot's frame, toe straight, y to the left [m], `(P, 3)`."""
+    """Centre of each pad from the ankle in its foot's frame, toe straight, y to the left [m], `(P,
+    3)`."""
     default: np.ndarray
     """Posture to which actions are added [rad], `(J,)`."""
     lower: np.ndarray
@@ -63,11 +67,15 @@ class Layout:
 
     def joint_indices(self, *names: str) -> np.ndarray:
         """Places of joints, given without the side, in both legs."""
-        return np.array([i for i, joint in enumerate(self.joints) if joint.split("_", 1)[1] in names], int)
+        return np.array(
+            [i for i, joint in enumerate(self.joints) if joint.split("_", 1)[1] in names], int
+        )
 
 
 def layout_of(design: Design) -> Layout:
-    """Layout of a robot; of a batch of designs, which share it, the layout with the first one's numbers."""
+    """Layout of a robot; of a batch of designs, which share it, the layout with the first one's
+    numbers.
+    """
     one = design.take(0) if design.batch_shape else design
     tree = build_tree(one)
     toe_axis = np.array([one.foot.ball_length, 0.0, -(one.foot.ankle_height - one.toe.axis_height)])
@@ -76,10 +84,14 @@ def layout_of(design: Design) -> Layout:
         for index, pad in enumerate(link.pads):
             pads.append(f"{link.name}_pad_{index}")
             feet.append(0 if link.name.startswith(SIDES[0]) else 1)
-            places.append(np.array(pad.position) + (toe_axis if link.name.endswith("toe_plate") else 0.0))
+            places.append(
+                np.array(pad.position) + (toe_axis if link.name.endswith("toe_plate") else 0.0)
+            )
     return Layout(
         joints=tuple(joint.name for joint in tree.moving),
-        motors=tuple(f"{side}_{motor}" for side in SIDES for motor in transmission.motor_names(one)),
+        motors=tuple(
+            f"{side}_{motor}" for side in SIDES for motor in transmission.motor_names(one)
+        ),
         pads=tuple(pads),
         pad_foot=np.array(feet),
         pad_position=np.array(places),

@@ -24,11 +24,21 @@ def machine_of(design: Design) -> Machine:
         Arrays `(J,)`, `(K,)` and `(J, K)` in the order of `layout_of(design)`.
     """
     layout = layout_of(design)
-    return machine_from(actuation_model(design), layout.joints, layout.motors, rotor_inertia(design), bus_voltage(design))
+    return machine_from(
+        actuation_model(design),
+        layout.joints,
+        layout.motors,
+        rotor_inertia(design),
+        bus_voltage(design),
+    )
 
 
 def machine_from(
-    model: ActuationModel, joints: tuple[str, ...], motors: tuple[str, ...], inertia: np.ndarray, voltage: float = float("nan")
+    model: ActuationModel,
+    joints: tuple[str, ...],
+    motors: tuple[str, ...],
+    inertia: np.ndarray,
+    voltage: float = float("nan"),
 ) -> Machine:
     """Of the legs of an actuation model.
 
@@ -44,7 +54,9 @@ def machine_from(
         values = np.asarray(values, float)
         if values.ndim == 1:
             return np.tile(values, len(SIDES))
-        return np.broadcast_to(values, (len(values), len(SIDES), values.shape[-1])).reshape(len(values), -1)
+        return np.broadcast_to(values, (len(values), len(SIDES), values.shape[-1])).reshape(
+            len(values), -1
+        )
 
     def blocks(matrix: np.ndarray) -> np.ndarray:
         matrix = np.asarray(matrix, float)
@@ -70,7 +82,9 @@ def machine_from(
 
 
 def legs_matrix(matrix: np.ndarray) -> np.ndarray:
-    """Matrices of both legs as one, `(n, 2, rows, columns)` -> `(n, 2 rows, 2 columns)`; `(n, 1, ...)` where the legs share one."""
+    """Matrices of both legs as one, `(n, 2, rows, columns)` -> `(n, 2 rows, 2 columns)`; `(n, 1,
+    ...)` where the legs share one.
+    """
     rows, columns = matrix.shape[-2:]
     whole = np.zeros((len(matrix), 2 * rows, 2 * columns))
     whole[:, :rows, :columns], whole[:, rows:, columns:] = matrix[:, 0], matrix[:, -1]
@@ -78,12 +92,20 @@ def legs_matrix(matrix: np.ndarray) -> np.ndarray:
 
 
 def bus_voltage(design: Design) -> float:
-    """Nominal voltage of the motors times the design's ratio [V]; NaN where motors, or designs of a batch, differ in it."""
-    found = {float(v) for a in ACTUATOR_OF_MOTOR for v in np.ravel(gather(getattr(design.actuators, a).motor, lambda m: m.nominal_voltage))}
+    """Nominal voltage of the motors times the design's ratio [V]; NaN where motors, or designs of a
+    batch, differ in it.
+    """
+    found = {
+        float(v)
+        for a in ACTUATOR_OF_MOTOR
+        for v in np.ravel(gather(getattr(design.actuators, a).motor, lambda m: m.nominal_voltage))
+    }
     ratios = {float(v) for v in np.ravel(design.electrical.voltage_ratio)}
     return found.pop() * ratios.pop() if len(found) == len(ratios) == 1 else float("nan")
 
 
 def rotor_inertia(design: Design) -> np.ndarray:
     """Of one leg's motors [kg m^2], a robot's `(motors,)` or a batch's `(n, motors)`."""
-    return np.asarray(motor_arrays(design).rotor_inertia[..., : len(transmission.motor_names(design))], float)
+    return np.asarray(
+        motor_arrays(design).rotor_inertia[..., : len(transmission.motor_names(design))], float
+    )

@@ -1,6 +1,8 @@
-"""Left-right mirror of observations and actions, as index and sign arrays: mirrored = values[..., index] * sign.
+"""Left-right mirror of observations and actions, as index and sign arrays: mirrored = values[...,
+index] * sign.
 
-The axes of the right leg's yaw and roll joints mirror the left's, so mirroring swaps the legs and keeps all joint signs.
+The axes of the right leg's yaw and roll joints mirror the left's, so mirroring swaps the legs and
+keeps all joint signs.
 """
 
 from __future__ import annotations
@@ -40,7 +42,11 @@ def mirror_observation(parts: Sequence[str], layout: Layout) -> MirrorMap:
         if signs:
             place, turned = np.arange(count), np.array(signs, np.float32)
         else:
-            place = np.arange(count).reshape(SCAN)[:, ::-1].ravel() if name == "height_scan" else _swapped(count)
+            place = (
+                np.arange(count).reshape(SCAN)[:, ::-1].ravel()
+                if name == "height_scan"
+                else _swapped(count)
+            )
             turned = np.ones(count, np.float32)
         index.append(start + place)
         sign.append(turned)

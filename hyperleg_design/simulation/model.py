@@ -1,4 +1,6 @@
-"""The MuJoCo model that is simulated: the robot's, without drawing shapes, with one contact sensor a sole pad."""
+"""The MuJoCo model that is simulated: the robot's, without drawing shapes, with one contact sensor
+a sole pad.
+"""
 
 from __future__ import annotations
 
@@ -23,9 +25,11 @@ PAD_SENSOR_SIZE = 6
 
 
 def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.MjSpec:
-    """Editable model of one robot as simulated here; motors on tendons, joint friction left to `actuation`.
+    """Editable model of one robot as simulated here; motors on tendons, joint friction left to
+    `actuation`.
 
-    A state that is not finite stays as it is instead of being reset by MuJoCo, so that it can be reported. Controls are not
+    A state that is not finite stays as it is instead of being reset by MuJoCo, so that it can be
+    reported. Controls are not
     clamped: `actuation` holds them inside the motors' envelopes.
     """
     import mujoco
@@ -48,19 +52,30 @@ def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.Mj
     option.cone = getattr(mujoco.mjtCone, f"mjCONE_{physics.cone.upper()}")
     option.iterations = int(physics.iterations)
     option.tolerance = physics.tolerance
-    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET) | int(mujoco.mjtDisableBit.mjDSBL_CLAMPCTRL)
-    data = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE) | 1 << int(mujoco.mjtConDataField.mjCONDATA_LINVEL)
+    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET) | int(
+        mujoco.mjtDisableBit.mjDSBL_CLAMPCTRL
+    )
+    data = 1 << int(mujoco.mjtConDataField.mjCONDATA_FORCE) | 1 << int(
+        mujoco.mjtConDataField.mjCONDATA_LINVEL
+    )
     geom_kind, strongest, slots = mujoco.mjtObj.mjOBJ_GEOM, 2, 1
     for pad in layout.pads:
         # Floor first: the sensor's normal then points from the floor to the pad.
         spec.add_sensor(
-            name=pad, type=mujoco.mjtSensor.mjSENS_CONTACT, objtype=geom_kind, objname=FLOOR, reftype=geom_kind, refname=pad,
+            name=pad,
+            type=mujoco.mjtSensor.mjSENS_CONTACT,
+            objtype=geom_kind,
+            objname=FLOOR,
+            reftype=geom_kind,
+            refname=pad,
             intprm=[data, strongest, slots],
-        )  # fmt: skip
+        )
     return spec
 
 
-def simulation_model(design: Design, physics: Physics | None = None, alterations: Sequence[Alteration] = ()) -> mujoco.MjModel:
+def simulation_model(
+    design: Design, physics: Physics | None = None, alterations: Sequence[Alteration] = ()
+) -> mujoco.MjModel:
     """Compiled `simulation_spec`, with the edits of alterations."""
     import mujoco
 
@@ -71,7 +86,8 @@ def simulation_model(design: Design, physics: Physics | None = None, alterations
 
 
 def pad_forces(sensors: np.ndarray) -> np.ndarray:
-    """Forces of the floor on the pads, in the world [N], `(..., 6 P)` sensor values -> `(..., P, 3)`.
+    """Forces of the floor on the pads, in the world [N], `(..., 6 P)` sensor values -> `(..., P,
+    3)`.
 
     On a floor the contact's frame is (z, y, -x) of the world.
     """
@@ -85,12 +101,16 @@ def pad_loads(sensors: np.ndarray) -> np.ndarray:
 
 
 def pad_slip(sensors: np.ndarray) -> np.ndarray:
-    """Speed at which each touching pad slides over the floor [m/s], zero where it does not touch; `(..., 6 P)` -> `(..., P)`."""
+    """Speed at which each touching pad slides over the floor [m/s], zero where it does not touch;
+    `(..., 6 P)` -> `(..., P)`.
+    """
     return np.sqrt(sensors[..., 4::PAD_SENSOR_SIZE] ** 2 + sensors[..., 5::PAD_SENSOR_SIZE] ** 2)
 
 
 def foot_loads(loads: np.ndarray) -> np.ndarray:
-    """Vertical forces on the left and the right foot [N] from those on the pads, `(..., P)` -> `(..., 2)`."""
+    """Vertical forces on the left and the right foot [N] from those on the pads, `(..., P)` ->
+    `(..., 2)`.
+    """
     return loads @ _foot_of_pad(loads.shape[-1])
 
 

@@ -1,8 +1,9 @@
 """Observations: named parts, each a list of columns, and how each looks in a mirror.
 
-The proprioceptive part has 9 + 4 J numbers, the paper's 65 with the toe and 57 without: angular velocity, gravity and
-command (3 each), then joint position less the default posture, joint velocity, action and the action before it. Numbers
-are in SI units, not scaled; a learner normalises them.
+The proprioceptive part has 9 + 4 J numbers, the paper's 65 with the toe and 57 without: angular
+velocity, gravity and command (3 each), then joint position less the default posture, joint
+velocity, action and the action before it. Numbers are in SI units, not scaled; a learner normalises
+them.
 """
 
 from __future__ import annotations
@@ -40,7 +41,15 @@ def proprioception(state: State, robot: Robot) -> list[np.ndarray]:
     """What the robot's own sensors give, with the command and the last two actions."""
     motion = state.motion if state.sensed is None else state.sensed
     joint_position = motion.joint_position - robot.layout.default
-    return [motion.angular_velocity, motion.gravity, state.command, joint_position, motion.joint_velocity, state.action, state.previous_action]
+    return [
+        motion.angular_velocity,
+        motion.gravity,
+        state.command,
+        joint_position,
+        motion.joint_velocity,
+        state.action,
+        state.previous_action,
+    ]
 
 
 def clock(state: State, robot: Robot) -> list[np.ndarray]:
@@ -50,19 +59,29 @@ def clock(state: State, robot: Robot) -> list[np.ndarray]:
 
 
 def waypoint(state: State, robot: Robot) -> list[np.ndarray]:
-    """Offset to the waypoint after the present one (clipped), distance to the present one and speed cap."""
+    """Offset to the waypoint after the present one (clipped), distance to the present one and speed
+    cap.
+    """
     assert state.goal is not None
-    return [clipped(state.goal.following), state.goal.distance[:, None], state.goal.speed_cap[:, None]]
+    return [
+        clipped(state.goal.following),
+        state.goal.distance[:, None],
+        state.goal.speed_cap[:, None],
+    ]
 
 
 def privileged(state: State, robot: Robot) -> list[np.ndarray]:
-    """What only a simulation knows: linear velocity, pelvis height, vertical force on each foot over the weight."""
+    """What only a simulation knows: linear velocity, pelvis height, vertical force on each foot
+    over the weight.
+    """
     load = state.foot_load[-1] / robot.layout.weight
     return [state.motion.local_velocity, state.motion.position[:, 2:3], load]
 
 
 def height_scan(state: State, robot: Robot) -> list[np.ndarray]:
-    """Pelvis height above each point of a grid less `SCAN_OFFSET`, clipped to 1 m; on a flat floor all the same."""
+    """Pelvis height above each point of a grid less `SCAN_OFFSET`, clipped to 1 m; on a flat floor
+    all the same.
+    """
     height = np.clip(state.motion.position[:, 2:3] - SCAN_OFFSET, -1.0, 1.0)
     return [np.broadcast_to(height, (len(height), SCAN[0] * SCAN[1]))]
 
@@ -82,19 +101,34 @@ def _proprioception_columns(layout: Layout) -> list[Column]:
 
 PARTS: dict[str, Part] = {
     "proprioception": Part("proprioception", proprioception, _proprioception_columns),
-    "clock": Part("clock", clock, lambda layout: [("clock_sine", 1, (-1,)), ("clock_cosine", 1, (-1,))]),
+    "clock": Part(
+        "clock", clock, lambda layout: [("clock_sine", 1, (-1,)), ("clock_cosine", 1, (-1,))]
+    ),
     "waypoint": Part(
         "waypoint",
         waypoint,
-        lambda layout: [("following_waypoint", 2, (1, -1)), ("waypoint_distance", 1, (1,)), ("speed_cap", 1, (1,))],
+        lambda layout: [
+            ("following_waypoint", 2, (1, -1)),
+            ("waypoint_distance", 1, (1,)),
+            ("speed_cap", 1, (1,)),
+        ],
         needs_goal=True,
     ),
     "privileged": Part(
-        "privileged", privileged, lambda layout: [("linear_velocity", 3, (1, -1, 1)), ("pelvis_height", 1, (1,)), ("foot_load", 2, ())]
+        "privileged",
+        privileged,
+        lambda layout: [
+            ("linear_velocity", 3, (1, -1, 1)),
+            ("pelvis_height", 1, (1,)),
+            ("foot_load", 2, ()),
+        ],
     ),
-    "height_scan": Part("height_scan", height_scan, lambda layout: [("height_scan", SCAN[0] * SCAN[1], ())]),
+    "height_scan": Part(
+        "height_scan", height_scan, lambda layout: [("height_scan", SCAN[0] * SCAN[1], ())]
+    ),
 }
-"""All parts by name. Columns without signs swap sides instead: joints and feet left and right, scan points across."""
+"""All parts by name. Columns without signs swap sides instead: joints and feet left and right, scan
+points across."""
 
 
 def columns(parts: Sequence[str], layout: Layout) -> list[Column]:
@@ -112,13 +146,24 @@ def column_names(parts: Sequence[str], layout: Layout) -> list[str]:
     names = []
     for name, count, _ in columns(parts, layout):
         joints = name in ("joint_position", "joint_velocity", "action", "previous_action")
-        names += [f"{name}.{layout.joints[i]}" if joints else name if count == 1 else f"{name}.{i}" for i in range(count)]
+        names += [
+            f"{name}.{layout.joints[i]}" if joints else name if count == 1 else f"{name}.{i}"
+            for i in range(count)
+        ]
     return names
 
 
-def observe(groups: Mapping[str, Sequence[str]], state: State, robot: Robot) -> dict[str, np.ndarray]:
+def observe(
+    groups: Mapping[str, Sequence[str]], state: State, robot: Robot
+) -> dict[str, np.ndarray]:
     """Observations by group, each `(n, size)` in single precision."""
-    made = {part: PARTS[part].function(state, robot) for part in dict.fromkeys(p for parts in groups.values() for p in parts)}
+    made = {
+        part: PARTS[part].function(state, robot)
+        for part in dict.fromkeys(p for parts in groups.values() for p in parts)
+    }
     return {
-        group: np.concatenate([a for part in parts for a in made[part]], 1, dtype=np.float32, casting="same_kind") for group, parts in groups.items()
+        group: np.concatenate(
+            [a for part in parts for a in made[part]], 1, dtype=np.float32, casting="same_kind"
+        )
+        for group, parts in groups.items()
     }

@@ -1,7 +1,8 @@
 """Reward terms: one function each, of the state after a policy step.
 
-A term returns its value in every simulation, `(n,)`; a task multiplies it by its weight and by the policy step, as Isaac
-Lab does. `paper` marks those of Table II; all others are deviations from the paper and are reported as such.
+A term returns its value in every simulation, `(n,)`; a task multiplies it by its weight and by the
+policy step, as Isaac Lab does. `paper` marks those of Table II; all others are deviations from the
+paper and are reported as such.
 """
 
 from __future__ import annotations
@@ -48,14 +49,20 @@ class Term:
     @property
     def parameters(self) -> dict[str, float]:
         """Parameters besides state and robot, with their defaults."""
-        return {n: p.default for n, p in inspect.signature(self.function).parameters.items() if p.default is not inspect.Parameter.empty}
+        return {
+            n: p.default
+            for n, p in inspect.signature(self.function).parameters.items()
+            if p.default is not inspect.Parameter.empty
+        }
 
 
 TERMS: dict[str, Term] = {}
 """All terms by name."""
 
 
-def term(*, paper: bool = False, goal: bool = False) -> Callable[[Callable[..., np.ndarray]], Callable[..., np.ndarray]]:
+def term(
+    *, paper: bool = False, goal: bool = False
+) -> Callable[[Callable[..., np.ndarray]], Callable[..., np.ndarray]]:
     """Register a function as a reward term under its own name."""
 
     def registered(function: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
@@ -128,7 +135,9 @@ def flight(state: State, robot: Robot) -> np.ndarray:
 
 @term()
 def tilt(state: State, robot: Robot) -> np.ndarray:
-    """Squared horizontal part of gravity's direction in the pelvis's frame: how far from upright."""
+    """Squared horizontal part of gravity's direction in the pelvis's frame: how far from
+    upright.
+    """
     level = state.motion.rotation[:, 2, :2]
     return np.einsum("ni,ni->n", level, level)
 
@@ -142,7 +151,9 @@ def action_rate(state: State, robot: Robot) -> np.ndarray:
 
 @term()
 def foot_slide(state: State, robot: Robot) -> np.ndarray:
-    """Sliding speed of the feet [m/s]: of each foot's touching pads the mean, weighted by load, summed over the feet."""
+    """Sliding speed of the feet [m/s]: of each foot's touching pads the mean, weighted by load,
+    summed over the feet.
+    """
     weighted = foot_loads(state.pad_load[-1] * state.pad_slip)
     return np.einsum("nf->n", weighted / np.maximum(state.foot_load[-1], TOUCH))
 
@@ -151,7 +162,9 @@ def foot_slide(state: State, robot: Robot) -> np.ndarray:
 def hip_deviation(state: State, robot: Robot) -> np.ndarray:
     """Hip yaw and roll away from the default posture, summed [rad]."""
     places = robot.layout.hip_sideways
-    return np.einsum("nj->n", np.abs(state.motion.joint_position[:, places] - robot.layout.default[places]))
+    return np.einsum(
+        "nj->n", np.abs(state.motion.joint_position[:, places] - robot.layout.default[places])
+    )
 
 
 @term()
@@ -164,13 +177,20 @@ def roll_pitch_rate(state: State, robot: Robot) -> np.ndarray:
 @term()
 def joint_limits(state: State, robot: Robot, share: float = 0.95) -> np.ndarray:
     """Joint angles outside the inner share of their range of motion, summed [rad]."""
-    middle, half = (robot.layout.upper + robot.layout.lower) / 2, (robot.layout.upper - robot.layout.lower) / 2
-    return np.einsum("nj->n", np.maximum(np.abs(state.motion.joint_position - middle) - share * half, 0.0))
+    middle, half = (
+        (robot.layout.upper + robot.layout.lower) / 2,
+        (robot.layout.upper - robot.layout.lower) / 2,
+    )
+    return np.einsum(
+        "nj->n", np.maximum(np.abs(state.motion.joint_position - middle) - share * half, 0.0)
+    )
 
 
 @term()
 def ground_force(state: State, robot: Robot, body_weights: float = 1.5) -> np.ndarray:
-    """Largest vertical force on one foot within the step above so many body weights, in body weights."""
+    """Largest vertical force on one foot within the step above so many body weights, in body
+    weights.
+    """
     peak = state.foot_load.max((0, 2))
     return np.maximum(peak / robot.layout.weight - body_weights, 0.0)
 
@@ -179,13 +199,17 @@ def ground_force(state: State, robot: Robot, body_weights: float = 1.5) -> np.nd
 def goal_speed(state: State, robot: Robot) -> np.ndarray:
     """Speed toward the waypoint up to the speed cap [m/s]."""
     goal = _goal(state)
-    toward = np.einsum("ni,ni->n", state.motion.walking_velocity, goal.offset) / np.maximum(goal.distance, 1e-9)
+    toward = np.einsum("ni,ni->n", state.motion.walking_velocity, goal.offset) / np.maximum(
+        goal.distance, 1e-9
+    )
     return np.minimum(toward, goal.speed_cap)
 
 
 @term(goal=True)
 def goal_turning(state: State, robot: Robot, gain: float = 2.0, fastest: float = 3.0) -> np.ndarray:
-    """exp(-e^2) - 0.2 |e|, e the yaw rate's distance [rad/s] from the gain [1/s] times the heading error, up to the fastest."""
+    """exp(-e^2) - 0.2 |e|, e the yaw rate's distance [rad/s] from the gain [1/s] times the heading
+    error, up to the fastest.
+    """
     error = np.clip(gain * _goal(state).heading_error, -fastest, fastest) - state.motion.yaw_rate
     return np.exp(-(error**2)) - 0.2 * np.abs(error)
 
@@ -203,5 +227,7 @@ def path_deviation(state: State, robot: Robot, most: float = 1.5) -> np.ndarray:
 
 
 def stance(phase: np.ndarray, share: float) -> np.ndarray:
-    """Whether left and right foot should stand at phases of the gait clock, `(n,)` -> `(n, 2)`; the right is half a stride behind."""
+    """Whether left and right foot should stand at phases of the gait clock, `(n,)` -> `(n, 2)`; the
+    right is half a stride behind.
+    """
     return (phase[:, None] + np.array([0.0, 0.5])) % 1.0 < share

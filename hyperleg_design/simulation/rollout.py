@@ -31,7 +31,8 @@ class Recording:
     ending: np.ndarray
     """Index into `ENDINGS` of each step, `(n, T)`."""
     first_end: np.ndarray
-    """Policy step in which each simulation's first episode ended, T where it did not, `(n,)`; later entries are of a new episode."""
+    """Policy step in which each simulation's first episode ended, T where it did not, `(n,)`; later
+    entries are of a new episode."""
 
     @property
     def substeps(self) -> int:
@@ -54,18 +55,29 @@ def rollout(
         policy: any callable.
         steps: policy steps at most.
         keep: names of the signals to keep; all by default.
-        each_step: called after each step with its number and `ending`; returning True stops, for progress bars and goals.
+        each_step: called after each step with its number and `ending`; returning True stops, for
+            progress bars and goals.
 
     Raises:
-        InputError: the environment has an assist, a signal does not exist, or the policy's actions are wrong or not finite.
+        InputError: the environment has an assist, a signal does not exist, or the policy's actions
+        are wrong or not finite.
     """
     if environment.assist is not None:
-        raise InputError("rollout", "assist", environment.assist.gain, "must be None: recordings are of the robot alone")
+        raise InputError(
+            "rollout",
+            "assist",
+            environment.assist.gain,
+            "must be None: recordings are of the robot alone",
+        )
     environment.recording = True
     observations = environment.reset()
     kept: dict[str, list[np.ndarray]] = {}
     commands, actions, terms, endings = [], [], [], []
-    command_columns = [i for i, name in enumerate(environment.observation_columns["policy"]) if name.startswith("command.")]
+    command_columns = [
+        i
+        for i, name in enumerate(environment.observation_columns["policy"])
+        if name.startswith("command.")
+    ]
     for number in range(steps):
         commands.append(observations["policy"][:, command_columns])
         action = np.asarray(policy(observations["policy"]))
@@ -74,7 +86,9 @@ def rollout(
         signals = environment.signals()
         for name in signals if keep is None else keep:
             if name not in signals:
-                raise InputError("rollout", "keep", name, f"no such signal; there are {', '.join(signals)}")
+                raise InputError(
+                    "rollout", "keep", name, f"no such signal; there are {', '.join(signals)}"
+                )
             kept.setdefault(name, []).append(signals[name].copy())
         actions.append(action)
         terms.append(step.reward_terms)

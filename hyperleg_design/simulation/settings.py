@@ -1,4 +1,6 @@
-"""Settings of physics, control, starting states and randomisation; every default is assumed unless the paper is named."""
+"""Settings of physics, control, starting states and randomisation; every default is assumed unless
+the paper is named.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +31,11 @@ class Physics(Checked):
     cone: Any = text("pyramidal", "elliptic", default="pyramidal")
     """Friction cone."""
     integrator: Any = text("euler", "implicitfast", default="euler")
-    """Euler is implicit in joint damping, which is all that this model damps; implicitfast in tendon damping as well."""
+    """Euler is implicit in joint damping, which is all that this model damps; implicitfast in
+    tendon damping as well."""
     contact_dimensions: Any = number("", 3, 6, default=3)
-    """3: sliding friction. A foot's pads stand apart and resist twisting together; 4 adds the torsion of each pad."""
+    """3: sliding friction. A foot's pads stand apart and resist twisting together; 4 adds the
+    torsion of each pad."""
     iterations: Any = number("", 1, 1000, default=100)
     """Most iterations of the contact solver."""
     tolerance: Any = number("", 0, 1e-2, default=1e-8)
@@ -47,8 +51,17 @@ class Physics(Checked):
 
     def __post_init__(self) -> None:
         Checked.__post_init__(self)
-        if self.friction_space == "motor" and self.friction == "implicit" and self.integrator == "euler":
-            raise InputError("physics", "integrator", self.integrator, "must be implicitfast for implicit friction at the motors")
+        if (
+            self.friction_space == "motor"
+            and self.friction == "implicit"
+            and self.integrator == "euler"
+        ):
+            raise InputError(
+                "physics",
+                "integrator",
+                self.integrator,
+                "must be implicitfast for implicit friction at the motors",
+            )
 
     @property
     def policy_step(self) -> float:
@@ -70,7 +83,9 @@ class Control(Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Start(Checked):
-    """Spread of the states that episodes start from: uniform within plus and minus each value about standing still."""
+    """Spread of the states that episodes start from: uniform within plus and minus each value about
+    standing still.
+    """
 
     joint_position: Any = number("rad", 0, 1, default=0.05)
     """[rad]"""
@@ -86,7 +101,9 @@ class Start(Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Randomisation(Checked):
-    """Differences between simulations, drawn once when the environment is made; none by default, as the paper prints none."""
+    """Differences between simulations, drawn once when the environment is made; none by default, as
+    the paper prints none.
+    """
 
     mass: Any = number("", 0, 0.9, default=0.0)
     """Mass and inertia of each body, relative, plus or minus."""
@@ -104,7 +121,9 @@ class Randomisation(Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Thermal(Checked):
-    """Thermal margin of each motor, h = threshold - EMA of the relative torque, squared; see `thermal`."""
+    """Thermal margin of each motor, h = threshold - EMA of the relative torque, squared; see
+    `thermal`.
+    """
 
     reading: Any = text("ema_of_square", "square_of_ema", default="ema_of_square")
     """Which of the two readings of the paper's formula."""

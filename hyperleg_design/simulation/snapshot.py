@@ -1,4 +1,6 @@
-"""All that an environment's future depends on, taken out and put back, so that a run can go on bit for bit."""
+"""All that an environment's future depends on, taken out and put back, so that a run can go on bit
+for bit.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,16 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.chunk import Chunk
     from hyperleg_design.simulation.environment import Environment
 
-_ARRAYS = ("action", "previous_action", "smoothed", "motor_torque", "motor_velocity", "sensors", "episode_step", "_clock_start")
+_ARRAYS = (
+    "action",
+    "previous_action",
+    "smoothed",
+    "motor_torque",
+    "motor_velocity",
+    "sensors",
+    "episode_step",
+    "_clock_start",
+)
 
 
 def take_snapshot(environment: Environment) -> dict[str, Any]:
@@ -21,7 +32,10 @@ def take_snapshot(environment: Environment) -> dict[str, Any]:
 
     Settings that were changed since it was made (assist, rewards, commands) are not part of it.
     """
-    return {"simulations": environment.simulations, "chunks": [_of_chunk(chunk) for chunk in environment.chunks]}
+    return {
+        "simulations": environment.simulations,
+        "chunks": [_of_chunk(chunk) for chunk in environment.chunks],
+    }
 
 
 def put_snapshot(environment: Environment, snapshot: dict[str, Any]) -> None:
@@ -30,8 +44,12 @@ def put_snapshot(environment: Environment, snapshot: dict[str, Any]) -> None:
     Raises:
         InputError: the state is of another environment.
     """
-    if snapshot["simulations"] != environment.simulations or len(snapshot["chunks"]) != len(environment.chunks):
-        raise InputError("snapshot", "simulations", snapshot["simulations"], f"must be {environment.simulations}")
+    if snapshot["simulations"] != environment.simulations or len(snapshot["chunks"]) != len(
+        environment.chunks
+    ):
+        raise InputError(
+            "snapshot", "simulations", snapshot["simulations"], f"must be {environment.simulations}"
+        )
     environment.reset()
     for chunk, state in zip(environment.chunks, snapshot["chunks"], strict=True):
         _into_chunk(chunk, state)
@@ -42,7 +60,9 @@ def _of_chunk(chunk: Chunk) -> dict[str, Any]:
         "physics": np.array(chunk.batch.state),
         "arrays": {name: np.array(getattr(chunk, name)) for name in _ARRAYS},
         "thermal": chunk.thermal.average.copy(),
-        "commander": {k: v.copy() for k, v in vars(chunk.commander).items() if isinstance(v, np.ndarray)},
+        "commander": {
+            k: v.copy() for k, v in vars(chunk.commander).items() if isinstance(v, np.ndarray)
+        },
         "motion": _fields(chunk.motion),
         "goal": None if chunk.goal is None else _fields(chunk.goal),
         "random": chunk.rng.bit_generator.state,
@@ -52,7 +72,12 @@ def _of_chunk(chunk: Chunk) -> dict[str, Any]:
 
 def _into_chunk(chunk: Chunk, state: dict[str, Any]) -> None:
     if state["physics"].shape != chunk.batch.state.shape:
-        raise InputError("snapshot", "physics", state["physics"].shape, f"must have the shape {chunk.batch.state.shape}; it is of another robot")
+        raise InputError(
+            "snapshot",
+            "physics",
+            state["physics"].shape,
+            f"must have the shape {chunk.batch.state.shape}; it is of another robot",
+        )
     chunk.batch.state[:] = state["physics"]
     for name, value in state["arrays"].items():
         getattr(chunk, name)[:] = value

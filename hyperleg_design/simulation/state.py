@@ -1,4 +1,6 @@
-"""What terms of rewards, observations and terminations see of all simulations after a policy step."""
+"""What terms of rewards, observations and terminations see of all simulations after a policy
+step.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,9 @@ import numpy as np
 
 @dataclass(slots=True, eq=False)
 class Motion:
-    """Where the robots are and how they move; `(n, ...)`. Yaw frame: the pelvis's, turned upright."""
+    """Where the robots are and how they move; `(n, ...)`. Yaw frame: the pelvis's, turned
+    upright.
+    """
 
     position: np.ndarray
     """Of the pelvis in the world [m], `(n, 3)`."""
@@ -105,7 +109,8 @@ class State:
     previous_action: np.ndarray
     """The one before it, `(n, J)`."""
     command: np.ndarray
-    """Forward, sideways [m/s] and turning [rad/s] speed; or offset to the waypoint (clipped) and heading error, `(n, 3)`."""
+    """Forward, sideways [m/s] and turning [rad/s] speed; or offset to the waypoint (clipped) and
+    heading error, `(n, 3)`."""
     motor_torque: np.ndarray
     """[Nm], `(s, n, K)`."""
     motor_velocity: np.ndarray
@@ -143,7 +148,15 @@ def read_motion(qpos: np.ndarray, qvel: np.ndarray) -> Motion:
     rotation = rows.transpose(2, 0, 1)
     forward = rotation[:, :2, 0]
     heading = forward / np.sqrt(np.maximum(np.einsum("ni,ni->n", forward, forward), 1e-18))[:, None]
-    return Motion(qpos[:, :3].copy(), rotation, qvel[:, :3].copy(), qvel[:, 3:6].copy(), heading, qpos[:, 7:].copy(), qvel[:, 6:].copy())
+    return Motion(
+        qpos[:, :3].copy(),
+        rotation,
+        qvel[:, :3].copy(),
+        qvel[:, 3:6].copy(),
+        heading,
+        qpos[:, 7:].copy(),
+        qvel[:, 6:].copy(),
+    )
 
 
 def to_yaw_frame(heading: np.ndarray, vector: np.ndarray) -> np.ndarray:

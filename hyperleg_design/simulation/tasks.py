@@ -1,4 +1,6 @@
-"""Tasks: commands, observations, rewards and ends of episodes, read from a preset in `sim/` or a user's file."""
+"""Tasks: commands, observations, rewards and ends of episodes, read from a preset in `sim/` or a
+user's file.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,15 @@ from hyperleg_design.robot import parameters
 from hyperleg_design.simulation.commands import VelocityCommands, WaypointCommands
 from hyperleg_design.simulation.observations import PARTS
 from hyperleg_design.simulation.rewards import TERMS
-from hyperleg_design.simulation.settings import Clock, Control, Limits, Physics, Randomisation, Start, Thermal
+from hyperleg_design.simulation.settings import (
+    Clock,
+    Control,
+    Limits,
+    Physics,
+    Randomisation,
+    Start,
+    Thermal,
+)
 
 GROUPS = ("policy", "critic")
 """Observation groups that every task has."""
@@ -28,7 +38,10 @@ _SECTIONS: dict[str, Any] = {
     "clock": Clock,
     "randomisation": Randomisation,
 }
-_COMMANDS: dict[str, type[VelocityCommands] | type[WaypointCommands]] = {"velocity": VelocityCommands, "waypoints": WaypointCommands}
+_COMMANDS: dict[str, type[VelocityCommands] | type[WaypointCommands]] = {
+    "velocity": VelocityCommands,
+    "waypoints": WaypointCommands,
+}
 
 
 @dataclass(frozen=True)
@@ -66,16 +79,25 @@ class Task:
         for group, parts in self.observations.items():
             for part in parts:
                 if part not in PARTS:
-                    raise InputError(self.name, f"observations.{group}", part, parameters.unknown(part, sorted(PARTS)))
+                    raise InputError(
+                        self.name,
+                        f"observations.{group}",
+                        part,
+                        parameters.unknown(part, sorted(PARTS)),
+                    )
                 if PARTS[part].needs_goal and not goal:
-                    raise InputError(self.name, f"observations.{group}", part, "needs commands of kind waypoints")
+                    raise InputError(
+                        self.name, f"observations.{group}", part, "needs commands of kind waypoints"
+                    )
         for group in GROUPS:
             if not self.observations.get(group):
                 raise InputError(self.name, f"observations.{group}", None, "is missing or empty")
 
     @property
     def deviations(self) -> dict[str, str]:
-        """What is not the paper's: reward terms, and the gait clock where it is observed, with descriptions."""
+        """What is not the paper's: reward terms, and the gait clock where it is observed, with
+        descriptions.
+        """
         found = {name: TERMS[name].description for name in self.rewards if not TERMS[name].paper}
         if any("clock" in parts for parts in self.observations.values()):
             found["clock"] = "gait clock in the observation"
@@ -113,21 +135,34 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
     known = {"name", "description", "commands", "observations", "rewards", *_SECTIONS}
     for key in data:
         if key not in known:
-            raise InputError(where, str(key), data[key], parameters.unknown(str(key), sorted(known)))
+            raise InputError(
+                where, str(key), data[key], parameters.unknown(str(key), sorted(known))
+            )
     for key in ("name", "commands", "observations", "rewards"):
         if key not in data:
             raise InputError(where, key, None, "is missing")
-    sections: dict[str, Any] = {key: parameters.from_mapping(cls, data[key], where, key) for key, cls in _SECTIONS.items() if key in data}
+    sections: dict[str, Any] = {
+        key: parameters.from_mapping(cls, data[key], where, key)
+        for key, cls in _SECTIONS.items()
+        if key in data
+    }
     observations = {}
     for group, parts in _mapping(data["observations"], where, "observations").items():
         if not isinstance(parts, list):
             raise InputError(where, f"observations.{group}", parts, "expects a list of parts")
         observations[str(group)] = tuple(str(part) for part in parts)
     rewards = {
-        str(term): _reward(entry, where, f"rewards.{term}") for term, entry in _mapping(data["rewards"], where, "rewards").items()
-    }  # fmt: skip
+        str(term): _reward(entry, where, f"rewards.{term}")
+        for term, entry in _mapping(data["rewards"], where, "rewards").items()
+    }
     try:
-        return Task(name=str(data["name"]), commands=_commands(data["commands"], where), observations=observations, rewards=rewards, **sections)
+        return Task(
+            name=str(data["name"]),
+            commands=_commands(data["commands"], where),
+            observations=observations,
+            rewards=rewards,
+            **sections,
+        )
     except InputError as error:
         raise InputError(where, error.field, error.value, error.remedy) from None
 
@@ -140,13 +175,20 @@ def _commands(data: Any, where: str) -> VelocityCommands | WaypointCommands:
     courses = rest.pop("courses", [])
     if courses and kind != "waypoints":
         raise InputError(where, "commands.courses", courses, "needs kind: waypoints")
-    share = rest.pop("course_share", 0.0) if kind == "waypoints" else 0.0  # checked together with the courses
+    share = (
+        rest.pop("course_share", 0.0) if kind == "waypoints" else 0.0
+    )  # checked together with the courses
     settings = parameters.from_mapping(_COMMANDS[kind], rest, where, "commands")
     if isinstance(settings, WaypointCommands):
         try:
             points = tuple(tuple((float(x), float(y)) for x, y in course) for course in courses)
         except (TypeError, ValueError):
-            raise InputError(where, "commands.courses", courses, "expects a list of lists of points [x, y] in metres") from None
+            raise InputError(
+                where,
+                "commands.courses",
+                courses,
+                "expects a list of lists of points [x, y] in metres",
+            ) from None
         return dataclasses.replace(settings, courses=points, course_share=share)
     return settings
 
@@ -167,13 +209,25 @@ def check_reward(where: str, name: str, reward: Reward, goal: bool) -> None:
         InputError: no such term or parameter, or a term that needs waypoints where there are none.
     """
     if name not in TERMS:
-        raise InputError(where, f"rewards.{name}", reward.weight, parameters.unknown(name, sorted(TERMS)).replace("field", "term"))
+        raise InputError(
+            where,
+            f"rewards.{name}",
+            reward.weight,
+            parameters.unknown(name, sorted(TERMS)).replace("field", "term"),
+        )
     term = TERMS[name]
     for key, value in reward.parameters.items():
         if key not in term.parameters:
-            raise InputError(where, f"rewards.{name}.{key}", value, parameters.unknown(key, ["weight", *term.parameters]))
+            raise InputError(
+                where,
+                f"rewards.{name}.{key}",
+                value,
+                parameters.unknown(key, ["weight", *term.parameters]),
+            )
     if term.needs_goal and not goal:
-        raise InputError(where, f"rewards.{name}", reward.weight, "needs commands of kind waypoints")
+        raise InputError(
+            where, f"rewards.{name}", reward.weight, "needs commands of kind waypoints"
+        )
 
 
 def _mapping(data: Any, where: str, path: str) -> Mapping[str, Any]:

@@ -37,8 +37,12 @@ def off_path(goal: Goal | None, limits: Limits, count: int) -> np.ndarray:
     return np.zeros(count, bool) if goal is None else goal.deviation > limits.deviation
 
 
-def ending(motion: Motion, goal: Goal | None, episode_step: np.ndarray, limits: Limits, policy_step: float) -> np.ndarray:
-    """Code of how each episode ends in this step, `(n,)`; falls come first, then a finished course."""
+def ending(
+    motion: Motion, goal: Goal | None, episode_step: np.ndarray, limits: Limits, policy_step: float
+) -> np.ndarray:
+    """Code of how each episode ends in this step, `(n,)`; falls come first, then a finished
+    course.
+    """
     count = len(episode_step)
     code = np.zeros(count, np.int8)
     code[time_out(episode_step, limits, policy_step)] = TIME_OUT

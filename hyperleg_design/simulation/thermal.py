@@ -5,7 +5,8 @@ The paper prints `h = h_th - EMA(tau / tau_cont)^2`, which leaves open what is s
     ema_of_square:  h = h_th - e,    e a moving average of (tau / tau_cont)^2: what heats a motor
     square_of_ema:  h = h_th - e^2,  e a moving average of tau / tau_cont, sign and all, as printed
 
-and penalises `[-(dh/dt + h / T)]+`, with T the time constant of the average. With the same T the first reading forgets
+and penalises `[-(dh/dt + h / T)]+`, with T the time constant of the average. With the same T the
+first reading forgets
 itself: `de/dt = (x - e) / T` gives `-(dh/dt + h / T) = (x - h_th) / T`, the present overload alone.
 """
 
@@ -42,7 +43,8 @@ class ThermalState:
             duration: of the step [s].
 
         Returns:
-            Sum over motors of `[-(dh/dt + h / T)]+` [1/s], `(n,)`, margin and rate taken at the beginning of the step.
+            Sum over motors of `[-(dh/dt + h / T)]+` [1/s], `(n,)`, margin and rate taken at the
+            beginning of the step.
         """
         time_constant = self.settings.time_constant
         if self.settings.reading == "ema_of_square":

@@ -1,4 +1,6 @@
-"""What drives, encoders and an IMU tell of a simulation with alterations, where that is not the truth."""
+"""What drives, encoders and an IMU tell of a simulation with alterations, where that is not the
+truth.
+"""
 
 from __future__ import annotations
 
@@ -17,18 +19,41 @@ class Told:
 
     def __init__(self, chain: Chain, substeps: int) -> None:
         joints, motors = len(chain.machine.joints), len(chain.machine.motors)
-        sizes = {"joint_position": joints, "joint_velocity": joints, "motor_command": motors, "motor_torque": motors}
+        sizes = {
+            "joint_position": joints,
+            "joint_velocity": joints,
+            "motor_command": motors,
+            "motor_torque": motors,
+        }
         sizes |= {"angular_velocity": 3, "acceleration_error": 3}
         self.chain = chain
-        self.signals = {f"{TOLD}{name}": np.zeros((substeps, chain.count, size)) for name, size in sizes.items()}
-        """Joint state as encoders tell it [rad, rad/s], motor torque that the controller asked for and that the drives take
-        themselves to give [Nm], angular velocity by the gyro [rad/s], what the accelerometer adds to the truth [m/s^2]."""
+        self.signals = {
+            f"{TOLD}{name}": np.zeros((substeps, chain.count, size)) for name, size in sizes.items()
+        }
+        """Joint state as encoders tell it [rad, rad/s], motor torque that the controller asked for
+        and that the drives take themselves to give [Nm], angular velocity by the gyro [rad/s], what
+        the accelerometer adds to the truth [m/s^2]."""
 
-    def keep(self, substep: int, driven: Driven, position: np.ndarray, velocity: np.ndarray, angular_velocity: np.ndarray) -> None:
-        """Keep one simulation step, from the true joint state `(n, J)` and the base's angular velocity `(n, 3)` in its frame."""
+    def keep(
+        self,
+        substep: int,
+        driven: Driven,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        angular_velocity: np.ndarray,
+    ) -> None:
+        """Keep one simulation step, from the true joint state `(n, J)` and the base's angular
+        velocity `(n, 3)` in its frame.
+        """
         assert driven.command is not None
         turning, added = self.chain.imu(angular_velocity, np.zeros_like(angular_velocity))
-        said = (*self.chain.measured(position, velocity), driven.command, driven.believed, turning, added)
+        said = (
+            *self.chain.measured(position, velocity),
+            driven.command,
+            driven.believed,
+            turning,
+            added,
+        )
         for kept, values in zip(self.signals.values(), said, strict=True):
             kept[substep] = values
 

@@ -1,16 +1,18 @@
 """Contact forces and motor torques of least Joule heat for a given motion.
 
-In double support the ground's forces are not given by the motion: the feet may push against each other, and motors that
-share joints may share the work. At each sample this chooses pad forces f and motor torques tau that
+In double support the ground's forces are not given by the motion: the feet may push against each
+other, and motors that share joints may share the work. At each sample this chooses pad forces f and
+motor torques tau that
 
     minimise    sum Cp tau^2
     subject to  J^T f + [0; M tau] = generalised force of the motion        (six rows of the base, then the joints)
                 |f_xy| <= mu f_z                                            (friction cone at each pad that bears load)
                 lower <= tau <= upper                                       (motor envelopes at their speeds)
 
-all samples in one sparse second-order cone problem. Where that has no solution the envelopes give way first, then the
-base's balance, both at a price far above any heat, and what gave way is reported.
-"""
+all samples in one sparse second-order cone problem. Where that has no solution the envelopes give
+way first, then the base's balance, both at a price far above any heat, and what gave way is
+reported.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ import numpy as np
 from hyperleg_design.errors import InfeasibleError, InputError
 
 EXCESS_PRICE = 1e1
-"""Of torque beyond an envelope: heat at peak torque of all motors, for a whole peak torque of one."""
+"""Of torque beyond an envelope: heat at peak torque of all motors, for a whole peak torque of
+one."""
 GAP_PRICE = 1e3
 """Of a force missing at the base: the same heat, for a whole body weight."""
 RIDGE = 1e-6
@@ -66,8 +69,10 @@ def least_heat(
     """Allocate contact forces and motor torques.
 
     Args:
-        required: generalised forces of the motion, joint friction included, `(n, 6 + legs * joints)` [N, Nm].
-        contact_jacobian: velocity of each pad's contact point over `v`, world axes, `(n, pads, 3, 6 + legs * joints)`.
+        required: generalised forces of the motion, joint friction included, `(n, 6 + legs *
+            joints)` [N, Nm].
+        contact_jacobian: velocity of each pad's contact point over `v`, world axes, `(n, pads, 3, 6
+            + legs * joints)`.
         bears: whether a pad may bear load, `(n, pads)`.
         matrix: M of one leg, `(joints, motors)` [-].
         lower: least motor torques at their speeds [Nm], `(n, legs, motors)`.
@@ -79,7 +84,8 @@ def least_heat(
 
     Raises:
         InputError: shapes that do not fit, a friction or weight that is not positive.
-        InfeasibleError: `allow_excess` is off and some sample cannot be done; says when and what is missing.
+        InfeasibleError: `allow_excess` is off and some sample cannot be done; says when and what is
+        missing.
     """
     import cvxpy as cp
     from scipy import sparse
@@ -88,19 +94,48 @@ def least_heat(
     legs, motors = lower.shape[-2:]
     joints = (size - 6) // legs
     pads = bears.shape[1]
-    if contact_jacobian.shape != (count, pads, 3, size) or matrix.shape != (joints, motors) or upper.shape != lower.shape:
-        shapes = [required.shape, contact_jacobian.shape, bears.shape, matrix.shape, lower.shape, upper.shape]
-        raise InputError("allocation", "shapes", shapes, "expects (n, 6 + legs joints), (n, pads, 3, ...), (n, pads), (joints, motors), limits")
+    if (
+        contact_jacobian.shape != (count, pads, 3, size)
+        or matrix.shape != (joints, motors)
+        or upper.shape != lower.shape
+    ):
+        shapes = [
+            required.shape,
+            contact_jacobian.shape,
+            bears.shape,
+            matrix.shape,
+            lower.shape,
+            upper.shape,
+        ]
+        raise InputError(
+            "allocation",
+            "shapes",
+            shapes,
+            "expects (n, 6 + legs joints), (n, pads, 3, ...), (n, pads), (joints, motors), limits",
+        )
     if not (friction > 0 and weight > 0):
         raise InputError("allocation", "friction, weight", (friction, weight), "must be positive")
 
     peak = np.maximum(np.max(np.maximum(np.abs(lower), np.abs(upper)), (0, 1)), 1e-9)
-    row_scale = np.concatenate([np.full(6, weight), np.full(size - 6, np.max(np.abs(matrix) @ peak))])
+    row_scale = np.concatenate(
+        [np.full(6, weight), np.full(size - 6, np.max(np.abs(matrix) @ peak))]
+    )
     drives = np.zeros((size, legs * motors))
     for leg in range(legs):
-        drives[6 + leg * joints : 6 + (leg + 1) * joints, leg * motors : (leg + 1) * motors] = matrix * peak
-    blocks = [np.swapaxes(contact_jacobian[n, bears[n]].reshape(-1, size), 0, 1) * weight / row_scale[:, None] for n in range(count)]
-    loads = sparse.block_diag(blocks, format="csr") if np.any(bears) else sparse.csr_matrix((count * size, 0))
+        drives[6 + leg * joints : 6 + (leg + 1) * joints, leg * motors : (leg + 1) * motors] = (
+            matrix * peak
+        )
+    blocks = [
+        np.swapaxes(contact_jacobian[n, bears[n]].reshape(-1, size), 0, 1)
+        * weight
+        / row_scale[:, None]
+        for n in range(count)
+    ]
+    loads = (
+        sparse.block_diag(blocks, format="csr")
+        if np.any(bears)
+        else sparse.csr_matrix((count * size, 0))
+    )
     torques = sparse.kron(sparse.eye(count), drives / row_scale[:, None], format="csr")
     base = sparse.kron(sparse.eye(count), np.eye(size)[:, :6], format="csr")
     target = (required / row_scale).ravel()
@@ -118,13 +153,22 @@ def least_heat(
         cones.append(cp.SOC(friction * force[:, 2], force[:, :2].T, axis=0))
         cost = cost + RIDGE * cp.sum_squares(force)
     gap, beyond = np.zeros((count, 6)), np.zeros((count, legs, motors))
-    if not _solved(cp.Problem(cp.Minimize(cost), [balance == target, torque <= highest, torque >= lowest, *cones])):
+    if not _solved(
+        cp.Problem(
+            cp.Minimize(cost), [balance == target, torque <= highest, torque >= lowest, *cones]
+        )
+    ):
         excess = cp.Variable(count * legs * motors, nonneg=True)
         short, over = cp.Variable(count * 6, nonneg=True), cp.Variable(count * 6, nonneg=True)
         cost = cost + EXCESS_PRICE * cp.sum(excess) + GAP_PRICE * cp.sum(short + over)
         limits = [torque <= highest + excess, torque >= lowest - excess, *cones]
-        if not _solved(cp.Problem(cp.Minimize(cost), [balance + base @ (short - over) == target, *limits])):
-            raise InfeasibleError("the allocation has no solution that the solver finds; the motion's forces are far beyond the robot")
+        if not _solved(
+            cp.Problem(cp.Minimize(cost), [balance + base @ (short - over) == target, *limits])
+        ):
+            raise InfeasibleError(
+                "the allocation has no solution that the solver finds; the motion's forces are far "
+                "beyond the robot"
+            )
         gap = (short.value - over.value).reshape(count, 6)
         gap = np.where(np.abs(gap) > NEGLIGIBLE, gap, 0.0)
         beyond = excess.value.reshape(count, legs, motors)
@@ -132,7 +176,8 @@ def least_heat(
     if not allow_excess and (np.any(gap) or np.any(beyond)):
         worst = int(np.argmax(np.abs(gap).max(1) * 1e6 + (beyond / peak).max((1, 2))))
         raise InfeasibleError(
-            f"sample {worst} of {count} is beyond the robot: motors miss {beyond[worst].max():.3g} Nm, "
+            f"sample {worst} of {count} is beyond the robot: motors miss {beyond[worst].max():.3g} "
+            f"Nm, "
             f"the base {np.abs(gap[worst]).max() * weight:.3g} N or Nm"
         )
     forces = np.zeros((count, pads, 3))
@@ -166,9 +211,17 @@ def _solved(problem: Any) -> bool:
 
 
 def _polish(
-    forces: np.ndarray, given: np.ndarray, gap: np.ndarray, bears: np.ndarray, blocks: list[np.ndarray], drives: np.ndarray, target: np.ndarray
+    forces: np.ndarray,
+    given: np.ndarray,
+    gap: np.ndarray,
+    bears: np.ndarray,
+    blocks: list[np.ndarray],
+    drives: np.ndarray,
+    target: np.ndarray,
 ) -> None:
-    """Move forces and torques, in place, by the least that closes the equations to rounding; the solver leaves 1e-8."""
+    """Move forces and torques, in place, by the least that closes the equations to rounding; the
+    solver leaves 1e-8.
+    """
     for n, block in enumerate(blocks):
         count = block.shape[1]
         both = np.hstack([block, drives])
@@ -179,7 +232,14 @@ def _polish(
         forces[n, bears[n]], given[n] = now[:count].reshape(-1, 3), now[count:]
 
 
-def _residual(required: np.ndarray, jacobian: np.ndarray, forces: np.ndarray, motor_torque: np.ndarray, gap: np.ndarray, matrix: np.ndarray) -> float:
+def _residual(
+    required: np.ndarray,
+    jacobian: np.ndarray,
+    forces: np.ndarray,
+    motor_torque: np.ndarray,
+    gap: np.ndarray,
+    matrix: np.ndarray,
+) -> float:
     found = np.einsum("npiv,npi->nv", jacobian, forces)
     found[:, :6] += gap
     found[:, 6:] += np.einsum("jm,nlm->nlj", matrix, motor_torque).reshape(len(required), -1)

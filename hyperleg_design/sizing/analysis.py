@@ -1,4 +1,6 @@
-"""The analysis of one design in one object: masses, reductions, torques, speeds, inertia, envelope, confound."""
+"""The analysis of one design in one object: masses, reductions, torques, speeds, inertia, envelope,
+confound.
+"""
 
 from __future__ import annotations
 
@@ -30,11 +32,12 @@ def analyze(design: Design) -> dict[str, Any]:
     """Analyse one design.
 
     Returns:
-        Plain numbers, lists and mappings, SI units, ready for JSON: `total_mass`, `leg_mass` [kg], `leg_length`, `height`
-        [m], `segment_mass` [kg], `reduction` by posture (joints x motors), `max_joint_torque` [Nm] by joint (standing,
-        derated, as Table I), `single_joint_speed` [rad/s] (walking), `torque_alone` [Nm] by joint (walking, the others
-        at zero, not derated), `reflected_inertia` [kg m^2] in the design's posture, `zonotope_to_box_volume` of the
-        joints below the hip (walking, zero speed), `motors`, `ablation_confound`.
+        Plain numbers, lists and mappings, SI units, ready for JSON: `total_mass`, `leg_mass` [kg],
+        `leg_length`, `height` [m], `segment_mass` [kg], `reduction` by posture (joints x motors),
+        `max_joint_torque` [Nm] by joint (standing, derated, as Table I), `single_joint_speed`
+        [rad/s] (walking), `torque_alone` [Nm] by joint (walking, the others at zero, not derated),
+        `reflected_inertia` [kg m^2] in the design's posture, `zonotope_to_box_volume` of the joints
+        below the hip (walking, zero speed), `motors`, `ablation_confound`.
 
     Raises:
         InputError: a batch of designs.
@@ -48,7 +51,10 @@ def analyze(design: Design) -> dict[str, Any]:
     below = matrix["walking"][BELOW_HIP, BELOW_HIP]
     peak = envelope.peak_torque[BELOW_HIP]
     full_peak = envelope.peak_torque
-    alone = [float(zonotope.alone(matrix["walking"], -full_peak, full_peak, i)) for i in range(len(joints))]
+    alone = [
+        float(zonotope.alone(matrix["walking"], -full_peak, full_peak, i))
+        for i in range(len(joints))
+    ]
     return {
         "schema": SCHEMA,
         "design": design.name,
@@ -57,7 +63,9 @@ def analyze(design: Design) -> dict[str, Any]:
         "leg_mass": float(table.leg),
         "leg_length": float(leg_length(design)),
         "height": float(leg_length(design) + design.pelvis.height),
-        "segment_mass": {s: float(getattr(table, s)) for s in ("pelvis", "thigh", "shank", "foot", "toe")},
+        "segment_mass": {
+            s: float(getattr(table, s)) for s in ("pelvis", "thigh", "shank", "foot", "toe")
+        },
         "joints": list(joints),
         "motors": _motors(design),
         "posture": str(design.transmission.posture),

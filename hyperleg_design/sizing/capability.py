@@ -1,12 +1,14 @@
-"""The largest contact force that one leg gives in a posture, inside motor envelopes and friction cones.
+"""The largest contact force that one leg gives in a posture, inside motor envelopes and friction
+cones.
 
 The leg pushes quasi-statically: its pads press on the floor, its joints hold
 
     M tau_motor = g - J^T f,        lower <= tau_motor <= upper        |f_xy| <= mu f_z at each pad
 
-with g the gravity torques of the leg's own links, f the forces of the floor on the pads and limits at zero speed or at
-given joint velocities. The pelvis is taken as held, as in a leg press: what the rest of the robot needs so as not to tip is
-asked for only with `upright`. Joint friction, which would help to hold, is left out. A second-order cone problem.
+with g the gravity torques of the leg's own links, f the forces of the floor on the pads and limits
+at zero speed or at given joint velocities. The pelvis is taken as held, as in a leg press: what the
+rest of the robot needs so as not to tip is asked for only with `upright`. Joint friction, which
+would help to hold, is left out. A second-order cone problem.
 """
 
 from __future__ import annotations
@@ -20,17 +22,32 @@ import numpy as np
 from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.robot.models import RigidBodyModel, rigid_body_model
 from hyperleg_design.robot.names import SIDES
-from hyperleg_design.robot.transmission import joint_from_motor, joint_names, motor_names, motor_velocity
+from hyperleg_design.robot.transmission import (
+    joint_from_motor,
+    joint_names,
+    motor_names,
+    motor_velocity,
+)
 from hyperleg_design.sizing.contacts import TIP, contact_kinematics, sole_pads
 from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
-from hyperleg_design.sizing.kinematics import about_y, check_range, has_toe_joint, hip_center, leg_angles, leg_reach
+from hyperleg_design.sizing.kinematics import (
+    about_y,
+    check_range,
+    has_toe_joint,
+    hip_center,
+    leg_angles,
+    leg_reach,
+)
 from hyperleg_design.sizing.motions.foot_path import rolling
 from hyperleg_design.sizing.motions.motion import GRAVITY
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
 
-DIRECTIONS: Mapping[str, np.ndarray] = {"vertical": np.array([0.0, 0.0, 1.0]), "forward": np.array([1.0, 0.0, 0.0])}
+DIRECTIONS: Mapping[str, np.ndarray] = {
+    "vertical": np.array([0.0, 0.0, 1.0]),
+    "forward": np.array([1.0, 0.0, 0.0]),
+}
 """Of the floor's force on the foot; forward is what drives the robot ahead."""
 POSTURES = ("standing", "mid_squat", "toe_off")
 """Named postures of `posture`."""
@@ -39,7 +56,8 @@ BINDING = 1e-4
 ON_FLOOR = 1e-3
 """Height above the lowest pad up to which a pad counts as on the floor [m]."""
 LARGEST = 100.0
-"""Body weights beyond which no robot pushes: there the leg carries the force by its bones alone [-]."""
+"""Body weights beyond which no robot pushes: there the leg carries the force by its bones alone
+[-]."""
 
 _KNEE = {"standing": np.deg2rad(20.0), "mid_squat": np.deg2rad(80.0), "toe_off": np.deg2rad(25.0)}
 """Knee flexion of the named postures (assumed)."""
@@ -77,7 +95,8 @@ class ContactForce:
 def posture(design: Design, name: str, model: RigidBodyModel | None = None) -> np.ndarray:
     """A named posture of both legs alike, the lower pads on the floor: Pinocchio's `q`, `(nq,)`.
 
-    `standing`: knees bent by 20 deg, soles flat. `mid_squat`: by 80 deg. `toe_off`: heels up by 30 deg, contact on the
+    `standing`: knees bent by 20 deg, soles flat. `mid_squat`: by 80 deg. `toe_off`: heels up by 30
+        deg, contact on the
     tip's pads only, the toes flat where they move. All assumed.
 
     Raises:
@@ -120,36 +139,57 @@ def largest_force(
 
     Args:
         design: a robot.
-        q: configuration of the floating robot in Pinocchio's coordinates, `(nq,)`, or a name of `POSTURES`.
+        q: configuration of the floating robot in Pinocchio's coordinates, `(nq,)`, or a name of
+            `POSTURES`.
         direction: `vertical` or `forward`.
         side: the leg that pushes, on those of its pads that are lowest.
-        joint_velocity: of that leg [rad/s], `(joints,)`, which narrows the envelopes; at rest by default.
-        upright: whether the force must pass through the robot's centre of mass, so as not to tip it.
-        vertical: vertical force to hold at the same time [N], for the forward direction; free by default.
+        joint_velocity: of that leg [rad/s], `(joints,)`, which narrows the envelopes; at rest by
+            default.
+        upright: whether the force must pass through the robot's centre of mass, so as not to tip
+            it.
+        vertical: vertical force to hold at the same time [N], for the forward direction; free by
+            default.
         model: the design's rigid-body model, to save making it.
 
     Raises:
         InputError: no such direction, side or posture, or arrays of the wrong shape.
-        InfeasibleError: no contact force holds the leg, or the bones carry any force: a straight leg has no largest one.
+        InfeasibleError: no contact force holds the leg, or the bones carry any force: a straight
+        leg has no largest one.
     """
     import cvxpy as cp
 
     if direction not in DIRECTIONS:
-        raise InputError("capability", "direction", direction, f"expects one of {', '.join(DIRECTIONS)}")
+        raise InputError(
+            "capability", "direction", direction, f"expects one of {', '.join(DIRECTIONS)}"
+        )
     if side not in SIDES:
         raise InputError("capability", "side", side, f"expects one of {', '.join(SIDES)}")
-    if vertical is not None and not (np.isfinite(vertical) and vertical > 0 and direction == "forward"):
-        raise InputError("capability", "vertical", vertical, "expects a positive force in N, with the forward direction")
+    if vertical is not None and not (
+        np.isfinite(vertical) and vertical > 0 and direction == "forward"
+    ):
+        raise InputError(
+            "capability",
+            "vertical",
+            vertical,
+            "expects a positive force in N, with the forward direction",
+        )
     model = model or rigid_body_model(design)
     if isinstance(q, str):
         q = posture(design, q, model)
     q = np.asarray(q, float)
     joints = len(joint_names(design))
     if q.shape != (model.model.nq,) or not np.all(np.isfinite(q)):
-        raise InputError("capability", "q", q.shape, f"expects finite numbers, shape ({model.model.nq},)")
+        raise InputError(
+            "capability", "q", q.shape, f"expects finite numbers, shape ({model.model.nq},)"
+        )
     speed = np.zeros(joints) if joint_velocity is None else np.asarray(joint_velocity, float)
     if speed.shape != (joints,) or not np.all(np.isfinite(speed)):
-        raise InputError("capability", "joint_velocity", speed.shape, f"expects finite numbers, shape ({joints},)")
+        raise InputError(
+            "capability",
+            "joint_velocity",
+            speed.shape,
+            f"expects finite numbers, shape ({joints},)",
+        )
 
     weight = GRAVITY * float(sum(link.mass for link in model.tree.links))
     columns = slice(6 + SIDES.index(side) * joints, 6 + (SIDES.index(side) + 1) * joints)
@@ -168,7 +208,8 @@ def largest_force(
     pushed = np.swapaxes(jacobian[touching][:, :, columns].reshape(-1, joints), 0, 1) * weight
     scale = np.max(np.abs(matrix) @ peak)
     constraints = [
-        (matrix * peak / scale) @ torque == (gravity - pushed @ cp.reshape(force, (3 * len(touching),), order="C")) / scale,
+        (matrix * peak / scale) @ torque
+        == (gravity - pushed @ cp.reshape(force, (3 * len(touching),), order="C")) / scale,
         torque >= lower / peak,
         torque <= upper / peak,
         cp.SOC(friction * force[:, 2], force[:, :2].T, axis=0),
@@ -185,19 +226,50 @@ def largest_force(
     try:
         problem.solve(solver=cp.CLARABEL)
     except cp.error.SolverError:
-        raise InfeasibleError(f"{design.name}: the solver finds no largest {direction} force in this posture") from None
+        raise InfeasibleError(
+            f"{design.name}: the solver finds no largest {direction} force in this posture"
+        ) from None
     if problem.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
-        raise InfeasibleError(f"{design.name}: no contact force of the {side} foot lets its motors hold this posture ({problem.status})")
+        raise InfeasibleError(
+            f"{design.name}: no contact force of the {side} foot lets its motors hold this posture "
+            f"({problem.status})"
+        )
     found = force.value * weight
     if found[:, 2].sum() > 0.999 * LARGEST * weight:
-        raise InfeasibleError(f"{design.name}: the {side} leg is straight in this posture: its bones carry any force; bend the knee")
-    return _result(design, direction, model, q, side, touching, points, found, torque.value * peak, lower, upper, weight)
+        raise InfeasibleError(
+            f"{design.name}: the {side} leg is straight in this posture: its bones carry any "
+            f"force; bend the knee"
+        )
+    return _result(
+        design,
+        direction,
+        model,
+        q,
+        side,
+        touching,
+        points,
+        found,
+        torque.value * peak,
+        lower,
+        upper,
+        weight,
+    )
 
 
 def _result(
-    design: Design, direction: str, model: RigidBodyModel, q: np.ndarray, side: str, touching: np.ndarray, points: np.ndarray,
-    found: np.ndarray, torque: np.ndarray, lower: np.ndarray, upper: np.ndarray, weight: float,
-) -> ContactForce:  # fmt: skip
+    design: Design,
+    direction: str,
+    model: RigidBodyModel,
+    q: np.ndarray,
+    side: str,
+    touching: np.ndarray,
+    points: np.ndarray,
+    found: np.ndarray,
+    torque: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    weight: float,
+) -> ContactForce:
     pads, envelope = sole_pads(model.tree), motor_envelope(design)
     pad_force = np.zeros((len(pads), 3))
     pad_force[touching] = found
@@ -216,18 +288,29 @@ def _result(
         center_of_pressure=center[:2],
         motor_torque=torque,
         joint_torque=joint_from_motor(design) @ torque,
-        binding=tuple(name for name, distance in zip(motor_names(design), near, strict=True) if distance < BINDING),
-        slipping=tuple(pads[p].name for p, rest, bears in zip(touching, slack, loaded, strict=True) if bears and rest < BINDING * weight),
+        binding=tuple(
+            name
+            for name, distance in zip(motor_names(design), near, strict=True)
+            if distance < BINDING
+        ),
+        slipping=tuple(
+            pads[p].name
+            for p, rest, bears in zip(touching, slack, loaded, strict=True)
+            if bears and rest < BINDING * weight
+        ),
         body_weights=float(total @ DIRECTIONS[direction]) / weight,
     )
 
 
-def capability_table(designs: Mapping[str, Design], postures: tuple[str, ...] = POSTURES, *, upright: bool = False) -> list[dict[str, Any]]:
+def capability_table(
+    designs: Mapping[str, Design], postures: tuple[str, ...] = POSTURES, *, upright: bool = False
+) -> list[dict[str, Any]]:
     """Largest forces of one leg, a row for each design, posture and direction.
 
     Returns:
-        Rows of `design`, `posture`, `direction`, `force` [N] (in that direction), `body_weights` [-], `center_of_pressure` [m]
-        ahead of the ankle, `binding` motors; `force` is None with a `reason` where there is no largest force.
+        Rows of `design`, `posture`, `direction`, `force` [N] (in that direction), `body_weights`
+        [-], `center_of_pressure` [m] ahead of the ankle, `binding` motors; `force` is None with a
+        `reason` where there is no largest force.
     """
     rows: list[dict[str, Any]] = []
     for key, design in designs.items():
@@ -240,8 +323,17 @@ def capability_table(designs: Mapping[str, Design], postures: tuple[str, ...] = 
                 except InfeasibleError as error:
                     rows.append({**row, "force": None, "reason": str(error)})
                     continue
-                row |= {"force": float(found.force @ DIRECTIONS[direction]), "body_weights": found.body_weights}
-                rows.append({**row, "center_of_pressure": float(found.center_of_pressure[0]), "binding": found.binding})
+                row |= {
+                    "force": float(found.force @ DIRECTIONS[direction]),
+                    "body_weights": found.body_weights,
+                }
+                rows.append(
+                    {
+                        **row,
+                        "center_of_pressure": float(found.center_of_pressure[0]),
+                        "binding": found.binding,
+                    }
+                )
     return rows
 
 

@@ -39,12 +39,18 @@ def sole_pads(tree: Tree) -> tuple[Pad, ...]:
         side = link.name.split("_")[0]
         for index, shape in enumerate(link.pads):
             row = TIP if link.name.endswith("toe_plate") else (HEEL, BALL)[index // 2]
-            found.append(Pad(f"{side}_{row}_{index % 2}", side, row, link.name, shape.position, shape.size[0]))
+            found.append(
+                Pad(
+                    f"{side}_{row}_{index % 2}", side, row, link.name, shape.position, shape.size[0]
+                )
+            )
     return tuple(found)
 
 
 def contact_points(model: RigidBodyModel, q: np.ndarray) -> np.ndarray:
-    """Lowest point of each pad in the world [m], `(pads, 3)`; on level floor a sphere touches there."""
+    """Lowest point of each pad in the world [m], `(pads, 3)`; on level floor a sphere touches
+    there.
+    """
     points, _ = contact_kinematics(model, q)
     return points
 
@@ -57,8 +63,8 @@ def contact_kinematics(model: RigidBodyModel, q: np.ndarray) -> tuple[np.ndarray
         q: its configuration, `(nq,)`.
 
     Returns:
-        Points in the world [m], `(pads, 3)`, and the velocity of the body's material there over `v`, world axes,
-        `(pads, 3, nv)`.
+        Points in the world [m], `(pads, 3)`, and the velocity of the body's material there over
+        `v`, world axes, `(pads, 3, nv)`.
     """
     import pinocchio as pin
 
@@ -74,7 +80,9 @@ def contact_kinematics(model: RigidBodyModel, q: np.ndarray) -> tuple[np.ndarray
             frame = model.model.getFrameId(link)
             place = model.data.oMf[frame]
             rotation, origin = np.array(place.rotation), np.array(place.translation)
-            twist = np.array(pin.getFrameJacobian(model.model, model.data, frame, pin.LOCAL_WORLD_ALIGNED))
+            twist = np.array(
+                pin.getFrameJacobian(model.model, model.data, frame, pin.LOCAL_WORLD_ALIGNED)
+            )
         offset = rotation @ np.array(pad.position) - np.array([0.0, 0.0, pad.radius])
         points[index] = origin + offset
         jacobians[index] = twist[:3] + np.cross(twist[3:].T, offset).T  # v + w x r

@@ -1,7 +1,8 @@
 """What a motion demands of every motor: torque, speed, heat, and what is left to the envelope.
 
-The motion's inverse dynamics (Pinocchio, rotor inertia included) plus joint friction must come from the contact forces and
-from the motors; `allocation` splits them at least Joule heat. Both legs have the same motors.
+The motion's inverse dynamics (Pinocchio, rotor inertia included) plus joint friction must come from
+the contact forces and from the motors; `allocation` splits them at least Joule heat. Both legs have
+the same motors.
 """
 
 from __future__ import annotations
@@ -15,7 +16,12 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.friction import FRICTION_SPEED
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.robot.transmission import joint_from_motor, joint_names, motor_names, motor_velocity
+from hyperleg_design.robot.transmission import (
+    joint_from_motor,
+    joint_names,
+    motor_names,
+    motor_velocity,
+)
 from hyperleg_design.sizing.allocation import Allocation, least_heat
 from hyperleg_design.sizing.contacts import contact_kinematics
 from hyperleg_design.sizing.energy import EnergyLedger, EnergySums, cost_of_transport, energy_ledger
@@ -55,7 +61,9 @@ class Demand:
 
     @property
     def beyond(self) -> np.ndarray:
-        """Whether some motor is beyond its envelope, or the contacts cannot balance the base, `(n,)`."""
+        """Whether some motor is beyond its envelope, or the contacts cannot balance the base,
+        `(n,)`.
+        """
         return np.any(self.allocation.excess > 0, (1, 2)) | np.any(self.allocation.gap != 0, 1)
 
     @property
@@ -78,21 +86,34 @@ class Demand:
             raise InputError("cost of transport", "side", side, "expects motor or battery")
         energy = self.ledger.energy().total()
         mass = sum(link.mass for link in self.motion.model.tree.links)
-        return float(cost_of_transport(energy.motor_side if side == "motor" else energy.battery, mass, self.motion.distance))
+        return float(
+            cost_of_transport(
+                energy.motor_side if side == "motor" else energy.battery, mass, self.motion.distance
+            )
+        )
 
     def table(self) -> list[dict[str, Any]]:
         """One row a motor, the worse leg counting.
 
-        `motor`, `peak_torque`, `rms_torque` [Nm], `rms_over_rated` [-], `peak_speed` [rad/s], `speed_over_no_load` [-],
-        `margin` [Nm] (smallest, negative beyond), `margin_over_peak` [-], `joule`, `mechanical` [W] (mean, both legs).
+        `motor`, `peak_torque`, `rms_torque` [Nm], `rms_over_rated` [-], `peak_speed` [rad/s],
+        `speed_over_no_load` [-], `margin` [Nm] (smallest, negative beyond), `margin_over_peak` [-],
+        `joule`, `mechanical` [W] (mean, both legs).
         """
         arrays, names = motor_arrays(self.design), motor_names(self.design)
         powers = self.ledger.mean_power()
         torque = np.swapaxes(self.motor_torque, 0, 1)
-        use = thermal_use(torque, arrays.rated_torque[: len(names)], self.motion.time_step, periodic=self.motion.periodic)
+        use = thermal_use(
+            torque,
+            arrays.rated_torque[: len(names)],
+            self.motion.time_step,
+            periodic=self.motion.periodic,
+        )
         rows = []
         for m, name in enumerate(names):
-            least, speed = float(self.margin[..., m].min()), float(np.abs(self.motor_velocity[..., m]).max())
+            least, speed = (
+                float(self.margin[..., m].min()),
+                float(np.abs(self.motor_velocity[..., m]).max()),
+            )
             rows.append(
                 {
                     "motor": name,
@@ -110,7 +131,9 @@ class Demand:
         return rows
 
     def summary(self) -> dict[str, Any]:
-        """Plain numbers for a page or JSON: mean powers [W], cost of transport where it travels, share beyond, worst margin, table."""
+        """Plain numbers for a page or JSON: mean powers [W], cost of transport where it travels,
+        share beyond, worst margin, table.
+        """
         power = self.power
         found = {
             "design": self.design.name,
@@ -135,7 +158,9 @@ class Demand:
 
 
 def joint_friction(design: Design, velocity: np.ndarray) -> np.ndarray:
-    """Friction that the motors must overcome, `coulomb tanh(v / v_m) + viscous v`, `(..., joints)` [Nm]."""
+    """Friction that the motors must overcome, `coulomb tanh(v / v_m) + viscous v`, `(..., joints)`
+    [Nm].
+    """
     names = joint_names(design)
     coulomb = np.array([getattr(design.joints, n).coulomb for n in names], float)
     viscous = np.array([getattr(design.joints, n).viscous for n in names], float)
@@ -145,7 +170,9 @@ def joint_friction(design: Design, velocity: np.ndarray) -> np.ndarray:
 def required_forces(motion: Motion) -> np.ndarray:
     """Generalised forces that contacts and motors must give, joint friction included, `(n, nv)`."""
     model = motion.model
-    found = np.stack([model.inverse_dynamics(*state) for state in zip(motion.q, motion.v, motion.a, strict=True)])
+    found = np.stack(
+        [model.inverse_dynamics(*state) for state in zip(motion.q, motion.v, motion.a, strict=True)]
+    )
     found[:, 6:] += joint_friction(model.design, motion.joint_velocity).reshape(len(found), -1)
     return found
 
@@ -160,22 +187,36 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
 
     Raises:
         InputError: a batch, a motion planned for another design, or no such motion.
-        InfeasibleError: the legs cannot do the motion, or `allow_excess` is off and the motors cannot.
+        InfeasibleError: the legs cannot do the motion, or `allow_excess` is off and the motors
+        cannot.
     """
     if isinstance(motion, str):
         motion = reference_motion(design, motion)
     planned = motion.model.design
     if planned is not design:
-        raise InputError(design.name, "motion", motion.name, f"was planned for {planned.name}, variant {planned.variant}; plan it for this design")
+        raise InputError(
+            design.name,
+            "motion",
+            motion.name,
+            f"was planned for {planned.name}, variant {planned.variant}; plan it for this design",
+        )
     matrix, envelope = joint_from_motor(design), motor_envelope(design)
     speed = motor_velocity(matrix, motion.joint_velocity)
     lower, upper = torque_limits(envelope, speed)
     jacobian = np.stack([contact_kinematics(motion.model, q)[1] for q in motion.q])
     weight = GRAVITY * float(sum(link.mass for link in motion.model.tree.links))
     found = least_heat(
-        required_forces(motion), jacobian, motion.contact, matrix, lower, upper, envelope.power_constant,
-        friction=float(design.contact.friction), weight=weight, allow_excess=allow_excess,
-    )  # fmt: skip
+        required_forces(motion),
+        jacobian,
+        motion.contact,
+        matrix,
+        lower,
+        upper,
+        envelope.power_constant,
+        friction=float(design.contact.friction),
+        weight=weight,
+        allow_excess=allow_excess,
+    )
     return Demand(
         design=design,
         motion=motion,
@@ -189,14 +230,25 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
     )
 
 
-def _ledger(torque: np.ndarray, speed: np.ndarray, time_step: float, envelope: MotorEnvelope) -> EnergyLedger:
+def _ledger(
+    torque: np.ndarray, speed: np.ndarray, time_step: float, envelope: MotorEnvelope
+) -> EnergyLedger:
     flat = (len(torque), -1)
     constants = np.tile(envelope.power_constant, torque.shape[1])
-    return energy_ledger(torque.reshape(flat), speed.reshape(flat), time_step, constants, envelope.efficiency_out, envelope.efficiency_regen)
+    return energy_ledger(
+        torque.reshape(flat),
+        speed.reshape(flat),
+        time_step,
+        constants,
+        envelope.efficiency_out,
+        envelope.efficiency_regen,
+    )
 
 
 def demands(designs: Mapping[str, Design], name: str) -> dict[str, Demand]:
-    """Demand of one reference motion on several robots, each with the motion planned for it, by the names given."""
+    """Demand of one reference motion on several robots, each with the motion planned for it, by the
+    names given.
+    """
     return {key: demand(design, name) for key, design in designs.items()}
 
 

@@ -1,4 +1,5 @@
-"""Where the electrical energy goes: a ledger from the battery through drivers and windings to the joints.
+"""Where the electrical energy goes: a ledger from the battery through drivers and windings to the
+joints.
 
 At each motor, with torque tau, speed w and power constant Cp (paper, Eq. (5)):
 
@@ -7,10 +8,12 @@ At each motor, with torque tau, speed w and power constant Cp (paper, Eq. (5)):
     battery = electrical * efficiency_regen   where it gives back    (electrical < 0)
     driver_loss = battery - electrical >= 0
 
-Table III of the paper adds up on the motor side, without driver efficiencies; Table I prints these. Both sides are kept
-here. Every motor has its own driver, and the drivers share one direct-current bus, so what one gives back another may
-draw: sums over motors are taken after the efficiencies. Samples hold for one time step, so energy is power times the step.
-"""
+Table III of the paper adds up on the motor side, without driver efficiencies; Table I prints these.
+Both sides are kept here. Every motor has its own driver, and the drivers share one direct-current
+bus, so what one gives back another may
+draw: sums over motors are taken after the efficiencies. Samples hold for one time step, so energy
+    is power times the step.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -30,7 +33,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class EnergyLedger:
-    """Powers [W] of every motor over time, or, after `energy`, `total` and the like, what is left of these axes."""
+    """Powers [W] of every motor over time, or, after `energy`, `total` and the like, what is left
+    of these axes.
+    """
 
     time_step: float
     """[s]"""
@@ -71,7 +76,8 @@ class EnergyLedger:
         return self.time_step * self.joule.shape[-2]
 
     def residual(self) -> np.ndarray:
-        """How far the balance battery = mechanical + joule + driver loss is from closing, `(..., t, m)` [-].
+        """How far the balance battery = mechanical + joule + driver loss is from closing, `(..., t,
+        m)` [-].
 
         Relative to the sum of the magnitudes; 0 where nothing flows.
         """
@@ -88,13 +94,22 @@ class EnergyLedger:
         return self._summed(1.0 / self.joule.shape[-2])
 
     def _summed(self, factor: float) -> EnergySums:
-        parts = ("joule", "mechanical_positive", "mechanical_negative", "driver_loss", "drawn", "returned")
+        parts = (
+            "joule",
+            "mechanical_positive",
+            "mechanical_negative",
+            "driver_loss",
+            "drawn",
+            "returned",
+        )
         return EnergySums(**{name: getattr(self, name).sum(-2) * factor for name in parts})
 
 
 @dataclass(frozen=True, eq=False)
 class EnergySums:
-    """Energies [J] or mean powers [W] of each motor, `(..., m)`; after `total`, of all motors, `(...)`."""
+    """Energies [J] or mean powers [W] of each motor, `(..., m)`; after `total`, of all motors,
+    `(...)`.
+    """
 
     joule: np.ndarray
     """Heat of the windings."""
@@ -136,12 +151,19 @@ class EnergySums:
     def residual(self) -> np.ndarray:
         """How far the balance is from closing, relative to the sum of the magnitudes [-]."""
         gap = self.battery - self.mechanical - self.joule - self.driver_loss
-        scale = np.asarray(self.drawn + self.returned + self.mechanical_absolute + self.joule + self.driver_loss)
+        scale = np.asarray(
+            self.drawn + self.returned + self.mechanical_absolute + self.joule + self.driver_loss
+        )
         return np.divide(np.abs(gap), scale, out=np.zeros(np.shape(gap)), where=scale > 0)
 
 
 def energy_ledger(
-    motor_torque: Any, motor_velocity: Any, time_step: float, power_constant: Any, efficiency_out: Any = 0.9, efficiency_regen: Any = 0.8
+    motor_torque: Any,
+    motor_velocity: Any,
+    time_step: float,
+    power_constant: Any,
+    efficiency_out: Any = 0.9,
+    efficiency_regen: Any = 0.8,
 ) -> EnergyLedger:
     """The ledger of motors over time.
 
@@ -151,19 +173,36 @@ def energy_ledger(
         time_step: between samples [s].
         power_constant: Cp [W/Nm^2], `(..., m)`.
         efficiency_out: of the drivers, battery to motor [-], `()` or the batch (Table I: 0.9).
-        efficiency_regen: of the drivers, motor to battery [-], `()` or the batch (Table I: 0.8); 0 where nothing returns.
+        efficiency_regen: of the drivers, motor to battery [-], `()` or the batch (Table I: 0.8); 0
+            where nothing returns.
 
     Raises:
-        InputError: shapes that do not fit, values that are not finite, a step that is not positive, an efficiency that is none.
+        InputError: shapes that do not fit, values that are not finite, a step that is not positive,
+        an efficiency that is none.
     """
-    torque, velocity = _samples(motor_torque, "motor_torque"), _samples(motor_velocity, "motor_velocity")
+    torque, velocity = (
+        _samples(motor_torque, "motor_torque"),
+        _samples(motor_velocity, "motor_velocity"),
+    )
     if torque.shape[-2:] != velocity.shape[-2:]:
-        raise InputError("energy", "motor_velocity", list(velocity.shape), f"expects the time and motors of motor_torque, {list(torque.shape)}")
+        raise InputError(
+            "energy",
+            "motor_velocity",
+            list(velocity.shape),
+            f"expects the time and motors of motor_torque, {list(torque.shape)}",
+        )
     if not (np.ndim(time_step) == 0 and np.isfinite(time_step) and time_step > 0):
         raise InputError("energy", "time_step", time_step, "expects a positive number in s")
     heat = np.asarray(power_constant, float)
-    if heat.shape[-1:] not in ((), torque.shape[-1:]) or not np.all(np.isfinite(heat) & (heat >= 0)):
-        raise InputError("energy", "power_constant", heat.tolist(), f"expects {torque.shape[-1]} numbers in W/Nm^2, not negative")
+    if heat.shape[-1:] not in ((), torque.shape[-1:]) or not np.all(
+        np.isfinite(heat) & (heat >= 0)
+    ):
+        raise InputError(
+            "energy",
+            "power_constant",
+            heat.tolist(),
+            f"expects {torque.shape[-1]} numbers in W/Nm^2, not negative",
+        )
     out = _efficiency(efficiency_out, "efficiency_out", allow_zero=False)
     regen = _efficiency(efficiency_regen, "efficiency_regen", allow_zero=True)
     joule = (heat[..., None, :] if heat.ndim else heat) * torque**2
@@ -181,7 +220,9 @@ def energy_ledger(
     )
 
 
-def design_ledger(design: Design, motor_torque: Any, motor_velocity: Any, time_step: float) -> EnergyLedger:
+def design_ledger(
+    design: Design, motor_torque: Any, motor_velocity: Any, time_step: float
+) -> EnergyLedger:
     """The ledger of one leg with the power constants and driver efficiencies of a design or batch.
 
     Args:
@@ -195,21 +236,33 @@ def design_ledger(design: Design, motor_torque: Any, motor_velocity: Any, time_s
     """
     count = len(motor_names(design))
     constants = motor_arrays(design).power_constant[..., :count]
-    return energy_ledger(motor_torque, motor_velocity, time_step, constants, design.electrical.efficiency_out, design.electrical.efficiency_regen)
+    return energy_ledger(
+        motor_torque,
+        motor_velocity,
+        time_step,
+        constants,
+        design.electrical.efficiency_out,
+        design.electrical.efficiency_regen,
+    )
 
 
 def joint_power(joint_torque: Any, joint_velocity: Any) -> np.ndarray:
     """Mechanical power of each joint, tau_joint q_dot [W], `(..., joints)`.
 
-    Its sum over joints equals the sum of the motors' mechanical power, because M maps both; joint by joint the two differ
-    where motors are shared.
+    Its sum over joints equals the sum of the motors' mechanical power, because M maps both; joint
+    by joint the two differ where motors are shared.
 
     Raises:
         InputError: unequal numbers of joints.
     """
     torque, velocity = np.asarray(joint_torque, float), np.asarray(joint_velocity, float)
     if torque.shape[-1:] != velocity.shape[-1:]:
-        raise InputError("energy", "joint_velocity", list(velocity.shape), f"expects the joints of joint_torque, {list(torque.shape)}")
+        raise InputError(
+            "energy",
+            "joint_velocity",
+            list(velocity.shape),
+            f"expects the joints of joint_torque, {list(torque.shape)}",
+        )
     return torque * velocity
 
 
@@ -236,16 +289,28 @@ def _per_weight(amount: Any, mass: Any, per: Any, name: str, unit: str) -> np.nd
     for field, value, of in (("mass", mass, "kg"), (name, per, unit)):
         if not np.all(np.isfinite(value) & (value > 0)):
             worst = float(value.flat[np.argmin(np.where(np.isfinite(value), value, -np.inf))])
-            raise InputError("cost of transport", field, worst, f"expects a positive number in {of}; without it no transport is done")
+            raise InputError(
+                "cost of transport",
+                field,
+                worst,
+                f"expects a positive number in {of}; without it no transport is done",
+            )
     return np.asarray(amount / (mass * GRAVITY * per))
 
 
 def _samples(value: Any, field: str) -> np.ndarray:
     array = np.asarray(value, float)
     if array.ndim < 2 or 0 in array.shape[-2:]:
-        raise InputError("energy", field, list(array.shape), "is the shape found; expects samples over time of each motor, (..., t, m)")
+        raise InputError(
+            "energy",
+            field,
+            list(array.shape),
+            "is the shape found; expects samples over time of each motor, (..., t, m)",
+        )
     if not np.all(np.isfinite(array)):
-        raise InputError("energy", field, float(array[~np.isfinite(array)][0]), "expects finite numbers")
+        raise InputError(
+            "energy", field, float(array[~np.isfinite(array)][0]), "expects finite numbers"
+        )
     return array
 
 
@@ -253,5 +318,10 @@ def _efficiency(value: Any, field: str, *, allow_zero: bool) -> np.ndarray:
     """An efficiency with room for time and motors behind the batch."""
     array = np.asarray(value, float)
     if not np.all((array <= 1) & ((array >= 0) if allow_zero else (array > 0))):
-        raise InputError("energy", field, array.tolist(), "expects a share of one: from 0 to 1" + ("" if allow_zero else ", above 0"))
+        raise InputError(
+            "energy",
+            field,
+            array.tolist(),
+            "expects a share of one: from 0 to 1" + ("" if allow_zero else ", above 0"),
+        )
     return array[..., None, None]

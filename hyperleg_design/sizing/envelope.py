@@ -1,14 +1,15 @@
 """Motor envelopes: which torque a motor can give at which speed, in all four quadrants.
 
-A motor behind a driver is bounded by its peak torque and by the bus voltage, which draws a line through stall torque and
-no-load speed (Eq. (4) of the paper, the DC-motor clip of Isaac Lab):
+A motor behind a driver is bounded by its peak torque and by the bus voltage, which draws a line
+through stall torque and no-load speed (Eq. (4) of the paper, the DC-motor clip of Isaac Lab):
 
     upper = clip(stall (1 - w / w0), -peak, peak)        lower = clip(-stall (1 + w / w0), -peak, peak)
 
-Up to no-load speed zero torque lies between the two. Past it the back-EMF exceeds the bus voltage and drives a braking
-current through the driver, so `upper` is negative: the motor brakes at least that much, up to its peak torque. There the
-interval shrinks to the point -peak (at w0 (1 + peak / stall)) and never turns inside out.
-"""
+Up to no-load speed zero torque lies between the two. Past it the back-EMF exceeds the bus voltage
+and drives a braking current through the driver, so `upper` is negative: the motor brakes at least
+that much, up to its peak torque. There the interval shrinks to the point -peak (at w0 (1 + peak /
+stall)) and never turns inside out.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
 
 BRAKING, IDLE, DRIVING = -1, 0, 1
-"""What `quadrant` returns: the motor takes power from the joint, exchanges none, gives power to it."""
+"""What `quadrant` returns: the motor takes power from the joint, exchanges none, gives power to
+it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +49,16 @@ class MotorEnvelope:
 
     @property
     def corner_speed(self) -> np.ndarray:
-        """Speed up to which the peak torque is there [rad/s], `(..., motors)`; 0 where the voltage line never reaches it."""
+        """Speed up to which the peak torque is there [rad/s], `(..., motors)`; 0 where the voltage
+        line never reaches it.
+        """
         return np.maximum(0.0, self.no_load_speed * (1 - self.peak_torque / self.stall_torque))
 
     @property
     def top_speed(self) -> np.ndarray:
-        """Speed from which even full braking current is less than the back-EMF drives [rad/s], `(..., motors)`."""
+        """Speed from which even full braking current is less than the back-EMF drives [rad/s],
+        `(..., motors)`.
+        """
         return self.no_load_speed * (1 + self.peak_torque / self.stall_torque)
 
     def select(self, motors: slice | list[int]) -> MotorEnvelope:
@@ -67,7 +73,9 @@ class MotorEnvelope:
 
 
 def motor_envelope(design: Design) -> MotorEnvelope:
-    """Envelope of the installed motors of one leg, a robot's `(motors,)` or a batch's `(n, motors)`."""
+    """Envelope of the installed motors of one leg, a robot's `(motors,)` or a batch's `(n,
+    motors)`.
+    """
     arrays = motor_arrays(design)
     installed = slice(len(motor_names(design)))
     return MotorEnvelope(
@@ -80,7 +88,9 @@ def motor_envelope(design: Design) -> MotorEnvelope:
     )
 
 
-def torque_limits(envelope: MotorEnvelope, motor_velocity: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+def torque_limits(
+    envelope: MotorEnvelope, motor_velocity: np.ndarray | float
+) -> tuple[np.ndarray, np.ndarray]:
     """Least and largest torque of each motor at its speed [Nm].
 
     Args:
@@ -95,12 +105,16 @@ def torque_limits(envelope: MotorEnvelope, motor_velocity: np.ndarray | float) -
     return np.clip(-stall * (1 + slowing), -peak, peak), np.clip(stall * (1 - slowing), -peak, peak)
 
 
-def clip_torque(envelope: MotorEnvelope, motor_torque: np.ndarray, motor_velocity: np.ndarray | float) -> np.ndarray:
+def clip_torque(
+    envelope: MotorEnvelope, motor_torque: np.ndarray, motor_velocity: np.ndarray | float
+) -> np.ndarray:
     """Wanted torques brought inside the envelope at the motors' speeds [Nm], `(..., motors)`."""
     lower, upper = torque_limits(envelope, motor_velocity)
     return np.clip(motor_torque, lower, upper)
 
 
 def quadrant(motor_torque: np.ndarray, motor_velocity: np.ndarray) -> np.ndarray:
-    """Sign of the mechanical power, `(..., motors)`: `DRIVING`, `IDLE` or `BRAKING` (the regenerative quadrants)."""
+    """Sign of the mechanical power, `(..., motors)`: `DRIVING`, `IDLE` or `BRAKING` (the
+    regenerative quadrants).
+    """
     return np.sign(np.asarray(motor_torque) * np.asarray(motor_velocity)).astype(int)

@@ -1,8 +1,9 @@
 """How heavy a leg is and where its mass lies: what a leg costs to swing, batched over designs.
 
-All in the zero posture: HyperLeg's legs are straight there, thigh above shank. The leg is all that moves with its first hip
-joint; what swings is all behind the hip-pitch joint, about whose axis the swing inertia is taken (the composite
-rigid-body inertia, that joint's entry of the joint-space inertia).
+All in the zero posture: HyperLeg's legs are straight there, thigh above shank. The leg is all that
+moves with its first hip joint; what swings is all behind the hip-pitch joint, about whose axis the
+swing inertia is taken (the composite rigid-body inertia, that joint's entry of the joint-space
+inertia).
 """
 
 from __future__ import annotations
@@ -73,7 +74,9 @@ class LegInertia:
 
     @property
     def gyration_over_length(self) -> Any:
-        """Distal lightness: radius of gyration of the swinging part about the hip, over leg length [-]; 0.577 for a uniform rod."""
+        """Distal lightness: radius of gyration of the swinging part about the hip, over leg length
+        [-]; 0.577 for a uniform rod.
+        """
         return np.sqrt(self.swing_inertia / self.swing_mass) / self.leg_length
 
 
@@ -105,11 +108,15 @@ def leg_inertia(design: Design) -> LegInertia:
 
 
 def rotor_swing_inertia(design: Design, posture: str | None = None) -> np.ndarray:
-    """What the rotors add to the swing inertia at the hip-pitch joint, that entry of M diag(J) M^T, `(...)` [kg m^2]."""
+    """What the rotors add to the swing inertia at the hip-pitch joint, that entry of M diag(J) M^T,
+    `(...)` [kg m^2].
+    """
     return leg_reflected_inertia(design, posture)[..., HIP_PITCH, HIP_PITCH]
 
 
-def composite(design: Design, links: Mapping[str, Inertial], names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def composite(
+    design: Design, links: Mapping[str, Inertial], names: tuple[str, ...]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Links of the left leg taken as one body, straight leg.
 
     Args:
@@ -118,15 +125,18 @@ def composite(design: Design, links: Mapping[str, Inertial], names: tuple[str, .
         names: of the links, from `LEG_LINKS`.
 
     Returns:
-        Mass [kg] `(...)`, centre of mass from the hip centre [m] `(..., 3)`, and inertia about the hip centre
-        [kg m^2] `(..., 3, 3)`.
+        Mass [kg] `(...)`, centre of mass from the hip centre [m] `(..., 3)`, and inertia about the
+        hip centre [kg m^2] `(..., 3, 3)`.
     """
     place = _origins(design)
     mass, moment, inertia = np.zeros(()), np.zeros(3), np.zeros((3, 3))
     for name in names:
         link = links[name]
         weight, centre = np.asarray(link.mass, float), np.asarray(link.com, float) + place[name]
-        squared = np.sum(centre**2, -1)[..., None, None] * np.eye(3) - centre[..., :, None] * centre[..., None, :]
+        squared = (
+            np.sum(centre**2, -1)[..., None, None] * np.eye(3)
+            - centre[..., :, None] * centre[..., None, :]
+        )
         mass = mass + weight
         moment = moment + weight[..., None] * centre
         inertia = inertia + link.inertia + weight[..., None, None] * squared
@@ -144,11 +154,13 @@ def com_height(design: Design) -> np.ndarray:
 
 
 def centroidal_inertia(design: Design, q: np.ndarray | None = None) -> np.ndarray:
-    """Inertia of the whole robot about its centre of mass in Pinocchio, base axes, `(3, 3)` [kg m^2]; rotors not in it.
+    """Inertia of the whole robot about its centre of mass in Pinocchio, base axes, `(3, 3)` [kg
+    m^2]; rotors not in it.
 
     Args:
         design: one robot.
-        q: configuration of its floating model, of `robot.models.rigid_body_model`; straight legs by default.
+        q: configuration of its floating model, of `robot.models.rigid_body_model`; straight legs by
+            default.
 
     Raises:
         InputError: a batch of designs.
@@ -162,14 +174,21 @@ def centroidal_inertia(design: Design, q: np.ndarray | None = None) -> np.ndarra
     body = rigid_body_model(design)
     q = body.neutral() if q is None else np.asarray(q, float)
     if q.shape != (body.model.nq,):
-        raise InputError(design.name, "q", list(q.shape), f"is the shape found; expects a configuration, ({body.model.nq},)")
+        raise InputError(
+            design.name,
+            "q",
+            list(q.shape),
+            f"is the shape found; expects a configuration, ({body.model.nq},)",
+        )
     pin.ccrba(body.model, body.data, q, np.zeros(body.model.nv))
     rotation = quaternion_matrix(q[3:7])
     return rotation.T @ np.array(body.data.Ig.inertia) @ rotation
 
 
 def _origins(design: Design) -> dict[str, np.ndarray]:
-    """Where the frames of the leg's links stand, from the hip centre, straight leg [m], each `(..., 3)`."""
+    """Where the frames of the leg's links stand, from the hip centre, straight leg [m], each `(...,
+    3)`.
+    """
 
     def at(x: Any, z: Any) -> np.ndarray:
         return np.stack(np.broadcast_arrays(np.asarray(x, float), 0.0, np.asarray(z, float)), -1)

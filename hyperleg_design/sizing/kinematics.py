@@ -1,11 +1,13 @@
-"""Inverse kinematics of a leg in closed form: three hip axes meet in one point, two ankle axes in another.
+"""Inverse kinematics of a leg in closed form: three hip axes meet in one point, two ankle axes in
+another.
 
 With s = 1 on the left and -1 on the right, the foot stands at
 
     R_foot = R_pelvis Rz(-s yaw) Rx(s roll) Ry(pitch + knee + ankle pitch) Rx(s ankle roll)
 
-Seen from the foot, the hip lies in the plane of thigh and shank once the ankle's roll is undone. That gives ankle roll; the
-cosine rule gives the knee; the plane's angle gives ankle pitch; what is left of the rotation gives the hip.
+Seen from the foot, the hip lies in the plane of thigh and shank once the ankle's roll is undone.
+That gives ankle roll; the cosine rule gives the knee; the plane's angle gives ankle pitch; what is
+left of the rotation gives the hip.
 """
 
 from __future__ import annotations
@@ -38,7 +40,14 @@ def leg_reach(design: Design, knee: float = 0.0) -> float:
     return float(np.sqrt(thigh**2 + shank**2 + 2 * thigh * shank * np.cos(knee)))
 
 
-def leg_angles(design: Design, side: str, hip_to_ankle: np.ndarray, foot_rotation: np.ndarray, *, check_limits: bool = True) -> np.ndarray:
+def leg_angles(
+    design: Design,
+    side: str,
+    hip_to_ankle: np.ndarray,
+    foot_rotation: np.ndarray,
+    *,
+    check_limits: bool = True,
+) -> np.ndarray:
     """Angles of the six joints from hip yaw to ankle roll that bring the foot to a pose.
 
     Args:
@@ -53,7 +62,8 @@ def leg_angles(design: Design, side: str, hip_to_ankle: np.ndarray, foot_rotatio
 
     Raises:
         InputError: a side that is none, or a batch of designs.
-        InfeasibleError: the ankle lies beyond the leg's reach, or a joint's range ends before; names the joint and its angle.
+        InfeasibleError: the ankle lies beyond the leg's reach, or a joint's range ends before;
+        names the joint and its angle.
     """
     if side not in SIGN:
         raise InputError("side", "", side, f"expects one of {', '.join(SIGN)}")
@@ -62,33 +72,46 @@ def leg_angles(design: Design, side: str, hip_to_ankle: np.ndarray, foot_rotatio
     sign, thigh, shank = SIGN[side], float(design.thigh.length), float(design.shank.length)
     rotation = np.asarray(foot_rotation, float)
     offset = np.asarray(hip_to_ankle, float)
-    seen = np.einsum("...ji,...j->...i", rotation, -offset)  # hip from the ankle, in the foot's frame
+    seen = np.einsum(
+        "...ji,...j->...i", rotation, -offset
+    )  # hip from the ankle, in the foot's frame
     distance = np.linalg.norm(seen, axis=-1)
     cosine = (distance**2 - thigh**2 - shank**2) / (2 * thigh * shank)
     if np.any(~(np.abs(cosine) <= 1)):
         worst = float(np.max(distance)) if np.any(~(cosine <= 1)) else float(np.min(distance))
         raise InfeasibleError(
-            f"{design.name}: {side} leg: the ankle is {worst:.4f} m from the hip; the leg reaches {abs(thigh - shank):.4f} .. {thigh + shank:.4f} m"
+            f"{design.name}: {side} leg: the ankle is {worst:.4f} m from the hip; the leg reaches "
+            f"{abs(thigh - shank):.4f} .. {thigh + shank:.4f} m"
         )
     knee = np.arccos(cosine)
     roll = np.arctan2(seen[..., 1], seen[..., 2])
     in_plane = np.hypot(seen[..., 1], seen[..., 2])
-    ankle_pitch = np.arctan2(-seen[..., 0], in_plane) - np.arctan2(thigh * np.sin(knee), shank + thigh * np.cos(knee))
+    ankle_pitch = np.arctan2(-seen[..., 0], in_plane) - np.arctan2(
+        thigh * np.sin(knee), shank + thigh * np.cos(knee)
+    )
     rest = rotation @ about_x(-roll)
     hip_roll = np.arcsin(np.clip(rest[..., 2, 1], -1.0, 1.0))
-    # with the hip rolled by a right angle, yaw and pitch turn about one axis: all of it is pitch then
+    # with the hip rolled by a right angle, yaw and pitch turn about one axis: all of it is pitch
+    # then
     aligned = np.hypot(rest[..., 0, 1], rest[..., 1, 1]) < ALIGNED
     hip_yaw = np.where(aligned, 0.0, np.arctan2(-rest[..., 0, 1], rest[..., 1, 1]))
-    together = np.where(aligned, np.arctan2(rest[..., 0, 2], rest[..., 0, 0]), np.arctan2(-rest[..., 2, 0], rest[..., 2, 2]))
+    together = np.where(
+        aligned,
+        np.arctan2(rest[..., 0, 2], rest[..., 0, 0]),
+        np.arctan2(-rest[..., 2, 0], rest[..., 2, 2]),
+    )
     hip_pitch = _wrapped(together - knee - ankle_pitch)
-    angles = np.stack([-sign * hip_yaw, sign * hip_roll, hip_pitch, knee, ankle_pitch, sign * roll], -1)
+    angles = np.stack(
+        [-sign * hip_yaw, sign * hip_roll, hip_pitch, knee, ankle_pitch, sign * roll], -1
+    )
     if check_limits:
         check_range(design, side, angles)
     return angles
 
 
 def check_range(design: Design, side: str, angles: np.ndarray, tolerance: float = 1e-9) -> None:
-    """Whether joint angles [rad] `(..., joints)`, in the order of `JOINTS`, lie within the ranges of motion.
+    """Whether joint angles [rad] `(..., joints)`, in the order of `JOINTS`, lie within the ranges
+    of motion.
 
     Raises:
         InfeasibleError: names the joint that leaves its range by most, and its angle.
@@ -102,7 +125,8 @@ def check_range(design: Design, side: str, angles: np.ndarray, tolerance: float 
         sample, joint = np.unravel_index(int(np.argmax(beyond)), beyond.shape)
         limits = getattr(design.joints, names[joint])
         raise InfeasibleError(
-            f"{design.name}: {side} {names[joint]} would have to turn to {np.rad2deg(flat[sample, joint]):.1f} deg; "
+            f"{design.name}: {side} {names[joint]} would have to turn to "
+            f"{np.rad2deg(flat[sample, joint]):.1f} deg; "
             f"its range is {limits.lower_deg:g} .. {limits.upper_deg:g} deg"
         )
 
@@ -115,15 +139,39 @@ def has_toe_joint(design: Design) -> bool:
 def about_x(angle: np.ndarray) -> np.ndarray:
     """Rotation about x, `(...)` [rad] -> `(..., 3, 3)`; positive lifts the left side."""
     angle = np.asarray(angle, float)
-    cosine, sine, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
-    return np.stack([np.stack([one, zero, zero], -1), np.stack([zero, cosine, -sine], -1), np.stack([zero, sine, cosine], -1)], -2)
+    cosine, sine, zero, one = (
+        np.cos(angle),
+        np.sin(angle),
+        np.zeros_like(angle),
+        np.ones_like(angle),
+    )
+    return np.stack(
+        [
+            np.stack([one, zero, zero], -1),
+            np.stack([zero, cosine, -sine], -1),
+            np.stack([zero, sine, cosine], -1),
+        ],
+        -2,
+    )
 
 
 def about_y(angle: np.ndarray) -> np.ndarray:
     """Rotation about y, `(...)` [rad] -> `(..., 3, 3)`; positive pitches the nose down."""
     angle = np.asarray(angle, float)
-    cosine, sine, zero, one = np.cos(angle), np.sin(angle), np.zeros_like(angle), np.ones_like(angle)
-    return np.stack([np.stack([cosine, zero, sine], -1), np.stack([zero, one, zero], -1), np.stack([-sine, zero, cosine], -1)], -2)
+    cosine, sine, zero, one = (
+        np.cos(angle),
+        np.sin(angle),
+        np.zeros_like(angle),
+        np.ones_like(angle),
+    )
+    return np.stack(
+        [
+            np.stack([cosine, zero, sine], -1),
+            np.stack([zero, one, zero], -1),
+            np.stack([-sine, zero, cosine], -1),
+        ],
+        -2,
+    )
 
 
 def _wrapped(angle: np.ndarray) -> np.ndarray:

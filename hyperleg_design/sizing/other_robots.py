@@ -1,13 +1,16 @@
-"""Other legged robots, from the descriptions in `example-robot-data`, measured as HyperLeg is: how heavy, where, how far to swing.
+"""Other legged robots, from the descriptions in `example-robot-data`, measured as HyperLeg is: how
+heavy, where, how far to swing.
 
-Posture: as the description has it at zero, then the knee turned until, seen along its axis, hip, knee and ankle (the foot
-where there is no ankle) lie on a straight line. A leg that is closed by rods (Cassie) stays as its description poses it,
-nearly stretched. Some robots cannot reach that posture; it serves comparison only. Leg length runs, across the
-hip-pitch axis, from it to a point of the sole under the ankle, or to the far side of a round foot. Rods that a description
-hangs below the knee count there.
+Posture: as the description has it at zero, then the knee turned until, seen along its axis, hip,
+knee and ankle (the foot where there is no ankle) lie on a straight line. A leg that is closed by
+rods (Cassie) stays as its description poses it, nearly stretched. Some robots cannot reach that
+posture; it serves comparison only. Leg length runs, across the hip-pitch axis, from it to a point
+of the sole under the ankle, or to the far side of a round foot. Rods that a description hangs below
+the knee count there.
 
-Left out, of what the package has: `hector` is a quadrotor, `alex` an upper body; `simple_humanoid` has invented masses (130.8 kg)
-and an inertia of 1 kg m^2 for every link; `centauro` has wheels; `quadruped` and `solo` (8 joints) are older builds of `solo12`.
+Left out, of what the package has: `hector` is a quadrotor, `alex` an upper body; `simple_humanoid`
+has invented masses (130.8 kg) and an inertia of 1 kg m^2 for every link; `centauro` has wheels;
+`quadruped` and `solo` (8 joints) are older builds of `solo12`.
 """
 
 from __future__ import annotations
@@ -31,7 +34,9 @@ PACKAGE = "example-robot-data"
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """What moves with one joint of a description, in the world, in the description's zero posture."""
+    """What moves with one joint of a description, in the world, in the description's zero
+    posture.
+    """
 
     joint: str
     parent: str
@@ -65,7 +70,11 @@ class Description:
         """Bodies that move with a joint."""
         found = [self.bodies[joint]]
         for body in found:
-            found += [child for child in self.bodies.values() if child.parent == body.joint and child.joint]
+            found += [
+                child
+                for child in self.bodies.values()
+                if child.parent == body.joint and child.joint
+            ]
         return found
 
 
@@ -77,7 +86,8 @@ class OtherRobot:
     leg: LegInertia
     """Each a number; the total mass is nan where the description is not whole."""
     knee_turned: float
-    """By which the knee was turned from the description's zero to make the leg straight [rad]; nan where it stays as posed."""
+    """By which the knee was turned from the description's zero to make the leg straight [rad]; nan
+    where it stays as posed."""
 
 
 def robots_folder() -> Path:
@@ -90,12 +100,21 @@ def robots_folder() -> Path:
         files = importlib.metadata.files(PACKAGE) or []
     except importlib.metadata.PackageNotFoundError:
         files = []
-    # .../example-robot-data/robots/ROBOT/FILE of a wheel; the prefix of an environment that is not pip's
-    found = [Path(str(f.locate())).parents[1] for f in files if f.parts[-4:-2] == (PACKAGE, "robots")][:1]
+    # .../example-robot-data/robots/ROBOT/FILE of a wheel; the prefix of an environment that is not
+    # pip's
+    found = [
+        Path(str(f.locate())).parents[1] for f in files if f.parts[-4:-2] == (PACKAGE, "robots")
+    ][:1]
     for folder in (*found, Path(sys.prefix) / "share" / PACKAGE / "robots"):
         if folder.is_dir():
             return folder.resolve()
-    raise InputError(PACKAGE, "", None, "is not installed, so there are no robots to compare with; run pip install example-robot-data")
+    raise InputError(
+        PACKAGE,
+        "",
+        None,
+        "is not installed, so there are no robots to compare with; run pip install "
+        "example-robot-data",
+    )
 
 
 def find_source(name: str) -> RobotSource:
@@ -119,7 +138,12 @@ def measure(source: RobotSource) -> OtherRobot:
     """
     path = robots_folder() / source.file
     if not path.is_file():
-        raise InputError(PACKAGE, source.name, str(path), "no such file; this release of the package does not have the robot")
+        raise InputError(
+            PACKAGE,
+            source.name,
+            str(path),
+            "no such file; this release of the package does not have the robot",
+        )
     description = _read_sdf(path, source) if path.suffix == ".sdf" else _read_urdf(path, source)
     hip, knee = description.bodies[source.hip_pitch], description.bodies[source.knee]
     sole = description.foot_position + description.foot_rotation @ np.array(source.sole)
@@ -170,7 +194,9 @@ def _across(vector: np.ndarray, axis: np.ndarray) -> np.ndarray:
 
 
 def _straightening(hip: np.ndarray, knee: np.ndarray, end: np.ndarray, axis: np.ndarray) -> float:
-    """Angle about the knee's axis that brings the end of the leg into the line from hip to knee [rad]."""
+    """Angle about the knee's axis that brings the end of the leg into the line from hip to knee
+    [rad].
+    """
     upper, lower = _across(knee - hip, axis), _across(end - knee, axis)
     return float(np.arctan2(axis @ np.cross(lower, upper), lower @ upper))
 
@@ -193,7 +219,9 @@ def _read_urdf(path: Path, source: RobotSource) -> Description:
     bodies = {}
     for index in range(1, model.njoints):
         placed, own = data.oMi[index], model.inertias[index]
-        column = pin.getJointJacobian(model, data, index, pin.LOCAL_WORLD_ALIGNED)[3:, model.idx_vs[index]]
+        column = pin.getJointJacobian(model, data, index, pin.LOCAL_WORLD_ALIGNED)[
+            3:, model.idx_vs[index]
+        ]
         trunk = index == 1
         name = "" if trunk else str(model.names[index])
         rotation = np.array(placed.rotation)
@@ -215,12 +243,19 @@ def _read_urdf(path: Path, source: RobotSource) -> Description:
 
 
 def _read_sdf(path: Path, source: RobotSource) -> Description:
-    """Read links of an SDF model as posed in it; of a link that closes a loop, the first joint counts."""
+    """Read links of an SDF model as posed in it; of a link that closes a loop, the first joint
+    counts.
+    """
     from xml.etree import ElementTree
 
     root = ElementTree.parse(path).getroot().find("model")
-    links = {str(link.get("name")): link for link in (root.findall("link") if root is not None else ())}
-    joints = {str(j.findtext("child")).strip(): j for j in reversed(root.findall("joint") if root is not None else ())}
+    links = {
+        str(link.get("name")): link for link in (root.findall("link") if root is not None else ())
+    }
+    joints = {
+        str(j.findtext("child")).strip(): j
+        for j in reversed(root.findall("joint") if root is not None else ())
+    }
     bodies, frames = {}, {}
     for name, link in links.items():
         position, rotation = _pose(link.findtext("pose"))
@@ -252,19 +287,36 @@ def _pose(text: str | None) -> tuple[np.ndarray, np.ndarray]:
     """Position and rotation of `x y z roll pitch yaw`."""
     x, y, z, roll, pitch, yaw = (float(v) for v in (text or "0 0 0 0 0 0").split())
     eye = np.eye(3)
-    return np.array([x, y, z]), _rotation(eye[2], yaw) @ _rotation(eye[1], pitch) @ _rotation(eye[0], roll)
+    return np.array([x, y, z]), _rotation(eye[2], yaw) @ _rotation(eye[1], pitch) @ _rotation(
+        eye[0], roll
+    )
 
 
 def _sdf_inertia(link: Any) -> np.ndarray:
-    xx, xy, xz, yy, yz, zz = (float(link.findtext(f"inertial/inertia/i{part}", "0")) for part in ("xx", "xy", "xz", "yy", "yz", "zz"))
+    xx, xy, xz, yy, yz, zz = (
+        float(link.findtext(f"inertial/inertia/i{part}", "0"))
+        for part in ("xx", "xy", "xz", "yy", "yz", "zz")
+    )
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
-def _require(path: Path, source: RobotSource, bodies: Mapping[str, Body], frames: list[str]) -> None:
+def _require(
+    path: Path, source: RobotSource, bodies: Mapping[str, Body], frames: list[str]
+) -> None:
     """Whether a description has what the table names."""
     for field in ("first_hip", "hip_pitch", "knee", "ankle"):
         name = getattr(source, field)
         if (name or field != "ankle") and name not in bodies:
-            raise InputError(path.name, f"{source.name}.{field}", name, "no such joint in this description; another release of example-robot-data?")
+            raise InputError(
+                path.name,
+                f"{source.name}.{field}",
+                name,
+                "no such joint in this description; another release of example-robot-data?",
+            )
     if source.foot not in frames:
-        raise InputError(path.name, f"{source.name}.foot", source.foot, "no such link in this description; another release of example-robot-data?")
+        raise InputError(
+            path.name,
+            f"{source.name}.foot",
+            source.foot,
+            "no such link in this description; another release of example-robot-data?",
+        )

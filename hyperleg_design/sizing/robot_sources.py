@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class RobotSource:
-    """Where one robot's description is, and what its leg is called there. Names and numbers are the description's own."""
+    """Where one robot's description is, and what its leg is called there. Names and numbers are the
+    description's own.
+    """
 
     name: str
     """As figures show it."""
@@ -48,7 +50,8 @@ SOURCES = (
         sole=(0.0, 0.0, -0.03),
         foot_radius=0.005,
     ),
-    # closed by rods; sole: axis of the capsule-like cylinder of the foot. This file has rotors and gears in their links
+    # closed by rods; sole: axis of the capsule-like cylinder of the foot. This file has rotors and
+    # gears in their links
     RobotSource(
         name="Cassie",
         kind="biped",

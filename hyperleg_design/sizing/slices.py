@@ -1,7 +1,8 @@
 """Exact cuts and shadows of a torque zonotope in two and three joints, to look at.
 
-A cut holds some joints at given torques; joints that are neither shown nor held may have any torque, which projects
-them away. One set at a time: `matrix` `(joints, motors)`, `lower` and `upper` `(motors,)`.
+A cut holds some joints at given torques; joints that are neither shown nor held may have any
+torque, which projects them away. One set at a time: `matrix` `(joints, motors)`, `lower` and
+`upper` `(motors,)`.
 """
 
 from __future__ import annotations
@@ -31,7 +32,13 @@ class Polyhedron:
     @property
     def triangles(self) -> np.ndarray:
         """Faces cut into triangles, `(triangles, 3)` indices, anticlockwise from outside."""
-        return np.array([(face[0], face[i], face[i + 1]) for face in self.faces for i in range(1, len(face) - 1)])
+        return np.array(
+            [
+                (face[0], face[i], face[i + 1])
+                for face in self.faces
+                for i in range(1, len(face) - 1)
+            ]
+        )
 
     @property
     def volume(self) -> float:
@@ -41,7 +48,11 @@ class Polyhedron:
 
 
 def slice_polygon(
-    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, joints: tuple[int, int], held: Mapping[int, float] | None = None
+    matrix: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    joints: tuple[int, int],
+    held: Mapping[int, float] | None = None,
 ) -> np.ndarray:
     """Torques that two joints can have together while others are held.
 
@@ -53,7 +64,8 @@ def slice_polygon(
         held: torque [Nm] by row; all other joints at zero by default. Rows left out are free.
 
     Returns:
-        Vertices in anticlockwise order, `(k, 2)` [Nm]; none where the cut misses the set, two where it is a line.
+        Vertices in anticlockwise order, `(k, 2)` [Nm]; none where the cut misses the set, two where
+        it is a line.
     """
     normal, offset, reach = _cut(matrix, lower, upper, joints, held)
     points, _ = _vertices(normal, offset, reach)
@@ -63,15 +75,24 @@ def slice_polygon(
     return points[np.argsort(np.arctan2(around[:, 1], around[:, 0]))]
 
 
-def projection_polygon(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, joints: tuple[int, int]) -> np.ndarray:
-    """Torques that two joints can have together whatever the others have: vertices, anticlockwise, `(k, 2)` [Nm]."""
+def projection_polygon(
+    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, joints: tuple[int, int]
+) -> np.ndarray:
+    """Torques that two joints can have together whatever the others have: vertices, anticlockwise,
+    `(k, 2)` [Nm].
+    """
     return slice_polygon(matrix, lower, upper, joints, {})
 
 
 def slice_polyhedron(
-    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, joints: tuple[int, int, int], held: Mapping[int, float] | None = None
+    matrix: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    joints: tuple[int, int, int],
+    held: Mapping[int, float] | None = None,
 ) -> Polyhedron:
-    """Torques that three joints can have together while others are held; arguments as `slice_polygon`.
+    """Torques that three joints can have together while others are held; arguments as
+    `slice_polygon`.
 
     Raises:
         InfeasibleError: the cut misses the set or has no volume.
@@ -79,7 +100,9 @@ def slice_polyhedron(
     normal, offset, reach = _cut(matrix, lower, upper, joints, held)
     points, on = _vertices(normal, offset, reach)
     if len(points) < 4 or np.linalg.matrix_rank(points - points.mean(0), tol=_TOUCHES * reach) < 3:
-        raise InfeasibleError("zonotope: the held torques leave no volume to draw; hold other values, or none")
+        raise InfeasibleError(
+            "zonotope: the held torques leave no volume to draw; hold other values, or none"
+        )
     faces: dict[frozenset[int], np.ndarray] = {}
     for facet in range(len(normal)):
         corners = np.flatnonzero(on[:, facet])
@@ -94,9 +117,15 @@ def slice_polyhedron(
 
 
 def _cut(
-    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, joints: tuple[int, ...], held: Mapping[int, float] | None
+    matrix: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    joints: tuple[int, ...],
+    held: Mapping[int, float] | None,
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Half-spaces of the cut, `(facets, shown)` and `(facets,)`, and the largest motor torque limit [Nm]."""
+    """Half-spaces of the cut, `(facets, shown)` and `(facets,)`, and the largest motor torque limit
+    [Nm].
+    """
     matrix = np.asarray(matrix, float)
     if matrix.ndim != 2:
         raise InputError("zonotope", "matrix", matrix.shape, "expects one set, (joints, motors)")
@@ -104,15 +133,23 @@ def _cut(
         held = {row: 0.0 for row in range(len(matrix)) if row not in joints}
     rows = [*joints, *held]
     if len(set(rows)) < len(rows) or not set(rows) <= set(range(len(matrix))):
-        raise InputError("zonotope", "joints, held", rows, f"expects different rows below {len(matrix)}")
+        raise InputError(
+            "zonotope", "joints, held", rows, f"expects different rows below {len(matrix)}"
+        )
     normal, offset = halfspaces(matrix[rows], lower, upper)
     real = np.any(normal != 0, -1)
     shown = len(joints)
     offset = offset - normal[:, shown:] @ np.fromiter(held.values(), float, len(held))
-    return normal[real, :shown], offset[real], float(np.max(np.maximum(np.abs(lower), np.abs(upper))))
+    return (
+        normal[real, :shown],
+        offset[real],
+        float(np.max(np.maximum(np.abs(lower), np.abs(upper)))),
+    )
 
 
-def _vertices(normal: np.ndarray, offset: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
+def _vertices(
+    normal: np.ndarray, offset: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Corners of `normal . x <= offset`, `(k, d)`, and which facets each lies on, `(k, facets)`."""
     size = normal.shape[1]
     tolerance = _TOUCHES * max(reach, 1e-12)

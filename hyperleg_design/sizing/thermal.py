@@ -1,8 +1,10 @@
-"""Thermal use of motors: torque against what they hold for ever, averaged as a winding averages its heat.
+"""Thermal use of motors: torque against what they hold for ever, averaged as a winding averages its
+heat.
 
-Heat goes with squared torque, so a motor is used continuously by `rms(tau) / tau_rated`, and from moment to moment by a moving
-average over the paper's 3 s of the relative torque x = tau / tau_rated. The paper prints `EMA(tau / tau_cont)^2`, which can
-be read in two ways, and both are kept:
+Heat goes with squared torque, so a motor is used continuously by `rms(tau) / tau_rated`, and from
+moment to moment by a moving average over the paper's 3 s of the relative torque x = tau /
+tau_rated. The paper prints `EMA(tau / tau_cont)^2`, which can be read in two ways, and both are
+kept:
 
     ema_of_square = EMA(x^2)        what heats a winding
     square_of_ema = EMA(x)^2        as printed, sign and all
@@ -52,7 +54,14 @@ def rms_torque(motor_torque: Any) -> np.ndarray:
     return np.sqrt(np.mean(torque**2, -2))
 
 
-def moving_average(samples: Any, time_step: float, time_constant: float = TIME_CONSTANT, *, start: Any = 0.0, periodic: bool = False) -> np.ndarray:
+def moving_average(
+    samples: Any,
+    time_step: float,
+    time_constant: float = TIME_CONSTANT,
+    *,
+    start: Any = 0.0,
+    periodic: bool = False,
+) -> np.ndarray:
     """Exponential moving average of samples that hold over a step, exact, at the end of each step.
 
     Args:
@@ -60,7 +69,8 @@ def moving_average(samples: Any, time_step: float, time_constant: float = TIME_C
         time_step: between samples [s].
         time_constant: of the average, T [s].
         start: average before the first sample, `(..., m)`; nothing by default: cold motors.
-        periodic: whether the samples are one cycle of an endless repetition; the start is then that of the steady state.
+        periodic: whether the samples are one cycle of an endless repetition; the start is then that
+            of the steady state.
 
     Returns:
         `(..., t, m)`
@@ -70,12 +80,19 @@ def moving_average(samples: Any, time_step: float, time_constant: float = TIME_C
     """
     values = np.asarray(samples, float)
     if values.ndim < 2 or 0 in values.shape[-2:]:
-        raise InputError("thermal", "samples", list(values.shape), "is the shape found; expects samples over time of each motor, (..., t, m)")
+        raise InputError(
+            "thermal",
+            "samples",
+            list(values.shape),
+            "is the shape found; expects samples over time of each motor, (..., t, m)",
+        )
     for field, value in (("time_step", time_step), ("time_constant", time_constant)):
         if not (np.isfinite(value) and value > 0):
             raise InputError("thermal", field, value, "expects a positive number in s")
     if periodic:
-        final = _filtered(values, time_step, time_constant, np.zeros(values.shape[:-2] + values.shape[-1:]))[..., -1, :]
+        final = _filtered(
+            values, time_step, time_constant, np.zeros(values.shape[:-2] + values.shape[-1:])
+        )[..., -1, :]
         # a cycle forgets exp(-n dt / T) of its start and adds `final`
         start = final / -np.expm1(-values.shape[-2] * time_step / time_constant)
     return _filtered(values, time_step, time_constant, start)
@@ -85,13 +102,22 @@ def _filtered(values: np.ndarray, time_step: float, time_constant: float, start:
     from scipy.signal import lfilter
 
     keep = np.exp(-time_step / time_constant)
-    first = np.broadcast_to(np.asarray(start, float), values.shape[:-2] + values.shape[-1:])[..., None, :]
-    result, _ = lfilter([-np.expm1(-time_step / time_constant)], [1.0, -keep], values, axis=-2, zi=keep * first)
+    first = np.broadcast_to(np.asarray(start, float), values.shape[:-2] + values.shape[-1:])[
+        ..., None, :
+    ]
+    result, _ = lfilter(
+        [-np.expm1(-time_step / time_constant)], [1.0, -keep], values, axis=-2, zi=keep * first
+    )
     return np.asarray(result)
 
 
 def thermal_use(
-    motor_torque: Any, rated_torque: Any, time_step: float, time_constant: float = TIME_CONSTANT, *, periodic: bool = False
+    motor_torque: Any,
+    rated_torque: Any,
+    time_step: float,
+    time_constant: float = TIME_CONSTANT,
+    *,
+    periodic: bool = False,
 ) -> ThermalUse:
     """Thermal use of motors over time.
 
@@ -100,16 +126,27 @@ def thermal_use(
         rated_torque: continuous torque [Nm], `(..., m)`.
         time_step: between samples [s].
         time_constant: of the moving averages [s].
-        periodic: whether the samples are one cycle of an endless repetition (a gait); else motors begin cold.
+        periodic: whether the samples are one cycle of an endless repetition (a gait); else motors
+            begin cold.
 
     Raises:
         InputError: as `moving_average`; a rated torque that is not positive.
     """
     torque, rated = np.asarray(motor_torque, float), _rated(rated_torque)
     if not np.all(np.isfinite(torque)):
-        raise InputError("thermal", "motor_torque", float(torque[~np.isfinite(torque)][0]), "expects finite numbers in Nm")
+        raise InputError(
+            "thermal",
+            "motor_torque",
+            float(torque[~np.isfinite(torque)][0]),
+            "expects finite numbers in Nm",
+        )
     if torque.ndim < 2:
-        raise InputError("thermal", "motor_torque", list(torque.shape), "is the shape found; expects samples over time of each motor, (..., t, m)")
+        raise InputError(
+            "thermal",
+            "motor_torque",
+            list(torque.shape),
+            "is the shape found; expects samples over time of each motor, (..., t, m)",
+        )
     relative = torque / (rated[..., None, :] if rated.ndim else rated)
     rms = rms_torque(torque)
     return ThermalUse(
@@ -121,11 +158,18 @@ def thermal_use(
 
 
 def time_to_limit(
-    torque: Any, rated_torque: Any, *, limit: float = 1.0, time_constant: float = TIME_CONSTANT, reading: str = "ema_of_square"
+    torque: Any,
+    rated_torque: Any,
+    *,
+    limit: float = 1.0,
+    time_constant: float = TIME_CONSTANT,
+    reading: str = "ema_of_square",
 ) -> np.ndarray:
-    """Time for which a cold motor can hold a constant torque until its thermal use reaches the limit [s].
+    """Time for which a cold motor can hold a constant torque until its thermal use reaches the
+    limit [s].
 
-    With x = |tau| / tau_rated: T ln(x^2 / (x^2 - limit)), or T ln(x / (x - sqrt(limit))) for `square_of_ema`.
+    With x = |tau| / tau_rated: T ln(x^2 / (x^2 - limit)), or T ln(x / (x - sqrt(limit))) for
+    `square_of_ema`.
 
     Args:
         torque: [Nm], `(...)`.
@@ -144,15 +188,21 @@ def time_to_limit(
         if not (np.isfinite(value) and value > 0):
             raise InputError("thermal", field, value, "expects a positive number")
     relative = np.abs(np.asarray(torque, float)) / _rated(rated_torque)
-    load, bound = (relative**2, limit) if _reading(reading) == "ema_of_square" else (relative, np.sqrt(limit))
+    load, bound = (
+        (relative**2, limit) if _reading(reading) == "ema_of_square" else (relative, np.sqrt(limit))
+    )
     with np.errstate(divide="ignore"):
-        return np.asarray(-time_constant * np.log1p(-np.minimum(bound / np.maximum(load, bound), 1.0)))
+        return np.asarray(
+            -time_constant * np.log1p(-np.minimum(bound / np.maximum(load, bound), 1.0))
+        )
 
 
 def _rated(value: Any) -> np.ndarray:
     rated = np.asarray(value, float)
     if not np.all(np.isfinite(rated) & (rated > 0)):
-        raise InputError("thermal", "rated_torque", rated.tolist(), "expects positive numbers in Nm")
+        raise InputError(
+            "thermal", "rated_torque", rated.tolist(), "expects positive numbers in Nm"
+        )
     return rated
 
 

@@ -1,11 +1,14 @@
-"""The torques that joints can have together: a box of motor torques seen through cooperative actuation.
+"""The torques that joints can have together: a box of motor torques seen through cooperative
+actuation.
 
-Motors with limits `lower <= t <= upper` reach the joint torques `{M t}`, a zonotope. Its support function, volume and
-facets have closed forms. With as many motors as joints the facets are the motor limits themselves, each row of M^-1 a
-normal; with more motors every facet is spanned by joints - 1 of M's columns. Shapes: `matrix` `(..., joints, motors)`,
-`lower` and `upper` `(..., motors)`; leading dimensions broadcast.
+Motors with limits `lower <= t <= upper` reach the joint torques `{M t}`, a zonotope. Its support
+function, volume and facets have closed forms. With as many motors as joints the facets are the
+motor limits themselves, each row of M^-1 a normal; with more motors every facet is spanned by
+joints - 1 of M's columns. Shapes: `matrix` `(..., joints, motors)`, `lower` and `upper` `(...,
+motors)`; leading dimensions broadcast.
 
-To leave a joint out of account (its torque free), leave its row out of the matrix: that projects the zonotope.
+To leave a joint out of account (its torque free), leave its row out of the matrix: that projects
+the zonotope.
 """
 
 from __future__ import annotations
@@ -34,20 +37,34 @@ def check_set(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> None:
     """Whether these describe a zonotope.
 
     Raises:
-        InputError: shapes that do not fit, non-finite numbers, or a lower limit above its upper one.
+        InputError: shapes that do not fit, non-finite numbers, or a lower limit above its upper
+        one.
     """
     joints, motors = np.shape(matrix)[-2:] if np.ndim(matrix) >= 2 else (0, 0)
     shapes = f"{np.shape(matrix)}, {np.shape(lower)}, {np.shape(upper)}"
     if not joints or {np.shape(lower)[-1:], np.shape(upper)[-1:]} != {(motors,)}:
-        raise InputError("zonotope", "matrix, lower, upper", shapes, "expects shapes (..., joints, motors), (..., motors), (..., motors)")
+        raise InputError(
+            "zonotope",
+            "matrix, lower, upper",
+            shapes,
+            "expects shapes (..., joints, motors), (..., motors), (..., motors)",
+        )
     if not (np.isfinite(matrix).all() and np.isfinite(lower).all() and np.isfinite(upper).all()):
         raise InputError("zonotope", "matrix, lower, upper", None, "expects finite numbers")
     if np.any(np.asarray(lower) > np.asarray(upper)):
-        raise InputError("zonotope", "lower", float(np.max(np.asarray(lower) - np.asarray(upper))), "must not exceed upper [Nm]")
+        raise InputError(
+            "zonotope",
+            "lower",
+            float(np.max(np.asarray(lower) - np.asarray(upper))),
+            "must not exceed upper [Nm]",
+        )
 
 
-def support(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, direction: np.ndarray) -> np.ndarray:
-    """Largest `direction . joint torque` over the set, exactly: sum over motors of max(g lower, g upper), g = M^T direction.
+def support(
+    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, direction: np.ndarray
+) -> np.ndarray:
+    """Largest `direction . joint torque` over the set, exactly: sum over motors of max(g lower, g
+    upper), g = M^T direction.
 
     Args:
         matrix: `(..., joints, motors)` [-].
@@ -69,7 +86,8 @@ def box(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.nd
 
 
 def volume(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    """Volume of the set, `(...)` [Nm^joints]: sum over choices of `joints` motors of |det| times their torque ranges.
+    """Volume of the set, `(...)` [Nm^joints]: sum over choices of `joints` motors of |det| times
+    their torque ranges.
 
     Zero where motors are fewer than joints.
     """
@@ -83,7 +101,9 @@ def volume(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarr
 
 
 def zonotope_to_box_volume(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    """Volume of the set over that of the box its joint maxima span, `(...)` [-]; 1 where no motor is shared."""
+    """Volume of the set over that of the box its joint maxima span, `(...)` [-]; 1 where no motor
+    is shared.
+    """
     low, high = box(matrix, lower, upper)
     return volume(matrix, lower, upper) / (high - low).prod(-1)
 
@@ -92,15 +112,21 @@ def facets(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Outward normals of the set's facets, whatever the limits.
 
     Returns:
-        `normal` `(..., facets, joints)` and `weight` = M^T normal `(..., facets, motors)`, scaled so that the weights'
-        magnitudes sum to 1: the facet is then `normal . torque <= sum max(weight lower, weight upper)`, in motor Nm.
-        Rows of zeros are no facets (columns that happen to be parallel).
+        `normal` `(..., facets, joints)` and `weight` = M^T normal `(..., facets, motors)`, scaled
+        so that the weights' magnitudes sum to 1: the facet is then `normal . torque <= sum
+        max(weight lower, weight upper)`, in motor Nm. Rows of zeros are no facets (columns that
+        happen to be parallel).
 
     Raises:
         InputError: M does not reach every joint.
     """
     joints, motors = matrix.shape[-2:]
-    unreachable = InputError("zonotope", "matrix", None, f"has no rank {joints}: some joint is driven by no motor of its own")
+    unreachable = InputError(
+        "zonotope",
+        "matrix",
+        None,
+        f"has no rank {joints}: some joint is driven by no motor of its own",
+    )
     if motors < joints:
         raise unreachable
     length = np.linalg.norm(matrix, axis=-2)
@@ -115,7 +141,9 @@ def facets(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     for chosen in combinations(range(motors), joints - 1):
         # the generalised cross product of joints - 1 columns: signed minors
         spanning = column[..., chosen]
-        minors = [(-1) ** row * np.linalg.det(np.delete(spanning, row, -2)) for row in range(joints)]
+        minors = [
+            (-1) ** row * np.linalg.det(np.delete(spanning, row, -2)) for row in range(joints)
+        ]
         normal = np.stack(minors, -1)
         weight = np.einsum("...jm,...j->...m", matrix, normal)
         weight[..., chosen] = 0.0
@@ -130,22 +158,36 @@ def facets(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate([normal, -normal], -2), np.concatenate([weight, -weight], -2)
 
 
-def halfspaces(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The set as `normal . torque <= offset`: `(..., facets, joints)` and `(..., facets)` [motor Nm], normals as `facets`."""
+def halfspaces(
+    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The set as `normal . torque <= offset`: `(..., facets, joints)` and `(..., facets)` [motor
+    Nm], normals as `facets`.
+    """
     check_set(matrix, lower, upper)
     normal, weight = facets(matrix)
-    offset = np.maximum(weight * np.asarray(lower)[..., None, :], weight * np.asarray(upper)[..., None, :]).sum(-1)
+    offset = np.maximum(
+        weight * np.asarray(lower)[..., None, :], weight * np.asarray(upper)[..., None, :]
+    ).sum(-1)
     return normal, offset
 
 
-def contains(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, torque: np.ndarray) -> np.ndarray:
+def contains(
+    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, torque: np.ndarray
+) -> np.ndarray:
     """Whether the joints can have these torques together, `(..., joints)` -> `(...)`."""
     normal, offset = halfspaces(matrix, lower, upper)
     over = np.einsum("...fj,...j->...f", normal, torque) - offset
     return np.all(over <= _INSIDE * np.maximum(np.abs(lower), np.abs(upper)).max(-1)[..., None], -1)
 
 
-def chord(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, start: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def chord(
+    matrix: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    start: np.ndarray,
+    direction: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
     """Where the line `start + s direction` enters and leaves the set.
 
     Args:
@@ -162,29 +204,46 @@ def chord(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, start: np.nd
     room = offset - np.einsum("...fj,...j->...f", normal, start)
     rate = np.einsum("...fj,...j->...f", normal, direction)
     limit = np.maximum(np.abs(lower), np.abs(upper)).max(-1)[..., None]
-    along = np.abs(rate) > 1e-12 * np.abs(normal).max((-1, -2))[..., None] * np.linalg.norm(direction, axis=-1)[..., None]
+    along = (
+        np.abs(rate)
+        > 1e-12
+        * np.abs(normal).max((-1, -2))[..., None]
+        * np.linalg.norm(direction, axis=-1)[..., None]
+    )
     reached = room / np.where(along, rate, 1.0)
     high = np.where(along & (rate > 0), reached, np.inf).min(-1)
     low = np.where(along & (rate < 0), reached, -np.inf).max(-1)
-    misses = np.any(~along & (room < -_INSIDE * limit), -1) | (low > high + 1e-9 * (np.abs(low) + np.abs(high)))
+    misses = np.any(~along & (room < -_INSIDE * limit), -1) | (
+        low > high + 1e-9 * (np.abs(low) + np.abs(high))
+    )
     return np.where(misses, np.nan, low), np.where(misses, np.nan, high)
 
 
-def alone(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, joint: int, held: Sequence[int] | None = None) -> np.ndarray:
-    """Largest torque of one joint while others have none, `(...)` [Nm]; nan where those cannot have none (past no-load speed).
+def alone(
+    matrix: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    joint: int,
+    held: Sequence[int] | None = None,
+) -> np.ndarray:
+    """Largest torque of one joint while others have none, `(...)` [Nm]; nan where those cannot have
+    none (past no-load speed).
 
     Args:
         matrix: `(..., joints, motors)` [-].
         lower: `(..., motors)` [Nm].
         upper: `(..., motors)` [Nm].
         joint: row of the joint.
-        held: rows of the joints at zero torque, all others by default; those not named may have any torque.
+        held: rows of the joints at zero torque, all others by default; those not named may have any
+            torque.
     """
     rows = [joint, *(r for r in (range(matrix.shape[-2]) if held is None else held) if r != joint)]
     return chord(matrix[..., rows, :], lower, upper, np.zeros(len(rows)), np.eye(len(rows))[0])[1]
 
 
-def speed_dependent(of: Design | MotorEnvelope, matrix: np.ndarray, joint_velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def speed_dependent(
+    of: Design | MotorEnvelope, matrix: np.ndarray, joint_velocity: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Motor torque limits while the joints move [Nm].
 
     Args:

@@ -58,7 +58,11 @@ class Axis:
         if self.levels:
             index = np.minimum((position * len(self.levels)).astype(int), len(self.levels) - 1)
             return np.asarray(self.levels)[index]
-        drawn = self.low * (self.high / self.low) ** position if self.log else self.low + position * (self.high - self.low)
+        drawn = (
+            self.low * (self.high / self.low) ** position
+            if self.log
+            else self.low + position * (self.high - self.low)
+        )
         return np.clip(drawn, self.low, self.high)
 
     def leaf_values(self, base: Design, values: np.ndarray) -> dict[str, Any]:
@@ -84,58 +88,92 @@ def read_axis(name: str, data: Any, base: Design, where: str, *, grid: bool) -> 
 
     Args:
         name: key of the axis: a leaf's path, or any name where `paths` lists the leaves.
-        data: `{values: [...]}`, `{low, high, steps, log}`, or `{scale: ...}` with either inside; `steps` makes a range a
-            list of levels, which a grid needs.
+        data: `{values: [...]}`, `{low, high, steps, log}`, or `{scale: ...}` with either inside;
+            `steps` makes a range a list of levels, which a grid needs.
         base: design whose leaves it moves.
         where: file, for messages.
         grid: whether every range needs `steps`.
 
     Raises:
-        InputError: it names no leaf, one that cannot vary within a sweep, or values that the leaf does not take.
+        InputError: it names no leaf, one that cannot vary within a sweep, or values that the leaf
+        does not take.
     """
     place = f"axes.{name}"
     if not isinstance(data, Mapping):
-        raise InputError(where, place, data, "expects a mapping with values, or with low, high and steps")
+        raise InputError(
+            where, place, data, "expects a mapping with values, or with low, high and steps"
+        )
     _refuse_unknown(data, _KEYS, where, place)
     paths = _paths(name, data, base, where, place)
     scaled = "scale" in data
     inner, inner_place = (data["scale"], f"{place}.scale") if scaled else (data, place)
     if scaled:
         if any(k in data for k in ("values", *_RANGE_KEYS)):
-            raise InputError(where, place, dict(data), "expects values or a range inside scale, not beside it")
+            raise InputError(
+                where, place, dict(data), "expects values or a range inside scale, not beside it"
+            )
         if isinstance(inner, list):
             inner = {"values": inner}
         if not isinstance(inner, Mapping):
-            raise InputError(where, inner_place, inner, "expects values, or low, high and steps, of the factor")
+            raise InputError(
+                where, inner_place, inner, "expects values, or low, high and steps, of the factor"
+            )
         _refuse_unknown(inner, ("values", *_RANGE_KEYS), where, inner_place)
-    axis = _listed(name, paths, inner, scaled, base, where, inner_place) if "values" in inner else None
+    axis = (
+        _listed(name, paths, inner, scaled, base, where, inner_place) if "values" in inner else None
+    )
     axis = axis or _range(name, paths, inner, scaled, where, inner_place, grid)
     return _checked(axis, base, where, inner_place)
 
 
-def _refuse_unknown(data: Mapping[Any, Any], known: tuple[str, ...], where: str, place: str) -> None:
+def _refuse_unknown(
+    data: Mapping[Any, Any], known: tuple[str, ...], where: str, place: str
+) -> None:
     for key in data:
         if key not in known:
-            raise InputError(where, f"{place}.{key}", data[key], parameters.unknown(str(key), sorted(known)))
+            raise InputError(
+                where, f"{place}.{key}", data[key], parameters.unknown(str(key), sorted(known))
+            )
 
 
-def _paths(name: str, data: Mapping[str, Any], base: Design, where: str, place: str) -> tuple[str, ...]:
+def _paths(
+    name: str, data: Mapping[str, Any], base: Design, where: str, place: str
+) -> tuple[str, ...]:
     rules = parameters.rules(Design)
     if "paths" not in data:
         if name not in rules:
-            remedy = parameters.unknown(name, sorted(rules)) if "." in name else "names no leaf of a design; list the leaves it moves under paths"
+            remedy = (
+                parameters.unknown(name, sorted(rules))
+                if "." in name
+                else "names no leaf of a design; list the leaves it moves under paths"
+            )
             raise InputError(where, place, dict(data), remedy)
         paths = [name]
     else:
         paths = data["paths"]
-        if not isinstance(paths, list) or not paths or not all(isinstance(p, str) for p in paths) or len(set(paths)) < len(paths):
-            raise InputError(where, f"{place}.paths", paths, "expects a list of different leaves such as [thigh.length, shank.length]")
+        if (
+            not isinstance(paths, list)
+            or not paths
+            or not all(isinstance(p, str) for p in paths)
+            or len(set(paths)) < len(paths)
+        ):
+            raise InputError(
+                where,
+                f"{place}.paths",
+                paths,
+                "expects a list of different leaves such as [thigh.length, shank.length]",
+            )
         for path in paths:
             if path not in rules:
-                raise InputError(where, f"{place}.paths", path, parameters.unknown(path, sorted(rules)))
+                raise InputError(
+                    where, f"{place}.paths", path, parameters.unknown(path, sorted(rules))
+                )
     for path in paths:
         if rules[path].kind == "flag" or (rules[path].kind == "text" and not _is_motor(path)):
-            remedy = "cannot vary within a sweep; give it under set, one sweep for each value, or use variants"
+            remedy = (
+                "cannot vary within a sweep; give it under set, one sweep for each value, or "
+                "use variants"
+            )
             raise InputError(where, place, path, remedy)
     return tuple(paths)
 
@@ -144,10 +182,23 @@ def _is_motor(path: str) -> bool:
     return path.startswith("actuators.") and path.endswith(".motor")
 
 
-def _listed(name: str, paths: tuple[str, ...], data: Mapping[str, Any], scaled: bool, base: Design, where: str, place: str) -> Axis:
+def _listed(
+    name: str,
+    paths: tuple[str, ...],
+    data: Mapping[str, Any],
+    scaled: bool,
+    base: Design,
+    where: str,
+    place: str,
+) -> Axis:
     for key in _RANGE_KEYS:
         if key in data:
-            raise InputError(where, f"{place}.{key}", data[key], "stands beside values; give a list or a range, not both")
+            raise InputError(
+                where,
+                f"{place}.{key}",
+                data[key],
+                "stands beside values; give a list or a range, not both",
+            )
     values = data["values"]
     if values == "catalogue" and all(_is_motor(p) for p in paths):
         values = sorted(catalogue())
@@ -166,11 +217,24 @@ def _listed(name: str, paths: tuple[str, ...], data: Mapping[str, Any], scaled: 
     return Axis(name, paths, tuple(levels), scaled=scaled)
 
 
-def _range(name: str, paths: tuple[str, ...], data: Mapping[str, Any], scaled: bool, where: str, place: str, grid: bool) -> Axis:
+def _range(
+    name: str,
+    paths: tuple[str, ...],
+    data: Mapping[str, Any],
+    scaled: bool,
+    where: str,
+    place: str,
+    grid: bool,
+) -> Axis:
     for key in ("low", "high"):
         if key not in data:
-            raise InputError(where, f"{place}.{key}", None, "is missing; give values, or low and high")
-    low, high = _number(data["low"], where, f"{place}.low"), _number(data["high"], where, f"{place}.high")
+            raise InputError(
+                where, f"{place}.{key}", None, "is missing; give values, or low and high"
+            )
+    low, high = (
+        _number(data["low"], where, f"{place}.low"),
+        _number(data["high"], where, f"{place}.high"),
+    )
     if not low < high:
         raise InputError(where, f"{place}.low", low, f"must lie below high, {high:g}")
     log = data.get("log", False)
@@ -181,10 +245,17 @@ def _range(name: str, paths: tuple[str, ...], data: Mapping[str, Any], scaled: b
     steps = data.get("steps")
     if steps is None:
         if grid:
-            raise InputError(where, f"{place}.steps", None, "is missing; a grid needs the number of levels of each range")
+            raise InputError(
+                where,
+                f"{place}.steps",
+                None,
+                "is missing; a grid needs the number of levels of each range",
+            )
         return Axis(name, paths, (), low, high, log, scaled)
     if isinstance(steps, bool) or not isinstance(steps, int) or not 2 <= steps <= _MAX_STEPS:
-        raise InputError(where, f"{place}.steps", steps, f"expects a whole number within 2 .. {_MAX_STEPS}")
+        raise InputError(
+            where, f"{place}.steps", steps, f"expects a whole number within 2 .. {_MAX_STEPS}"
+        )
     levels = np.geomspace(low, high, steps) if log else np.linspace(low, high, steps)
     return Axis(name, paths, tuple(float(v) for v in levels), log=log, scaled=scaled)
 
@@ -195,13 +266,22 @@ def _number(value: Any, where: str, place: str) -> float:
 
 
 def _checked(axis: Axis, base: Design, where: str, place: str) -> Axis:
-    """The axis with its unit, after all its leaves have taken all its values (of a range, its ends)."""
+    """The axis with its unit, after all its leaves have taken all its values (of a range, its
+    ends).
+    """
     rules = parameters.rules(Design)
     if axis.scaled and any(rules[p].kind == "text" for p in axis.paths):
-        raise InputError(where, place, list(axis.paths), "names a motor, which has nothing to scale; use values")
+        raise InputError(
+            where, place, list(axis.paths), "names a motor, which has nothing to scale; use values"
+        )
     if not axis.scaled:
         if len({(rules[p].kind, rules[p].unit) for p in axis.paths}) > 1:
-            raise InputError(where, place, list(axis.paths), "sets leaves of different units to one value; use scale, or an axis each")
+            raise InputError(
+                where,
+                place,
+                list(axis.paths),
+                "sets leaves of different units to one value; use scale, or an axis each",
+            )
         vector = next((p for p in axis.paths if rules[p].size), None)
         if vector:
             raise InputError(where, place, vector, "is a vector; use scale")
@@ -212,6 +292,9 @@ def _checked(axis: Axis, base: Design, where: str, place: str) -> Axis:
         outside = (values < rules[path].low) | (values > rules[path].high)
         if np.any(outside):
             unit = f" {rules[path].unit}" if rules[path].unit else ""
-            remedy = f"{path} takes {rules[path].low:g} .. {rules[path].high:g}{unit}; check unit and sign"
+            remedy = (
+                f"{path} takes {rules[path].low:g} .. {rules[path].high:g}{unit}; check unit "
+                f"and sign"
+            )
             raise InputError(where, place, float(np.asarray(values)[outside][0]), remedy)
     return axis if axis.scaled else dataclasses.replace(axis, unit=rules[axis.paths[0]].unit)

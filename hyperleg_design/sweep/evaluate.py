@@ -1,4 +1,6 @@
-"""Measures of a stretch of a sweep's samples; samples that make no design are told apart, not dropped."""
+"""Measures of a stretch of a sweep's samples; samples that make no design are told apart, not
+dropped.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ Columns = dict[str, np.ndarray]
 """Columns of a table by name, equally long."""
 
 
-def evaluate_range(sweep: Sweep, start: int, stop: int, samples: Mapping[str, np.ndarray] | None = None) -> Columns:
+def evaluate_range(
+    sweep: Sweep, start: int, stop: int, samples: Mapping[str, np.ndarray] | None = None
+) -> Columns:
     """Rows of the samples `start .. stop`, each sample once a variant.
 
     Args:
@@ -24,8 +28,8 @@ def evaluate_range(sweep: Sweep, start: int, stop: int, samples: Mapping[str, np
         samples: `sweep.samples()`, where that is at hand.
 
     Returns:
-        `sample`, `variant`, an axis a column, `rejected` (why a sample makes no design; empty where it does), and the
-        measures (nan where rejected).
+        `sample`, `variant`, an axis a column, `rejected` (why a sample makes no design; empty where
+        it does), and the measures (nan where rejected).
     """
     samples = sweep.samples() if samples is None else samples
     part = {name: values[start:stop] for name, values in samples.items()}
@@ -44,11 +48,14 @@ def evaluate_range(sweep: Sweep, start: int, stop: int, samples: Mapping[str, np
     return found | {name: values[i].ravel() for i, name in enumerate(names)}
 
 
-def evaluate_samples(sweep: Sweep, samples: Mapping[str, np.ndarray], variant: str) -> tuple[np.ndarray, np.ndarray]:
+def evaluate_samples(
+    sweep: Sweep, samples: Mapping[str, np.ndarray], variant: str
+) -> tuple[np.ndarray, np.ndarray]:
     """Measures of some samples as one variant.
 
-    A batch that holds an impossible design is refused as a whole. The error says which ones are impossible, and the others
-    are tried again; where it does not, the batch is halved until those stand alone.
+    A batch that holds an impossible design is refused as a whole. The error says which ones are
+    impossible, and the others are tried again; where it does not, the batch is halved until those
+    stand alone.
 
     Returns:
         Measures `(columns, n)`, and reasons of rejection `(n,)`, empty where there is none.
@@ -78,6 +85,10 @@ def evaluate_samples(sweep: Sweep, samples: Mapping[str, np.ndarray], variant: s
 
 def _refused(error: InputError, count: int) -> np.ndarray | None:
     """Which designs of a batch an error refuses, at least one; None where it does not say."""
-    if error.bad is None or np.shape(error.bad) not in ((), (1,), (count,)) or not np.any(error.bad):
+    if (
+        error.bad is None
+        or np.shape(error.bad) not in ((), (1,), (count,))
+        or not np.any(error.bad)
+    ):
         return None
     return np.array(np.broadcast_to(error.bad, (count,)))

@@ -1,7 +1,8 @@
 """Sizing measures of a batch of designs; adding one is one function here.
 
-Each function takes a `Batch` and returns `(n,)`, or `(n, parts)` where it has a column a part. Nothing loops over designs.
-A part that a variant does not have (the torque of a toe that is gone) is nan.
+Each function takes a `Batch` and returns `(n,)`, or `(n, parts)` where it has a column a part.
+Nothing loops over designs. A part that a variant does not have (the torque of a toe that is gone)
+is nan.
 """
 
 from __future__ import annotations
@@ -28,11 +29,14 @@ BELOW_HIP = JOINTS[3:]
 """Joints that share motors."""
 
 PUSH_OFF_DIRECTION = {"knee": -1.0, "ankle_pitch": 1.0}
-"""Joint speeds of `push_off_power` over each other: knee extension and plantar flexion alike, the toe held (assumed)."""
+"""Joint speeds of `push_off_power` over each other: knee extension and plantar flexion alike, the
+toe held (assumed)."""
 
 
 class Batch:
-    """A batch of designs `(n,)` of one variant, and what several measures need of it, computed once."""
+    """A batch of designs `(n,)` of one variant, and what several measures need of it, computed
+    once.
+    """
 
     def __init__(self, design: Design) -> None:
         self.design = design
@@ -102,13 +106,17 @@ MEASURES: dict[str, Measure] = {}
 """All measures by name, in the order of the table."""
 
 
-def measure(unit: str, better: str, parts: tuple[str, ...] = ()) -> Callable[[Callable[[Batch], np.ndarray]], Callable[[Batch], np.ndarray]]:
+def measure(
+    unit: str, better: str, parts: tuple[str, ...] = ()
+) -> Callable[[Callable[[Batch], np.ndarray]], Callable[[Batch], np.ndarray]]:
     """Register a function as the measure of its name; its docstring is the measure's."""
 
     def register(function: Callable[[Batch], np.ndarray]) -> Callable[[Batch], np.ndarray]:
         name = function.__name__
         if name in MEASURES or better not in ("low", "high") or not function.__doc__:
-            raise ValueError(f"measure {name} is there already, or lacks a docstring or a direction")
+            raise ValueError(
+                f"measure {name} is there already, or lacks a docstring or a direction"
+            )
         MEASURES[name] = Measure(name, unit, better, parts, function.__doc__, function)
         return function
 
@@ -192,7 +200,9 @@ def swing_inertia(batch: Batch) -> np.ndarray:
 
 @measure("", "low")
 def gyration_over_length(batch: Batch) -> np.ndarray:
-    """Radius of gyration of the swinging leg about the hip over its length; 0.577 for a uniform rod."""
+    """Radius of gyration of the swinging leg about the hip over its length; 0.577 for a uniform
+    rod.
+    """
     return batch.leg.gyration_over_length
 
 
@@ -201,22 +211,31 @@ def actuator_mass(batch: Batch) -> np.ndarray:
     """Motors and gears of one leg."""
     installed = ACTUATOR_OF_MOTOR[: len(transmission.motor_names(batch.design))]
     return sum(
-        (np.asarray(masses.built_mass(batch.design, getattr(batch.design.actuators, name))) for name in installed),
+        (
+            np.asarray(masses.built_mass(batch.design, getattr(batch.design.actuators, name)))
+            for name in installed
+        ),
         start=np.zeros(()),
     )
 
 
 @measure("Nm", "high", JOINTS)
 def max_joint_torque(batch: Batch) -> np.ndarray:
-    """Largest torque of each joint whatever the others do, standing, derated, as Table I of the paper."""
+    """Largest torque of each joint whatever the others do, standing, derated, as Table I of the
+    paper.
+    """
     return transmission.max_joint_torque(batch.design, "standing")
 
 
 @measure("Nm", "high", BELOW_HIP)
 def torque_alone(batch: Batch) -> np.ndarray:
-    """Largest torque of each joint below the hip while the others there have none, walking, at standstill, not derated."""
+    """Largest torque of each joint below the hip while the others there have none, walking, at
+    standstill, not derated.
+    """
     matrix, peak = batch.below_hip()
-    return np.stack([zonotope.alone(matrix, -peak, peak, joint) for joint in range(matrix.shape[-2])], -1)
+    return np.stack(
+        [zonotope.alone(matrix, -peak, peak, joint) for joint in range(matrix.shape[-2])], -1
+    )
 
 
 @measure("rad/s", "high", JOINTS)
@@ -227,14 +246,18 @@ def single_joint_speed(batch: Batch) -> np.ndarray:
 
 @measure("Nm", "high")
 def zonotope_size(batch: Batch) -> np.ndarray:
-    """Edge of the cube whose volume is that of the torques which the joints below the hip can have together, walking."""
+    """Edge of the cube whose volume is that of the torques which the joints below the hip can have
+    together, walking.
+    """
     matrix, peak = batch.below_hip()
     return zonotope.volume(matrix, -peak, peak) ** (1.0 / matrix.shape[-2])
 
 
 @measure("", "high")
 def zonotope_to_box_volume(batch: Batch) -> np.ndarray:
-    """Share of the box of single-joint maxima that the joints below the hip can reach together, walking."""
+    """Share of the box of single-joint maxima that the joints below the hip can reach together,
+    walking.
+    """
     matrix, peak = batch.below_hip()
     return zonotope.zonotope_to_box_volume(matrix, -peak, peak)
 
@@ -247,7 +270,9 @@ def reflected_inertia(batch: Batch) -> np.ndarray:
 
 @measure("kg m^2", "low")
 def reflected_inertia_norm(batch: Batch) -> np.ndarray:
-    """Rotor inertia of the joints below the hip in its worst direction, the spectral norm of M diag(J) M^T, walking."""
+    """Rotor inertia of the joints below the hip in its worst direction, the spectral norm of M
+    diag(J) M^T, walking.
+    """
     return np.linalg.eigvalsh(leg_reflected_inertia(batch.design, "walking")[..., 3:, 3:])[..., -1]
 
 
@@ -258,26 +283,36 @@ def _holding_heat(batch: Batch, load: StaticLoad) -> np.ndarray:
 
 @measure("W", "low")
 def squat_heat(batch: Batch) -> np.ndarray:
-    """Joule heat of one leg that holds half the robot in a squat (`reference_loads`), least-heat motor torques, walking."""
+    """Joule heat of one leg that holds half the robot in a squat (`reference_loads`), least-heat
+    motor torques, walking.
+    """
     return _holding_heat(batch, batch.squat)
 
 
 @measure("W", "low")
 def push_off_heat(batch: Batch) -> np.ndarray:
-    """Joule heat of one leg that carries the push-off load (`reference_loads`), least-heat motor torques, walking."""
+    """Joule heat of one leg that carries the push-off load (`reference_loads`), least-heat motor
+    torques, walking.
+    """
     return _holding_heat(batch, batch.push_off)
 
 
 @measure("", "low")
 def push_off_use(batch: Batch) -> np.ndarray:
-    """Largest motor torque over its peak in that push-off, at standstill; above 1 the motors cannot hold it that way."""
-    tau = transmission.motor_torque(batch.walking, batch.push_off.torque, batch.envelope.power_constant)
+    """Largest motor torque over its peak in that push-off, at standstill; above 1 the motors cannot
+    hold it that way.
+    """
+    tau = transmission.motor_torque(
+        batch.walking, batch.push_off.torque, batch.envelope.power_constant
+    )
     return np.max(np.abs(tau) / batch.envelope.peak_torque, -1)
 
 
 @measure("W", "high")
 def push_off_power(batch: Batch) -> np.ndarray:
-    """Largest power of one leg that extends knee and ankle at equal speed with the toe held, walking, inside all envelopes."""
+    """Largest power of one leg that extends knee and ankle at equal speed with the toe held,
+    walking, inside all envelopes.
+    """
     names = transmission.joint_names(batch.design)
     direction = np.array([PUSH_OFF_DIRECTION.get(name, 0.0) for name in names])
     speed = np.abs(transmission.motor_velocity(batch.walking, direction))
@@ -285,11 +320,13 @@ def push_off_power(batch: Batch) -> np.ndarray:
 
 
 def largest_power(envelope: MotorEnvelope, speed: np.ndarray) -> np.ndarray:
-    """Largest summed power over the rates s at which the motors turn together at `s speed`, `(...)` [W].
+    """Largest summed power over the rates s at which the motors turn together at `s speed`, `(...)`
+    [W].
 
-    Up to the rate at which the first motor reaches its top speed, past which its driver has no hold of it. Each gives
-    s v min(peak, stall (1 - s v / w0)), concave in s: the derivative of the sum is piecewise linear and falls, with kinks at
-    the motors' corner speeds, so its root is exact in one of the intervals between them.
+    Up to the rate at which the first motor reaches its top speed, past which its driver has no hold
+    of it. Each gives s v min(peak, stall (1 - s v / w0)), concave in s: the derivative of the sum
+    is piecewise linear and falls, with kinks at the motors' corner speeds, so its root is exact in
+    one of the intervals between them.
 
     Args:
         envelope: limits, `(..., motors)`.
@@ -300,9 +337,12 @@ def largest_power(envelope: MotorEnvelope, speed: np.ndarray) -> np.ndarray:
     safe = np.where(turning, speed, 1.0)
     corner = np.where(turning, envelope.corner_speed / safe, np.inf)
     kinks = np.concatenate([np.zeros((*corner.shape[:-1], 1)), np.sort(corner, -1)], -1)
-    # in the interval that starts at a kink: motors past their corner follow the voltage line, the others give peak torque
+    # in the interval that starts at a kink: motors past their corner follow the voltage line, the
+    # others give peak torque
     past = (corner[..., None, :] <= kinks[..., :, None]) & turning[..., None, :]
-    constant = np.sum(speed[..., None, :] * np.where(past, stall[..., None, :], peak[..., None, :]), -1)
+    constant = np.sum(
+        speed[..., None, :] * np.where(past, stall[..., None, :], peak[..., None, :]), -1
+    )
     slope = np.sum(np.where(past, (2 * stall * speed**2 / free)[..., None, :], 0.0), -1)
     with np.errstate(divide="ignore", invalid="ignore"):
         root = np.where(slope > 0, constant / slope, np.inf)

@@ -13,11 +13,12 @@ _BLOCK = 512
 def nondominated(values: np.ndarray, better: Sequence[str]) -> np.ndarray:
     """Which points are on the Pareto front.
 
-    A point dominates another if it is at least as good in all objectives and better in one. Equal points do not dominate
-    each other, so all of them stay. Points with a nan are never on the front and dominate nothing.
+    A point dominates another if it is at least as good in all objectives and better in one. Equal
+    points do not dominate each other, so all of them stay. Points with a nan are never on the front
+    and dominate nothing.
 
-    Sorted lexicographically by cost, a point is dominated by earlier ones only; in two objectives a running minimum
-    then decides (O(n log n)), in more each block is compared with the front so far.
+    Sorted lexicographically by cost, a point is dominated by earlier ones only; in two objectives a
+    running minimum then decides (O(n log n)), in more each block is compared with the front so far.
 
     Args:
         values: objectives of each point, `(n, objectives)`.
@@ -31,7 +32,10 @@ def nondominated(values: np.ndarray, better: Sequence[str]) -> np.ndarray:
     """
     values = np.asarray(values, float)
     if values.ndim != 2 or values.shape[1] != len(better) or not len(better):
-        raise ValueError(f"values of shape {values.shape} do not fit {len(better)} objectives; expects (n, objectives)")
+        raise ValueError(
+            f"values of shape {values.shape} do not fit {len(better)} objectives; expects (n, "
+            f"objectives)"
+        )
     if any(b not in ("low", "high") for b in better):
         raise ValueError(f"better = {list(better)}: expects low or high")
     front = np.zeros(len(values), dtype=bool)
@@ -39,7 +43,9 @@ def nondominated(values: np.ndarray, better: Sequence[str]) -> np.ndarray:
     if not real.size:
         return front
     cost = values[real] * [1.0 if b == "low" else -1.0 for b in better]
-    unique, inverse = np.unique(cost, axis=0, return_inverse=True)  # sorted lexicographically, ties joined
+    unique, inverse = np.unique(
+        cost, axis=0, return_inverse=True
+    )  # sorted lexicographically, ties joined
     kept = _staircase(unique) if unique.shape[1] <= 2 else _blockwise(unique)
     front[real] = kept[inverse.reshape(-1)]
     return front

@@ -1,11 +1,13 @@
-"""Running a sweep: in chunks of bounded memory, each kept as soon as it is done, joined into one table at the end.
+"""Running a sweep: in chunks of bounded memory, each kept as soon as it is done, joined into one
+table at the end.
 
     OUT/designs.parquet     the table, with the resolved configuration, seed, versions and commit in its metadata
     OUT/summary.json        counts, ranges of the measures, Pareto fronts
     OUT/chunks/             while it runs, or after it was killed: finished chunks and what they belong to
 
-The table depends on the definition and its seed only, not on chunks, interruptions or the number of processes.
-"""
+The table depends on the definition and its seed only, not on chunks, interruptions or the number of
+processes.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -25,7 +27,14 @@ from hyperleg_design.sweep import table
 from hyperleg_design.sweep.evaluate import Columns, evaluate_range
 from hyperleg_design.sweep.space import Sweep, load_sweep
 from hyperleg_design.sweep.summary import summarise
-from hyperleg_design.writing import MARKER, check_output_folder, output_folder, write_bytes, write_json, write_text
+from hyperleg_design.writing import (
+    MARKER,
+    check_output_folder,
+    output_folder,
+    write_bytes,
+    write_json,
+    write_text,
+)
 
 TABLE, SUMMARY, CHUNKS, STATE = "designs.parquet", "summary.json", "chunks", "state.json"
 
@@ -68,14 +77,16 @@ def run_sweep(
     Args:
         definition: a sweep, a shipped name, or a YAML file.
         out: folder to write.
-        resume: go on where an earlier run of the same sweep stopped, or return what it finished; otherwise start anew.
+        resume: go on where an earlier run of the same sweep stopped, or return what it finished;
+            otherwise start anew.
         progress: show a bar.
         chunk: samples evaluated and kept at a time; a resumed run keeps its first one.
         executor: spreads chunks over processes or machines; in this process by default.
 
     Raises:
         InputError: the definition is wrong.
-        OutputError: the folder is not ours, holds something else (another sweep, another version), or cannot be written.
+        OutputError: the folder is not ours, holds something else (another sweep, another version),
+        or cannot be written.
     """
     sweep = definition if isinstance(definition, Sweep) else load_sweep(definition)
     if isinstance(chunk, bool) or not isinstance(chunk, int) or chunk < 1:
@@ -92,7 +103,9 @@ def run_sweep(
     else:
         with _written(folder):
             folder.mkdir(parents=True, exist_ok=True)
-            write_text(folder / MARKER, "made by hyperleg; replaced as a whole when written again\n")
+            write_text(
+                folder / MARKER, "made by hyperleg; replaced as a whole when written again\n"
+            )
             shutil.rmtree(chunks, ignore_errors=True)
             chunks.mkdir()
         write_json(chunks / STATE, {**state, "chunk": chunk})
@@ -105,13 +118,23 @@ def run_sweep(
     return SweepResult(sweep, folder, summary)
 
 
-def _earlier(folder: Path, state: dict[str, Any], resume: bool) -> tuple[dict[str, Any] | None, int | None]:
-    """Summary of a finished run, or chunk size of one that was stopped; neither where to start anew."""
+def _earlier(
+    folder: Path, state: dict[str, Any], resume: bool
+) -> tuple[dict[str, Any] | None, int | None]:
+    """Summary of a finished run, or chunk size of one that was stopped; neither where to start
+    anew.
+    """
     finished, stopped = _read_state(folder / SUMMARY), _read_state(folder / CHUNKS / STATE)
     if finished is None and stopped is None:
-        # a run killed before its state was there leaves the marker and at most an empty folder of chunks
-        if folder.is_dir() and any(entry.name not in (MARKER, CHUNKS) for entry in folder.iterdir()):
-            raise OutputError(f"{folder}: holds a result of hyperleg that is no sweep; choose an empty or new folder")
+        # a run killed before its state was there leaves the marker and at most an empty folder of
+        # chunks
+        if folder.is_dir() and any(
+            entry.name not in (MARKER, CHUNKS) for entry in folder.iterdir()
+        ):
+            raise OutputError(
+                f"{folder}: holds a result of hyperleg that is no sweep; choose an empty or new "
+                f"folder"
+            )
         return None, None
     if not resume:
         return None, None
@@ -120,10 +143,14 @@ def _earlier(folder: Path, state: dict[str, Any], resume: bool) -> tuple[dict[st
     if held.get("digest") != state["digest"]:
         was = held.get("name")
         raise OutputError(
-            f"{folder}: holds the sweep {was} with another definition, design or motors; choose another folder, or restart (--restart) to replace it"
+            f"{folder}: holds the sweep {was} with another definition, design or motors; choose "
+            f"another folder, or restart (--restart) to replace it"
         )
     if (held.get("versions"), held.get("commit")) != (state["versions"], state["commit"]):
-        raise OutputError(f"{folder}: was made by another version of the code; choose another folder, or restart (--restart) to replace it")
+        raise OutputError(
+            f"{folder}: was made by another version of the code; choose another folder, or restart "
+            f"(--restart) to replace it"
+        )
     if stopped is not None:
         return None, int(stopped["chunk"])
     return (finished, None) if (folder / TABLE).is_file() else (None, None)
@@ -143,7 +170,10 @@ def _written(folder: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise OutputError(f"{folder}: cannot be written ({error.strerror or error}); free some space or choose another folder") from error
+        raise OutputError(
+            f"{folder}: cannot be written ({error.strerror or error}); free some space or choose "
+            f"another folder"
+        ) from error
 
 
 def _ranges(count: int, chunk: int) -> list[tuple[int, int]]:
@@ -154,20 +184,35 @@ def _chunk_path(folder: Path, start: int, stop: int) -> Path:
     return folder / f"{start:08d}-{stop:08d}.parquet"
 
 
-def _evaluate(sweep: Sweep, folder: Path, chunk: int, progress: bool, executor: Executor | None) -> None:
+def _evaluate(
+    sweep: Sweep, folder: Path, chunk: int, progress: bool, executor: Executor | None
+) -> None:
     """Evaluate and keep the chunks that are missing."""
     from tqdm import tqdm
 
     variants = len(sweep.variants)
-    missing = [(a, b) for a, b in _ranges(sweep.count, chunk) if table.rows_of(_chunk_path(folder, a, b)) != (b - a) * variants]
+    missing = [
+        (a, b)
+        for a, b in _ranges(sweep.count, chunk)
+        if table.rows_of(_chunk_path(folder, a, b)) != (b - a) * variants
+    ]
     have = sweep.size - variants * sum(b - a for a, b in missing)
-    with tqdm(total=sweep.size, initial=have, disable=not progress, desc=sweep.name, unit="design", delay=0.5) as bar:
+    with tqdm(
+        total=sweep.size,
+        initial=have,
+        disable=not progress,
+        desc=sweep.name,
+        unit="design",
+        delay=0.5,
+    ) as bar:
         for (start, stop), columns in _columns(sweep, missing, executor):
             write_bytes(_chunk_path(folder, start, stop), table.to_bytes(sweep, columns))
             bar.update((stop - start) * variants)
 
 
-def _columns(sweep: Sweep, missing: list[tuple[int, int]], executor: Executor | None) -> Iterator[tuple[tuple[int, int], Columns]]:
+def _columns(
+    sweep: Sweep, missing: list[tuple[int, int]], executor: Executor | None
+) -> Iterator[tuple[tuple[int, int], Columns]]:
     if executor is None:
         samples = sweep.samples()
         for start, stop in missing:

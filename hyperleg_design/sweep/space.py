@@ -1,4 +1,5 @@
-"""The space of designs that a sweep covers: read from YAML, sampled from one seed, made into batches.
+"""The space of designs that a sweep covers: read from YAML, sampled from one seed, made into
+batches.
 
 design: hyperleg                       # a shipped name or a file
 set: {masses.law: components}          # leaves changed for all designs
@@ -41,7 +42,20 @@ SAMPLINGS = ("grid", "random", "sobol", "latin_hypercube")
 MAX_DESIGNS = 10_000_000
 """Above this a definition is taken for a mistake."""
 
-_KEYS = ("name", "description", "design", "set", "variants", "sampling", "count", "seed", "axes", "measures", "objectives", "maps")
+_KEYS = (
+    "name",
+    "description",
+    "design",
+    "set",
+    "variants",
+    "sampling",
+    "count",
+    "seed",
+    "axes",
+    "measures",
+    "objectives",
+    "maps",
+)
 
 
 @dataclass(frozen=True)
@@ -85,8 +99,13 @@ class Sweep:
         """Axis values of all samples by axis name, each `(count,)`; the same for the same seed."""
         if self.sampling == "grid":
             index = np.unravel_index(np.arange(self.count), [len(a.levels) for a in self.axes])
-            return {axis.name: np.asarray(axis.levels)[i] for axis, i in zip(self.axes, index, strict=True)}
-        positions = _positions(self.sampling, self.count, len(self.axes), np.random.default_rng(self.seed))
+            return {
+                axis.name: np.asarray(axis.levels)[i]
+                for axis, i in zip(self.axes, index, strict=True)
+            }
+        positions = _positions(
+            self.sampling, self.count, len(self.axes), np.random.default_rng(self.seed)
+        )
         return {axis.name: axis.at(positions[:, i]) for i, axis in enumerate(self.axes)}
 
     def design(self, samples: Mapping[str, np.ndarray], variant: str) -> Design:
@@ -102,8 +121,13 @@ class Sweep:
 
     def to_mapping(self) -> dict[str, Any]:
         """All that decides the numbers in the table, as plain values."""
-        used = {str(getattr(self.base.actuators, a).motor) for a in ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle", "toe")}
-        used |= {str(getattr(self.base.reference, f"{p}_motor")) for p in ("hip", "knee", "ankle", "toe")}
+        used = {
+            str(getattr(self.base.actuators, a).motor)
+            for a in ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle", "toe")
+        }
+        used |= {
+            str(getattr(self.base.reference, f"{p}_motor")) for p in ("hip", "knee", "ankle", "toe")
+        }
         used |= {str(v) for axis in self.axes if not axis.numeric for v in axis.levels}
         return {
             "name": self.name,
@@ -131,7 +155,9 @@ def _motor_mapping(name: str) -> dict[str, Any]:
         "constants": {k: c.value for k, c in motor.constants.items()},
         "resistance": motor.resistance_convention,
         "current": motor.current_convention,
-        "presets": {p: {k: c.value for k, c in constants.items()} for p, constants in motor.presets.items()},
+        "presets": {
+            p: {k: c.value for k, c in constants.items()} for p, constants in motor.presets.items()
+        },
     }
 
 
@@ -145,7 +171,9 @@ def _positions(sampling: str, count: int, dimensions: int, rng: np.random.Genera
     from scipy.stats import qmc
 
     # drawn to the next power of two, for which the sequence is balanced, and cut
-    points: np.ndarray = qmc.Sobol(dimensions, scramble=True, rng=rng).random_base2(max(0, (count - 1).bit_length()))
+    points: np.ndarray = qmc.Sobol(dimensions, scramble=True, rng=rng).random_base2(
+        max(0, (count - 1).bit_length())
+    )
     return points[:count]
 
 
@@ -163,7 +191,13 @@ def load_sweep(name: str | Path, *, overrides: Mapping[str, Any] | None = None) 
     return sweep_from_mapping(read_yaml(path), short_name(path), path.stem, overrides=overrides)
 
 
-def sweep_from_mapping(data: Mapping[str, Any], where: str = "sweep", name: str = "sweep", *, overrides: Mapping[str, Any] | None = None) -> Sweep:
+def sweep_from_mapping(
+    data: Mapping[str, Any],
+    where: str = "sweep",
+    name: str = "sweep",
+    *,
+    overrides: Mapping[str, Any] | None = None,
+) -> Sweep:
     """A sweep from what its file would hold.
 
     Raises:
@@ -171,7 +205,9 @@ def sweep_from_mapping(data: Mapping[str, Any], where: str = "sweep", name: str 
     """
     for key in data:
         if key not in _KEYS:
-            raise InputError(where, str(key), data[key], parameters.unknown(str(key), sorted(_KEYS)))
+            raise InputError(
+                where, str(key), data[key], parameters.unknown(str(key), sorted(_KEYS))
+            )
     for key in ("design", "axes"):
         if key not in data:
             raise InputError(where, key, None, "is missing")
@@ -202,12 +238,21 @@ def sweep_from_mapping(data: Mapping[str, Any], where: str = "sweep", name: str 
 def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> Design:
     changes = data.get("set", {})
     if not isinstance(changes, Mapping):
-        raise InputError(where, "set", changes, "expects a mapping of leaves such as {toe.mass: 0.3}")
+        raise InputError(
+            where, "set", changes, "expects a mapping of leaves such as {toe.mass: 0.3}"
+        )
     if not isinstance(data["design"], str):
-        raise InputError(where, "design", data["design"], "expects the name of a design or its file")
+        raise InputError(
+            where, "design", data["design"], "expects the name of a design or its file"
+        )
     base = load_design(data["design"])
     if base.variant != "toe":
-        raise InputError(where, "design", data["design"], f"is the variant {base.variant}; name its base and list it under variants")
+        raise InputError(
+            where,
+            "design",
+            data["design"],
+            f"is the variant {base.variant}; name its base and list it under variants",
+        )
     if changes:
         base = base.with_values(changes, f"{where}: set")
     return base.with_values(overrides, "--set") if overrides else base
@@ -215,41 +260,79 @@ def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> 
 
 def _variants(found: Any, where: str) -> tuple[str, ...]:
     if not isinstance(found, list) or not found or len(set(map(str, found))) < len(found):
-        raise InputError(where, "variants", found, f"expects a list of different ones of {', '.join(VARIANTS)}")
+        raise InputError(
+            where, "variants", found, f"expects a list of different ones of {', '.join(VARIANTS)}"
+        )
     for variant in found:
         if variant not in VARIANTS:
-            raise InputError(where, "variants", variant, parameters.unknown(str(variant), list(VARIANTS)).replace("such field", "such variant"))
+            raise InputError(
+                where,
+                "variants",
+                variant,
+                parameters.unknown(str(variant), list(VARIANTS)).replace(
+                    "such field", "such variant"
+                ),
+            )
     return tuple(found)
 
 
 def _axes(data: Any, base: Design, where: str, *, grid: bool) -> tuple[Axis, ...]:
     if not isinstance(data, Mapping) or not data:
-        raise InputError(where, "axes", data, "expects a mapping of at least one axis, such as toe.mass: {low: 0.1, high: 0.5, steps: 9}")
-    axes = tuple(read_axis(str(name), entry, base, where, grid=grid) for name, entry in data.items())
+        raise InputError(
+            where,
+            "axes",
+            data,
+            "expects a mapping of at least one axis, such as toe.mass: {low: 0.1, high: 0.5, "
+            "steps: 9}",
+        )
+    axes = tuple(
+        read_axis(str(name), entry, base, where, grid=grid) for name, entry in data.items()
+    )
     owner: dict[str, str] = {}
     reserved = {"variant", "rejected", *measures.columns(tuple(measures.MEASURES))}
     for axis in axes:
         if axis.name in reserved:
-            raise InputError(where, f"axes.{axis.name}", None, "is the name of another column of the table; choose another")
+            raise InputError(
+                where,
+                f"axes.{axis.name}",
+                None,
+                "is the name of another column of the table; choose another",
+            )
         for path in axis.paths:
             if path in owner:
-                raise InputError(where, f"axes.{axis.name}", path, f"is moved by the axis {owner[path]} already")
+                raise InputError(
+                    where, f"axes.{axis.name}", path, f"is moved by the axis {owner[path]} already"
+                )
             owner[path] = axis.name
     return axes
 
 
-def _count(data: Mapping[str, Any], sampling: str, axes: tuple[Axis, ...], variants: int, where: str) -> int:
+def _count(
+    data: Mapping[str, Any], sampling: str, axes: tuple[Axis, ...], variants: int, where: str
+) -> int:
     if sampling == "grid":
         if "count" in data:
-            raise InputError(where, "count", data["count"], "has no meaning for a grid; give steps to its axes, or another sampling")
+            raise InputError(
+                where,
+                "count",
+                data["count"],
+                "has no meaning for a grid; give steps to its axes, or another sampling",
+            )
         count = 1
         for axis in axes:
             count *= len(axis.levels)
         if count * variants > MAX_DESIGNS:
-            raise InputError(where, "axes", count * variants, f"makes more than {MAX_DESIGNS} designs; lower the steps, or sample with sobol")
+            raise InputError(
+                where,
+                "axes",
+                count * variants,
+                f"makes more than {MAX_DESIGNS} designs; lower the steps, or sample with sobol",
+            )
         return count
     if "count" not in data:
-        raise InputError(where, "count", None, f"is missing; {sampling} needs the number of samples")
+        raise InputError(
+            where, "count", None, f"is missing; {sampling} needs the number of samples"
+        )
     return _whole(data["count"], 1, MAX_DESIGNS // variants, where, "count")
 
 
@@ -266,7 +349,12 @@ def _measures(found: Any, where: str) -> tuple[str, ...]:
         raise InputError(where, "measures", chosen, f"expects a list of some of {', '.join(known)}")
     for name in chosen:
         if name not in known:
-            raise InputError(where, "measures", name, parameters.unknown(str(name), known).replace("such field", "such measure"))
+            raise InputError(
+                where,
+                "measures",
+                name,
+                parameters.unknown(str(name), known).replace("such field", "such measure"),
+            )
     return tuple(name for name in known if name in chosen)
 
 
@@ -275,21 +363,37 @@ def _columns(found: Any, columns: tuple[str, ...], where: str, field: str) -> tu
         raise InputError(where, field, found, "expects a list of measures")
     for name in found:
         if name not in columns:
-            raise InputError(where, field, name, parameters.unknown(str(name), list(columns)).replace("such field", "such measure"))
+            raise InputError(
+                where,
+                field,
+                name,
+                parameters.unknown(str(name), list(columns)).replace("such field", "such measure"),
+            )
     return tuple(found)
 
 
-def _maps(found: Any, axes: tuple[Axis, ...], columns: tuple[str, ...], where: str) -> tuple[Map, ...]:
+def _maps(
+    found: Any, axes: tuple[Axis, ...], columns: tuple[str, ...], where: str
+) -> tuple[Map, ...]:
     if not isinstance(found, list):
-        raise InputError(where, "maps", found, "expects a list of {x: axis, y: axis, measure: name}")
+        raise InputError(
+            where, "maps", found, "expects a list of {x: axis, y: axis, measure: name}"
+        )
     known = [axis.name for axis in axes if axis.numeric]
     made = []
     for entry in found:
         if not isinstance(entry, Mapping) or set(entry) | {"y"} != {"x", "y", "measure"}:
-            raise InputError(where, "maps", entry, "expects {x: axis, y: axis, measure: name}; y may be left out")
+            raise InputError(
+                where, "maps", entry, "expects {x: axis, y: axis, measure: name}; y may be left out"
+            )
         for key in ("x", "y"):
             if key in entry and (entry[key] not in known or entry["x"] == entry.get("y")):
-                raise InputError(where, f"maps.{key}", entry[key], f"expects different ones of the numeric axes {', '.join(known)}")
+                raise InputError(
+                    where,
+                    f"maps.{key}",
+                    entry[key],
+                    f"expects different ones of the numeric axes {', '.join(known)}",
+                )
         _columns([entry["measure"]], columns, where, "maps.measure")
         made.append(Map(entry["x"], entry.get("y", ""), entry["measure"]))
     return tuple(made)

@@ -21,10 +21,11 @@ def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
     """Summary of a table.
 
     Returns:
-        `description`, `seed`, `sampling`, `samples`, `designs`, `rejected`, `rejected_because` (counts by reason), `base`
-        (measures of the unchanged design, by variant), `range` (by variant and measure: smallest, median, largest) and,
-        where the sweep has objectives, `front` (by variant: `designs` on it, and the numbers of the first samples).
-        Measures that a variant lacks are left out.
+        `description`, `seed`, `sampling`, `samples`, `designs`, `rejected`, `rejected_because`
+        (counts by reason), `base` (measures of the unchanged design, by variant), `range` (by
+        variant and measure: smallest, median, largest) and, where the sweep has objectives, `front`
+        (by variant: `designs` on it, and the numbers of the first samples). Measures that a variant
+        lacks are left out.
     """
     head = table.read(path, ["sample", "variant", "rejected"])
     variant, rejected = head["variant"], head["rejected"] != ""
@@ -47,20 +48,31 @@ def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
         for name in sweep.variants:
             real = values[(variant == name) & ~np.isnan(values)]
             if real.size:
-                found["range"][name][column] = [float(v) for v in (real.min(), np.median(real), real.max())]
+                found["range"][name][column] = [
+                    float(v) for v in (real.min(), np.median(real), real.max())
+                ]
     if sweep.objectives:
         found["front"] = {}
         columns = table.read(path, list(sweep.objectives))
         values = np.stack([columns[c] for c in sweep.objectives], -1)
         for name in sweep.variants:
             rows = np.flatnonzero(variant == name)
-            front = rows[nondominated(values[rows], [measures.measure_of(c).better for c in sweep.objectives])]
-            found["front"][name] = {"designs": int(front.size), "samples": head["sample"][front[:_SHOWN_FRONT]].tolist()}
+            front = rows[
+                nondominated(
+                    values[rows], [measures.measure_of(c).better for c in sweep.objectives]
+                )
+            ]
+            found["front"][name] = {
+                "designs": int(front.size),
+                "samples": head["sample"][front[:_SHOWN_FRONT]].tolist(),
+            }
     return found
 
 
 def base_values(sweep: Sweep, variant: str) -> dict[str, float]:
-    """Measures of the sweep's unchanged design as one variant, by column; those it lacks are left out."""
+    """Measures of the sweep's unchanged design as one variant, by column; those it lacks are left
+    out.
+    """
     from hyperleg_design.robot.ablation import ablate
 
     values = measures.evaluate(ablate(sweep.base, variant), sweep.measures)

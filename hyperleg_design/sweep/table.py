@@ -22,7 +22,8 @@ METADATA_KEY = b"hyperleg_sweep"
 """Key of the schema's metadata under which the resolved configuration stands, as JSON."""
 
 ROW_GROUP = 32_768
-"""Rows of a row group of the finished table, whatever the chunks were, so that its bytes do not depend on those."""
+"""Rows of a row group of the finished table, whatever the chunks were, so that its bytes do not
+depend on those."""
 
 
 def schema(sweep: Sweep) -> pa.Schema:
@@ -32,10 +33,15 @@ def schema(sweep: Sweep) -> pa.Schema:
     def field(name: str, kind: Any, doc: str, unit: str = "") -> Any:
         return pa.field(name, kind, metadata={"unit": unit, "doc": doc})
 
-    fields = [field("sample", pa.int64(), "number of the sample"), field("variant", pa.string(), "ablation of the toe")]
+    fields = [
+        field("sample", pa.int64(), "number of the sample"),
+        field("variant", pa.string(), "ablation of the toe"),
+    ]
     for axis in sweep.axes:
         doc = f"axis: {'factor on' if axis.scaled else 'sets'} {', '.join(axis.paths)}"
-        fields.append(field(axis.name, pa.float64() if axis.numeric else pa.string(), doc, axis.unit))
+        fields.append(
+            field(axis.name, pa.float64() if axis.numeric else pa.string(), doc, axis.unit)
+        )
     fields.append(field("rejected", pa.string(), "why this makes no design; empty where it does"))
     for column in measures.columns(sweep.measures):
         found = measures.measure_of(column)
@@ -49,7 +55,12 @@ def to_bytes(sweep: Sweep, columns: Columns) -> bytes:
     import pyarrow.parquet as pq
 
     stream = io.BytesIO()
-    pq.write_table(pa.table({name: pa.array(values) for name, values in columns.items()}, schema=schema(sweep)), stream)
+    pq.write_table(
+        pa.table(
+            {name: pa.array(values) for name, values in columns.items()}, schema=schema(sweep)
+        ),
+        stream,
+    )
     return stream.getvalue()
 
 
@@ -69,7 +80,9 @@ def join(sweep: Sweep, parts: Iterable[Path], path: Path, metadata: Mapping[str,
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    made = schema(sweep).with_metadata({METADATA_KEY: json.dumps(metadata, sort_keys=True).encode()})
+    made = schema(sweep).with_metadata(
+        {METADATA_KEY: json.dumps(metadata, sort_keys=True).encode()}
+    )
     texts = [field.name for field in made if field.type == pa.string()]
     with pq.ParquetWriter(path, made, compression="zstd", use_dictionary=texts) as writer:
         held: list[pa.Table] = []
@@ -79,7 +92,9 @@ def join(sweep: Sweep, parts: Iterable[Path], path: Path, metadata: Mapping[str,
             rows += held[-1].num_rows
             while rows >= ROW_GROUP:
                 whole = pa.concat_tables(held).combine_chunks()
-                writer.write_table(whole.slice(0, ROW_GROUP).combine_chunks(), row_group_size=ROW_GROUP)
+                writer.write_table(
+                    whole.slice(0, ROW_GROUP).combine_chunks(), row_group_size=ROW_GROUP
+                )
                 held = [whole.slice(ROW_GROUP)]
                 rows -= ROW_GROUP
         if rows:

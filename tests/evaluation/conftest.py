@@ -1,4 +1,6 @@
-"""Shared: a recorded trial made of a planned walk whose gait and power are known from elsewhere, and small ONNX policies."""
+"""Shared: a recorded trial made of a planned walk whose gait and power are known from elsewhere,
+and small ONNX policies.
+"""
 
 from __future__ import annotations
 
@@ -69,7 +71,9 @@ def planned_trial(design, planned):
 def turned_trial(planned_trial):
     """The same walk into another direction and from another place."""
     angle = 2.0
-    turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+    turn = np.array(
+        [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]]
+    )
     w, x, y, z = planned_trial.base_orientation.T
     c, s = np.cos(angle / 2), np.sin(angle / 2)
     return dataclasses.replace(
@@ -90,7 +94,9 @@ def layout_of_walk(design):
 
 @pytest.fixture
 def make_onnx(tmp_path, design, layout_of_walk):
-    """Writes a linear ONNX policy; keywords replace metadata (None leaves a key out), `weight` and `bias` fill it."""
+    """Writes a linear ONNX policy; keywords replace metadata (None leaves a key out), `weight` and
+    `bias` fill it.
+    """
     onnx = pytest.importorskip("onnx")
     import yaml
 
@@ -123,7 +129,14 @@ def make_onnx(tmp_path, design, layout_of_walk):
         )
         model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 18)])
         model.ir_version = 10
-        helper.set_model_props(model, {k: v if isinstance(v, str) else json.dumps(v) for k, v in metadata.items() if v is not None})
+        helper.set_model_props(
+            model,
+            {
+                k: v if isinstance(v, str) else json.dumps(v)
+                for k, v in metadata.items()
+                if v is not None
+            },
+        )
         path = tmp_path / name
         path.write_bytes(model.SerializeToString())
         return path

@@ -12,7 +12,10 @@ from hyperleg_design.evaluation.statistics import DIFFERS, NOT_TOLD_APART
 
 def groups(means, spread=0.05):
     rng = np.random.default_rng(0)
-    return {name: [m + spread * rng.normal(size=10) for _ in range(5)] for name, m in zip(LADDER, means, strict=True)}
+    return {
+        name: [m + spread * rng.normal(size=10) for _ in range(5)]
+        for name, m in zip(LADDER, means, strict=True)
+    }
 
 
 def test_steps_add_up_to_the_whole():

@@ -35,7 +35,9 @@ def test_stops_count_time_at_either_end():
 
 def test_vibration_hears_fast_motion_only():
     time = np.arange(2000) * 0.005
-    velocity = np.column_stack([3 * np.sin(2 * np.pi * 2 * time), 3 * np.sin(2 * np.pi * 40 * time)])
+    velocity = np.column_stack(
+        [3 * np.sin(2 * np.pi * 2 * time), 3 * np.sin(2 * np.pi * 40 * time)]
+    )
     found = bearing.vibration(velocity, 0.005)
     assert found[0] < 0.02
     assert found[1] == pytest.approx(3 / np.sqrt(2), rel=0.02)

@@ -17,7 +17,10 @@ from hyperleg_design.evaluation.walk import measure_walk
 def findings(trials, design, protocol=None):
     protocol = protocol or WalkProtocol()
     parts = [list(p) for p in zip(*(measure_walk(t, protocol) for t in trials), strict=True)]
-    return {f.demand.measure: f for f in walk_findings([evaluation_of(standing(14), design, protocol, trials, *parts)])}
+    return {
+        f.demand.measure: f
+        for f in walk_findings([evaluation_of(standing(14), design, protocol, trials, *parts)])
+    }
 
 
 def test_the_planned_walk_is_believed(planned_trial, design):
@@ -35,7 +38,11 @@ def test_one_fall_in_two_is_not(planned_trial, design):
 
 
 def test_sliding_feet_and_a_wrong_speed_are_not(planned_trial, design):
-    faster = planned_trial.base_position * [1.1, 1.0, 1.0]  # the same steps, so the feet are dragged along
+    faster = planned_trial.base_position * [
+        1.1,
+        1.0,
+        1.0,
+    ]  # the same steps, so the feet are dragged along
     found = findings([dataclasses.replace(planned_trial, base_position=faster)], design)
     stance = 0.1 * 1.33 * 0.62  # of a stride of one second
     assert 0.4 * stance < found["foot_drift"].found < stance

@@ -12,8 +12,24 @@ from hyperleg_design import cli, resources
 
 def test_a_standing_policy_is_evaluated_and_its_falls_are_counted(make_onnx, tmp_path, capsys):
     protocol = tmp_path / "short.yaml"
-    protocol.write_text((resources.content_folder("sim") / "protocol_walk.yaml").read_text().replace("trials: 10", "trials: 3"))
-    code = cli.main(["evaluate", str(make_onnx()), "--protocol", str(protocol), "--out", str(tmp_path / "out"), "--workers", "1", "--json"])
+    protocol.write_text(
+        (resources.content_folder("sim") / "protocol_walk.yaml")
+        .read_text()
+        .replace("trials: 10", "trials: 3")
+    )
+    code = cli.main(
+        [
+            "evaluate",
+            str(make_onnx()),
+            "--protocol",
+            str(protocol),
+            "--out",
+            str(tmp_path / "out"),
+            "--workers",
+            "1",
+            "--json",
+        ]
+    )
     found = json.loads(capsys.readouterr().out)
     assert code == 0
     table = pd.read_parquet(tmp_path / "out" / "trials.parquet")
@@ -38,8 +54,21 @@ def test_every_trial_can_be_saved_as_a_log(make_onnx, tmp_path, capsys):
     from hyperleg_design.gap.log import read_log
 
     protocol = tmp_path / "short.yaml"
-    protocol.write_text((resources.content_folder("sim") / "protocol_walk.yaml").read_text().replace("trials: 10", "trials: 3"))
-    arguments = ["evaluate", str(make_onnx()), "--protocol", str(protocol), "--out", str(tmp_path / "out"), "--workers", "1"]
+    protocol.write_text(
+        (resources.content_folder("sim") / "protocol_walk.yaml")
+        .read_text()
+        .replace("trials: 10", "trials: 3")
+    )
+    arguments = [
+        "evaluate",
+        str(make_onnx()),
+        "--protocol",
+        str(protocol),
+        "--out",
+        str(tmp_path / "out"),
+        "--workers",
+        "1",
+    ]
     assert cli.main([*arguments, "--logs", str(tmp_path / "logs"), "--json"]) == 0
     paths = json.loads(capsys.readouterr().out)["logs"]
     assert len(paths) == len(list((tmp_path / "logs").glob("*.parquet"))) == 3

@@ -30,7 +30,9 @@ def test_the_t_test_is_the_human_one():
 def test_running_on_the_course_does_not_deviate():
     path = run_along(T)
     assert np.max(course.course_deviation(path, T)) < 1e-12
-    assert course.path_length(path) == pytest.approx(course.course_length(T), abs=0.1)  # corners lie between samples
+    assert course.path_length(path) == pytest.approx(
+        course.course_length(T), abs=0.1
+    )  # corners lie between samples
 
 
 @given(st.integers(0, 2**31))
@@ -84,7 +86,9 @@ def test_leg_deviation_follows_the_leg():
     path = run_along(T)
     reached = course.arrivals(path, T, 0.5)
     beside = course.leg_deviation(path, T, course.legs_run(reached, len(path)))
-    assert 0.4 < beside.max() <= 0.5  # within the radius of a waypoint the next leg is half a metre away
+    assert (
+        0.4 < beside.max() <= 0.5
+    )  # within the radius of a waypoint the next leg is half a metre away
     assert np.median(beside) < 1e-9
 
 
@@ -100,4 +104,6 @@ def test_start_frame_undoes_place_and_heading():
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     points = np.random.default_rng(0).uniform(-3, 3, (7, 2))
     world = points @ turn.T + start
-    assert course.in_start_frame(world, start, [np.cos(angle), np.sin(angle)]) == pytest.approx(points)
+    assert course.in_start_frame(world, start, [np.cos(angle), np.sin(angle)]) == pytest.approx(
+        points
+    )

@@ -1,4 +1,6 @@
-"""One call evaluates any policy under any protocol; many policies give the same in any number of processes."""
+"""One call evaluates any policy under any protocol; many policies give the same in any number of
+processes.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +31,12 @@ def balance(design):
 
 
 def test_the_task_chooses_the_protocol(design):
-    assert isinstance(evaluate(standing(14), design=design, task=load_task("walk")).protocol, WalkProtocol)
-    assert isinstance(evaluate(standing(14), design=design, task=load_task("goal")).protocol, TTestProtocol)
+    assert isinstance(
+        evaluate(standing(14), design=design, task=load_task("walk")).protocol, WalkProtocol
+    )
+    assert isinstance(
+        evaluate(standing(14), design=design, task=load_task("goal")).protocol, TTestProtocol
+    )
     with pytest.raises(InputError, match="expects a WalkProtocol"):
         evaluate(standing(14), Protocol(name="bare"), design=design, task=load_task("walk"))
 
@@ -58,13 +64,19 @@ def test_a_robot_that_stands_does_not_arrive_and_does_not_fall(design):
 def test_processes_change_nothing(make_onnx):
     files = [make_onnx(f"p{k}.onnx", bias=0.1 * k, seed=str(k)) for k in range(3)]
     seen = []
-    alone = evaluate_many(files, SHORT, workers=1, progress=lambda one: seen.append(one.policy.split("/")[-1]))
+    alone = evaluate_many(
+        files, SHORT, workers=1, progress=lambda one: seen.append(one.policy.split("/")[-1])
+    )
     beside = evaluate_many(files, SHORT, workers=2)
     assert seen == ["p0", "p1", "p2"]
     assert [one.seed for one in beside] == [0, 1, 2]
     for a, b in zip(alone, beside, strict=True):
         assert a.measures[0].keys() == b.measures[0].keys()
-        assert np.array_equal([list(m.values()) for m in a.measures], [list(m.values()) for m in b.measures], equal_nan=True)
+        assert np.array_equal(
+            [list(m.values()) for m in a.measures],
+            [list(m.values()) for m in b.measures],
+            equal_nan=True,
+        )
         assert len(a.trials) == len(b.trials) == 1
         assert np.array_equal(a.trials[0].motor_torque, b.trials[0].motor_torque)
 
@@ -81,7 +93,9 @@ def test_each_policy_can_have_its_own_robot_and_keep_its_own_signals(make_onnx):
 def test_a_broken_file_stops_before_any_work(make_onnx, write):
     seen = []
     with pytest.raises(InputError, match="no whole ONNX file"):
-        evaluate_many([make_onnx(), write("broken.onnx", b"x")], SHORT, workers=1, progress=seen.append)
+        evaluate_many(
+            [make_onnx(), write("broken.onnx", b"x")], SHORT, workers=1, progress=seen.append
+        )
     assert seen == []
     with pytest.raises(InputError, match="workers"):
         evaluate_many([make_onnx()], SHORT, workers=0)
@@ -99,4 +113,6 @@ def test_alterations_change_what_is_measured_and_none_changes_no_bit(make_onnx):
     for one, other in ((plain, same), (altered, beside)):
         for a, b in zip(one, other, strict=True):
             assert all(np.array_equal(x, y) for x, y in zip(a.paths, b.paths, strict=True))
-    assert not any(np.array_equal(a.paths[0], b.paths[0]) for a, b in zip(plain, altered, strict=True))
+    assert not any(
+        np.array_equal(a.paths[0], b.paths[0]) for a, b in zip(plain, altered, strict=True)
+    )

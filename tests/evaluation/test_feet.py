@@ -15,4 +15,6 @@ def test_places_are_the_means_of_pinocchios_pads(planned_trial, planned):
     for i, sample in enumerate(samples):
         pads = contact_points(planned.motion.model, planned.motion.q[sample])[:, :2]
         for foot in (0, 1):
-            assert found[i, foot] == pytest.approx(pads[planned_trial.layout.pad_foot == foot].mean(0), abs=1e-9)
+            assert found[i, foot] == pytest.approx(
+                pads[planned_trial.layout.pad_foot == foot].mean(0), abs=1e-9
+            )

@@ -28,7 +28,7 @@ def test_mujoco_bounces_a_mass_as_on_the_pad(mass):
       <geom type="plane" size="1 1 1"/>
       <body pos="0 0 0.0095"><joint type="slide" axis="0 0 1"/>
       <geom type="sphere" size="0.01" mass="{mass}" solref="{constant} 0.05" solimp="0.99 0.99 1e-5" priority="1" condim="1"/></body>
-    </worldbody></mujoco>"""
+    </worldbody></mujoco>"""  # noqa: E501
     model = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(model)
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE

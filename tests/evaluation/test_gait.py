@@ -61,7 +61,15 @@ def test_hysteresis_never_chatters_between_its_thresholds():
 
 
 def test_short_contacts_and_gaps_are_not_counted():
-    load = np.r_[np.zeros(20), np.full(3, 9), np.zeros(20), np.full(30, 9), np.zeros(2), np.full(30, 9), np.zeros(20)]
+    load = np.r_[
+        np.zeros(20),
+        np.full(3, 9),
+        np.zeros(20),
+        np.full(30, 9),
+        np.zeros(2),
+        np.full(30, 9),
+        np.zeros(20),
+    ]
     found = gait.stance(load, 5, 2, shortest=5)
     assert np.flatnonzero(np.diff(found.astype(int))).tolist() == [42, 104]
 
@@ -71,7 +79,9 @@ def test_columns_are_treated_alone():
     load = rng.uniform(0, 10, (300, 2, 3))
     together = gait.stance(load, 7, 3, 3)
     for i in np.ndindex(2, 3):
-        assert np.array_equal(together[(slice(None), *i)], gait.stance(load[(slice(None), *i)], 7, 3, 3))
+        assert np.array_equal(
+            together[(slice(None), *i)], gait.stance(load[(slice(None), *i)], 7, 3, 3)
+        )
 
 
 @pytest.mark.parametrize(("heel_first", "expected"), [(4, 0.02), (0, 0.0), (-6, -0.03)])

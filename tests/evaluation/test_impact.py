@@ -39,7 +39,9 @@ def test_the_filter_halves_its_cutoff_keeps_slow_parts_and_does_not_delay(order)
     middle = slice(1000, 3000)
     kept = low_pass(slow, STEP, 50, order)
     assert np.max(np.abs(kept - slow)[middle]) < 0.01
-    assert np.sqrt(2 * np.mean(low_pass(at_cutoff, STEP, 50, order)[middle] ** 2)) == pytest.approx(0.5, abs=0.01)
+    assert np.sqrt(2 * np.mean(low_pass(at_cutoff, STEP, 50, order)[middle] ** 2)) == pytest.approx(
+        0.5, abs=0.01
+    )
 
 
 def test_no_filter_changes_nothing_and_columns_are_filtered_alone():

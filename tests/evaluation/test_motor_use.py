@@ -23,12 +23,16 @@ def test_clipped_torques_are_at_the_limit_and_others_are_not(design):
 
 def test_constant_torque_heats_as_the_formula_says(planned_trial):
     torque = np.full((2000, 14), 0.57)
-    trial = dataclasses.replace(planned_trial, motor_torque=torque, motor_velocity=np.zeros((2000, 14)))
+    trial = dataclasses.replace(
+        planned_trial, motor_torque=torque, motor_velocity=np.zeros((2000, 14))
+    )
     use = motor_use(trial, 1000, 2000)
     assert use.rms_torque == pytest.approx(np.full(14, 0.57))
     ankle = use.continuous_use[4]
     assert ankle == pytest.approx(1.0, rel=1e-6)  # RI60 is rated 0.57 Nm
-    assert use.thermal_peak[4] == pytest.approx(1 - np.exp(-10 / 3), rel=1e-9)  # heated since the start, not since the window
+    assert use.thermal_peak[4] == pytest.approx(
+        1 - np.exp(-10 / 3), rel=1e-9
+    )  # heated since the start, not since the window
     assert use.thermal_peak_printed[4] == pytest.approx((1 - np.exp(-10 / 3)) ** 2, rel=1e-9)
     assert use.limit_share.tolist() == [0] * 14
 

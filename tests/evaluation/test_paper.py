@@ -1,4 +1,6 @@
-"""The paper's numbers agree with each other where it says they should, and fail to where the list says so."""
+"""The paper's numbers agree with each other where it says they should, and fail to where the list
+says so.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ from hyperleg_design.robot.transmission import joint_from_motor
 
 
 def test_eq_3_is_the_walking_matrix_of_the_design():
-    assert np.array_equal(joint_from_motor(load_design("hyperleg"), "walking"), np.array(paper.WALKING_MATRIX))
+    assert np.array_equal(
+        joint_from_motor(load_design("hyperleg"), "walking"), np.array(paper.WALKING_MATRIX)
+    )
 
 
 def test_maxima_follow_from_reductions_and_peak_torques():
@@ -19,7 +23,9 @@ def test_maxima_follow_from_reductions_and_peak_torques():
     below = 0.9 * 31.11 * (peak["RI70"] + 3 * peak["RI60"])
     assert below == pytest.approx(paper.MAX_JOINT_TORQUE["knee"], rel=1e-3)
     assert 25 * peak["U10"] == pytest.approx(paper.MAX_JOINT_TORQUE["hip_pitch"], rel=1e-3)
-    assert 0.9 * 2 * 16.51 * peak["RI60"] == pytest.approx(paper.MAX_JOINT_TORQUE["ankle_roll"], rel=1e-3)
+    assert 0.9 * 2 * 16.51 * peak["RI60"] == pytest.approx(
+        paper.MAX_JOINT_TORQUE["ankle_roll"], rel=1e-3
+    )
     assert 0.9 * 31.93 * peak["RI60"] == pytest.approx(paper.MAX_JOINT_TORQUE["toe"], rel=1e-3)
 
 
@@ -57,7 +63,13 @@ def test_tables_three_and_four_agree_with_the_changes_printed():
     }
     for row in paper.TABLE_THREE:
         assert 100 * row.change == pytest.approx(printed[row.quantity], abs=0.06), row.quantity
-    printed = {"time to goal": -0.1, "max speed": -6.6, "average speed": -4.4, "average path deviation": -25.0, "max path deviation": -34.0}
+    printed = {
+        "time to goal": -0.1,
+        "max speed": -6.6,
+        "average speed": -4.4,
+        "average path deviation": -25.0,
+        "max path deviation": -34.0,
+    }
     for row in paper.TABLE_FOUR:
         assert 100 * row.change == pytest.approx(printed[row.quantity], abs=0.06), row.quantity
 
@@ -65,7 +77,9 @@ def test_tables_three_and_four_agree_with_the_changes_printed():
 def test_total_power_is_joule_and_mechanical_and_the_legs_do_not_reach_it():
     total, joule, mechanical = paper.TABLE_THREE[:3]
     for side in ("toe", "ablation"):
-        assert getattr(total, side) == pytest.approx(getattr(joule, side) + getattr(mechanical, side), abs=0.06)
+        assert getattr(total, side) == pytest.approx(
+            getattr(joule, side) + getattr(mechanical, side), abs=0.06
+        )
         leg = sum(getattr(row, side) for row in paper.RIGHT_LEG_POWER)
         assert getattr(total, side) / 2 < leg < getattr(total, side)
     printed = {"hip": 22, "knee": 11, "ankle": 29}
@@ -79,4 +93,6 @@ def test_the_t_test_is_shorter_than_the_human_one():
     assert time.toe * speed.toe == pytest.approx(33.5, abs=0.05)
     assert time.ablation * speed.ablation == pytest.approx(35.1, abs=0.05)
     grf = paper.TABLE_THREE[-1]
-    assert (grf.toe / (32 * 9.81), grf.ablation / (32 * 9.81)) == pytest.approx((3.09, 3.25), abs=0.005)
+    assert (grf.toe / (32 * 9.81), grf.ablation / (32 * 9.81)) == pytest.approx(
+        (3.09, 3.25), abs=0.005
+    )

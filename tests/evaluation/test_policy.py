@@ -1,4 +1,6 @@
-"""ONNX policies: what they say of themselves, and one clear error for each way in which a file can be wrong."""
+"""ONNX policies: what they say of themselves, and one clear error for each way in which a file can
+be wrong.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,14 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.policy import Scripted, check_layout, checked_action, load_policy, policy_name, standing
+from hyperleg_design.evaluation.policy import (
+    Scripted,
+    check_layout,
+    checked_action,
+    load_policy,
+    policy_name,
+    standing,
+)
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.evaluation.walk import evaluate_walk
 from hyperleg_design.robot.design import load_design
@@ -23,7 +32,9 @@ def test_a_policy_says_what_it_is(make_onnx, design):
     assert policy.design.to_mapping() == design.to_mapping()
     assert policy.task.name == "walk"
     observation = np.random.default_rng(0).normal(size=(4, len(policy.columns)))
-    assert policy(observation) == pytest.approx(np.repeat(0.5 * observation.sum(1, keepdims=True) + 1, 14, 1), abs=1e-4)
+    assert policy(observation) == pytest.approx(
+        np.repeat(0.5 * observation.sum(1, keepdims=True) + 1, 14, 1), abs=1e-4
+    )
 
 
 def test_a_policy_brings_robot_and_task_to_its_evaluation(make_onnx, design):
@@ -40,10 +51,14 @@ def test_a_policy_runs_on_a_design_with_the_same_layout_only(make_onnx, design):
     heavier = design.with_values({"pelvis.mass": float(design.pelvis.mass) + 1})
     check_layout(policy, Environment(heavier, policy.task, simulations=1))
     with pytest.raises(InputError, match=r"joint_position\.left_toe|instead of"):
-        check_layout(policy, Environment(load_design(variant="toe_removed"), policy.task, simulations=1))
+        check_layout(
+            policy, Environment(load_design(variant="toe_removed"), policy.task, simulations=1)
+        )
     with pytest.raises(InputError, match=r"number 65 is clock_sine instead of linear_velocity\.0"):
         check_layout(policy, Environment(design, load_task("walk_paper"), simulations=1))
-    bare = load_task("walk").changed(observations={"policy": ("proprioception",), "critic": ("proprioception",)})
+    bare = load_task("walk").changed(
+        observations={"policy": ("proprioception",), "critic": ("proprioception",)}
+    )
     with pytest.raises(InputError, match="67 numbers instead of 65"):
         check_layout(policy, Environment(design, bare, simulations=1))
 
@@ -94,7 +109,10 @@ def test_a_file_that_does_not_know_its_seed_still_runs(make_onnx):
 
 
 def test_nan_names_step_and_trial(make_onnx):
-    with pytest.raises(InputError, match=r"small: action = .* is not finite in policy step 0 \(0\.00 s\) of trial 0"):
+    with pytest.raises(
+        InputError,
+        match=r"small: action = .* is not finite in policy step 0 \(0\.00 s\) of trial 0",
+    ):
         evaluate_walk(load_policy(make_onnx(bias=float("nan"))), SHORT)
     actions = np.zeros((3, 14))
 

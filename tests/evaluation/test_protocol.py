@@ -1,4 +1,6 @@
-"""Protocols read back what they write, the shipped ones are the paper's, and nonsense is one clear error."""
+"""Protocols read back what they write, the shipped ones are the paper's, and nonsense is one clear
+error.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +9,24 @@ import yaml
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import paper
-from hyperleg_design.evaluation.protocol import TTestProtocol, WalkProtocol, load_protocol, protocol_from_mapping, protocol_mapping, protocol_names
+from hyperleg_design.evaluation.protocol import (
+    TTestProtocol,
+    WalkProtocol,
+    load_protocol,
+    protocol_from_mapping,
+    protocol_mapping,
+    protocol_names,
+)
 
 
 def test_the_shipped_walk_is_the_papers():
     walk = load_protocol("walk")
     assert isinstance(walk, WalkProtocol)
-    assert (walk.speed, walk.distance, walk.trials) == (paper.WALK_SPEED, paper.WALK_DISTANCE, paper.TRIALS)
+    assert (walk.speed, walk.distance, walk.trials) == (
+        paper.WALK_SPEED,
+        paper.WALK_DISTANCE,
+        paper.TRIALS,
+    )
     assert walk.impact.window == 0.05
 
 
@@ -22,7 +35,14 @@ def test_the_shipped_t_test_is_the_papers_course():
     assert isinstance(run, TTestProtocol)
     assert "".join(run.order) == "ABCDBA"
     assert run.trials == paper.TRIALS
-    assert run.course.tolist() == [[0, 0], [9.14, 0], [9.14, 4.57], [9.14, -4.57], [9.14, 0], [0, 0]]
+    assert run.course.tolist() == [
+        [0, 0],
+        [9.14, 0],
+        [9.14, 4.57],
+        [9.14, -4.57],
+        [9.14, 0],
+        [0, 0],
+    ]
 
 
 @pytest.mark.parametrize("name", ["walk", "t_test"])
@@ -34,13 +54,18 @@ def test_a_protocol_reads_back_what_it_writes(name):
 
 
 def test_defaults_are_the_shipped_ones_but_for_times():
-    shipped, default = protocol_mapping(load_protocol("walk")), protocol_mapping(WalkProtocol(time_limit=30.0))
+    shipped, default = (
+        protocol_mapping(load_protocol("walk")),
+        protocol_mapping(WalkProtocol(time_limit=30.0)),
+    )
     default["steady"]["end"] = 20.0
     assert shipped == default
 
 
 def test_a_users_file_is_found_beside_the_shipped(write):
-    path = write("mine.yaml", "{kind: walk, speed: 1.0, distance: 5.0, trials: 2, steady: {begin: 1.0}}")
+    path = write(
+        "mine.yaml", "{kind: walk, speed: 1.0, distance: 5.0, trials: 2, steady: {begin: 1.0}}"
+    )
     assert load_protocol(path).steady_end == 5.0
     assert set(protocol_names()) >= {"walk", "t_test"}
 
@@ -69,8 +94,16 @@ def test_a_users_file_is_found_beside_the_shipped(write):
         ("{kind: t_test, order: A}", "order", "list of names"),
         ("{kind: t_test, arrival: 4.6}", "order", "unreachable"),
         ("{kind: t_test, points: {A: [0, 0], B: [0.3, 0]}, order: [A, B]}", "order", "unreachable"),
-        ("{kind: t_test, points: {A: [0, 0], B: [900, 0]}, order: [A, B]}", "time_limit", "too short"),
-        ("{kind: t_test, points: {A: [0, 0], B: far}, order: [A, B]}", "points.B", "vector of 2 numbers"),
+        (
+            "{kind: t_test, points: {A: [0, 0], B: [900, 0]}, order: [A, B]}",
+            "time_limit",
+            "too short",
+        ),
+        (
+            "{kind: t_test, points: {A: [0, 0], B: far}, order: [A, B]}",
+            "points.B",
+            "vector of 2 numbers",
+        ),
         ("{kind: t_test, points: {A: [0, .nan]}}", "points.A", "finite"),
         ("{kind: t_test, points: []}", "points", "names with places"),
     ],

@@ -11,7 +11,14 @@ from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import WalkProtocol
-from hyperleg_design.evaluation.result import by_seed, cycle_table, evaluation_of, motor_table, trial_table, write_results
+from hyperleg_design.evaluation.result import (
+    by_seed,
+    cycle_table,
+    evaluation_of,
+    motor_table,
+    trial_table,
+    write_results,
+)
 from hyperleg_design.evaluation.rollout import FELL
 from hyperleg_design.evaluation.walk import measure_walk
 
@@ -22,14 +29,20 @@ def evaluations(planned_trial, design):
     trials = [planned_trial, dataclasses.replace(planned_trial, outcome=FELL)]
     parts = [list(p) for p in zip(*(measure_walk(t, protocol) for t in trials), strict=True)]
     one = evaluation_of(standing(14), design, protocol, trials, *parts)
-    return [dataclasses.replace(one, policy=f"p{k}", seed=seed, steps=k) for k, seed in enumerate([0, 0, 1, -1, -1])]
+    return [
+        dataclasses.replace(one, policy=f"p{k}", seed=seed, steps=k)
+        for k, seed in enumerate([0, 0, 1, -1, -1])
+    ]
 
 
 def test_a_row_a_trial(evaluations):
     table = trial_table(evaluations)
     assert len(table) == 10
     assert table["outcome"].tolist() == ["arrived", "fell"] * 5
-    assert table.loc[0, "steady_cost_of_transport"] == evaluations[0].measures[0]["steady_cost_of_transport"]
+    assert (
+        table.loc[0, "steady_cost_of_transport"]
+        == evaluations[0].measures[0]["steady_cost_of_transport"]
+    )
     assert table["variant"].unique().tolist() == ["toe"]
 
 
@@ -75,8 +88,15 @@ def test_the_cycle_table_is_the_mean_over_strides(evaluations):
 
 def test_paths_lie_in_the_frame_of_the_start(planned_trial, turned_trial, design):
     protocol = WalkProtocol()
-    parts = [list(p) for p in zip(*(measure_walk(t, protocol) for t in (planned_trial, turned_trial)), strict=True)]
-    straight, turned = evaluation_of(standing(14), design, protocol, [planned_trial, turned_trial], *parts).paths
+    parts = [
+        list(p)
+        for p in zip(
+            *(measure_walk(t, protocol) for t in (planned_trial, turned_trial)), strict=True
+        )
+    ]
+    straight, turned = evaluation_of(
+        standing(14), design, protocol, [planned_trial, turned_trial], *parts
+    ).paths
     assert straight[0].tolist() == [0, 0]
     assert straight[-1, 0] > 20
     assert turned == pytest.approx(straight, abs=1e-9)
@@ -88,7 +108,13 @@ def test_results_are_written_whole_and_the_same_again(evaluations, tmp_path):
     import pandas as pd
 
     first, second = (write_results(tmp_path / name, evaluations) for name in ("a", "b"))
-    names = {"trials.parquet", "motors.parquet", "cycles.parquet", "paths.parquet", "evaluation.json"}
+    names = {
+        "trials.parquet",
+        "motors.parquet",
+        "cycles.parquet",
+        "paths.parquet",
+        "evaluation.json",
+    }
     assert {p.name for p in first.iterdir()} == names | {".hyperleg"}
     for name in names:
         assert (first / name).read_bytes() == (second / name).read_bytes()

@@ -29,7 +29,9 @@ def test_signals_are_continuous_and_carry_the_weight(environment):
         assert trial.samples == 100
         assert (trial.outcome, trial.end_time) == ("timed_out", 0.5)
         step = np.diff(trial.base_position, axis=0)
-        assert step == pytest.approx(0.005 * trial.base_velocity[1:], abs=1e-9)  # semi-implicit Euler
+        assert step == pytest.approx(
+            0.005 * trial.base_velocity[1:], abs=1e-9
+        )  # semi-implicit Euler
         assert trial.foot_load[40:].sum(-1).mean() == pytest.approx(trial.layout.weight, rel=0.1)
         assert trial.mass == pytest.approx(32.0, abs=0.01)
         motor = np.sum(trial.motor_torque * trial.motor_velocity, -1)
@@ -43,13 +45,17 @@ def test_a_fall_keeps_the_samples_before_it(environment):
     for trial in trials:
         assert trial.outcome == rollout.FELL
         assert trial.end_time == pytest.approx(trial.samples * 0.005 + 0.02)
-        assert trial.motor_torque[-1].any()  # the fall's own step, which was started anew, is not in it
+        assert trial.motor_torque[
+            -1
+        ].any()  # the fall's own step, which was started anew, is not in it
         assert np.all(trial.base_position[:, 2] > 0.55 - 0.05)
 
 
 def test_arrival_ends_a_trial_and_not_the_others(environment):
     made = environment(limits=Limits(duration=10))
-    trials = record(standing(14), made, 0.6, arrived=lambda first, now: np.array([True, False, True]))
+    trials = record(
+        standing(14), made, 0.6, arrived=lambda first, now: np.array([True, False, True])
+    )
     assert [t.outcome for t in trials] == ["arrived", "timed_out", "arrived"]
     assert [t.samples for t in trials] == [4, 120, 4]
 
@@ -71,7 +77,11 @@ def test_a_diverged_trial_is_reported_with_its_state(environment, monkeypatch):
     def diverge(self, position, velocity):
         found = plain(self, position, velocity)
         if self.episode_step[1] == 5:
-            found.append(Divergence(1, 5, "speed without bounds", position[1], velocity[1], self.action[1].copy()))
+            found.append(
+                Divergence(
+                    1, 5, "speed without bounds", position[1], velocity[1], self.action[1].copy()
+                )
+            )
             self._start(np.array([1]))
         return found
 
@@ -81,7 +91,9 @@ def test_a_diverged_trial_is_reported_with_its_state(environment, monkeypatch):
     assert [t.outcome for t in trials] == ["timed_out", "diverged", "timed_out"]
     assert trials[1].samples == 16
     assert trials[1].divergence.reason == "speed without bounds"
-    assert trials[1].divergence.position[2] == pytest.approx(trials[1].base_position[-1, 2], abs=0.01)
+    assert trials[1].divergence.position[2] == pytest.approx(
+        trials[1].base_position[-1, 2], abs=0.01
+    )
     assert trials[0].divergence is None
     assert terminations.ENDINGS[terminations.DIVERGED] == "diverged"
 

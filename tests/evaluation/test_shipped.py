@@ -1,4 +1,6 @@
-"""Shipped policies: names say group, design and seed, packing keeps what matters and nothing else."""
+"""Shipped policies: names say group, design and seed, packing keeps what matters and nothing
+else.
+"""
 
 from __future__ import annotations
 
@@ -18,15 +20,29 @@ def campaign(tmp_path, make_onnx):
     """Two finished trainings, one of which has late policies, and one that is at work."""
     content = make_onnx().read_bytes()
     place = tmp_path / "campaign"
-    for name, late in (("walk-toe-0", ("late_000800.onnx", "late_000900.onnx")), ("t_test-toe_removed_matched-11", ())):
+    for name, late in (
+        ("walk-toe-0", ("late_000800.onnx", "late_000900.onnx")),
+        ("t_test-toe_removed_matched-11", ()),
+    ):
         folder = place / name
         folder.mkdir(parents=True)
         for file in ("policy.onnx", *late):
             (folder / file).write_bytes(content)
         (folder / "run.json").write_text(json.dumps({"seed": 0}))
         (folder / "checkpoint.pt").write_bytes(b"x" * 10_000)
-        rows = [{"iteration": i, "steps": 10 * i, "reward": float(i), "speed": None, "losses": {"value": 1.0}} for i in range(1, 1001)]
-        (folder / "progress.jsonl").write_text("".join(json.dumps(r) + "\n" for r in rows) + '{"iteration": 10')
+        rows = [
+            {
+                "iteration": i,
+                "steps": 10 * i,
+                "reward": float(i),
+                "speed": None,
+                "losses": {"value": 1.0},
+            }
+            for i in range(1, 1001)
+        ]
+        (folder / "progress.jsonl").write_text(
+            "".join(json.dumps(r) + "\n" for r in rows) + '{"iteration": 10'
+        )
     (place / "walk-toe-1").mkdir()
     (place / "walk-toe-1" / "checkpoint.pt").write_bytes(b"x")
     (place / "notes").mkdir()
@@ -48,11 +64,24 @@ def test_policies_are_listed_by_group_design_seed_and_lateness(campaign):
 
 def test_a_packed_campaign_has_the_same_policies_and_little_else(campaign, tmp_path):
     found = shipped.pack(campaign, tmp_path / "packed")
-    assert [(p.training, p.policies) for p in found] == [("t_test-toe_removed_matched-11", 1), ("walk-toe-0", 3), ("walk-toe-1", 0)]
+    assert [(p.training, p.policies) for p in found] == [
+        ("t_test-toe_removed_matched-11", 1),
+        ("walk-toe-0", 3),
+        ("walk-toe-1", 0),
+    ]
     folder = tmp_path / "packed" / "walk-toe-0"
     names = {p.name for p in folder.iterdir()}
-    assert names == {".hyperleg", "policy.onnx", "late_000800.onnx", "late_000900.onnx", "run.json", "progress.jsonl"}
-    assert (folder / "policy.onnx").read_bytes() == (campaign / "walk-toe-0" / "policy.onnx").read_bytes()
+    assert names == {
+        ".hyperleg",
+        "policy.onnx",
+        "late_000800.onnx",
+        "late_000900.onnx",
+        "run.json",
+        "progress.jsonl",
+    }
+    assert (folder / "policy.onnx").read_bytes() == (
+        campaign / "walk-toe-0" / "policy.onnx"
+    ).read_bytes()
     assert found[1].size == sum(p.stat().st_size for p in folder.iterdir())
     before, after = (shipped.shipped_policies(p) for p in (campaign, tmp_path / "packed"))
     assert [(p.training, p.late) for p in before] == [(p.training, p.late) for p in after]
@@ -76,13 +105,18 @@ def test_a_training_of_a_name_is_found(campaign, tmp_path, monkeypatch):
     assert shipped.find_policy("walk-toe-0") == campaign / "walk-toe-0" / "policy.onnx"
     assert load_policy("walk-toe-0").seed == 3
     with pytest.raises(
-        InputError, match=r"walk-toe-7.*did you mean walk-toe-0\? Shipped, with their seeds: t_test-toe_removed_matched-11, walk-toe-0$"
+        InputError,
+        match=r"walk-toe-7.*did you mean walk-toe-0\? Shipped, with their seeds: "
+        r"t_test-toe_removed_matched-11, walk-toe-0$",
     ):
         shipped.find_policy("walk-toe-7")
 
 
 def test_seeds_of_a_name_are_told_together():
-    names = [shipped.Shipped("walk", design, seed, 0, Path()) for design, seed in (("a", 0), ("a", 1), ("a", 2), ("b", 0), ("b", 2), ("c", 4))]
+    names = [
+        shipped.Shipped("walk", design, seed, 0, Path())
+        for design, seed in (("a", 0), ("a", 1), ("a", 2), ("b", 0), ("b", 2), ("c", 4))
+    ]
     assert shipped._briefly(names) == "walk-a-0..2, walk-b-0, walk-b-2, walk-c-4"
 
 

@@ -1,4 +1,6 @@
-"""Intervals cover as often as they say, effect sizes are the textbook's, verdicts know what they cannot know."""
+"""Intervals cover as often as they say, effect sizes are the textbook's, verdicts know what they
+cannot know.
+"""
 
 from __future__ import annotations
 
@@ -14,16 +16,22 @@ def drawn(rng, seeds, trials, between, within, mean=0.0):
     return [mean + between * rng.normal() + within * rng.normal(size=trials) for _ in range(seeds)]
 
 
-@pytest.mark.parametrize(("between", "within", "most"), [(1.0, 0.1, 0.98), (1.0, 1.0, 0.99), (0.3, 1.0, 1.0)])
+@pytest.mark.parametrize(
+    ("between", "within", "most"), [(1.0, 0.1, 0.98), (1.0, 1.0, 0.99), (0.3, 1.0, 1.0)]
+)
 def test_the_interval_covers_the_truth_as_often_as_it_says(between, within, most):
     rng = np.random.default_rng(1)
-    found = [estimate(drawn(rng, 5, 10, between, within, 3.0), resamples=400, seed=i) for i in range(300)]
+    found = [
+        estimate(drawn(rng, 5, 10, between, within, 3.0), resamples=400, seed=i) for i in range(300)
+    ]
     covered = np.mean([f.low <= 3.0 <= f.high for f in found])
     assert 0.92 <= covered <= most
 
 
 def test_plain_percentiles_would_not_cover():
-    """Why the correction is there: percentiles of a bootstrap over five seeds miss far more than one in twenty."""
+    """Why the correction is there: percentiles of a bootstrap over five seeds miss far more than
+    one in twenty.
+    """
     rng = np.random.default_rng(2)
     hits = []
     for _ in range(300):
@@ -42,7 +50,9 @@ def test_no_difference_is_told_about_one_time_in_twenty(paired):
         common = rng.normal(size=5)
         a = [c * paired + x for c, x in zip(common, drawn(rng, 5, 10, 0.5, 0.5), strict=True)]
         b = [c * paired + x for c, x in zip(common, drawn(rng, 5, 10, 0.5, 0.5), strict=True)]
-        told.append(difference(a, b, paired=paired, resamples=400, seed=i).verdict == statistics.DIFFERS)
+        told.append(
+            difference(a, b, paired=paired, resamples=400, seed=i).verdict == statistics.DIFFERS
+        )
     assert np.mean(told) <= 0.085
 
 
@@ -67,7 +77,9 @@ def test_pairing_sees_what_a_common_spread_hides():
 
 
 def test_checkpoints_are_a_level_of_their_own():
-    """A seed's mean is that of its checkpoints' means, and their spread is drawn, not only that of pooled trials."""
+    """A seed's mean is that of its checkpoints' means, and their spread is drawn, not only that of
+    pooled trials.
+    """
     nested = [[np.full(10, 1.0), np.full(2, 4.0)], [np.full(3, 2.0)]]
     found = estimate(nested)
     assert found.mean == pytest.approx((2.5 + 2.0) / 2)
@@ -133,16 +145,22 @@ def test_bootstrap_error_is_that_of_theory():
     groups = drawn(np.random.default_rng(7), 6, 40, 1.0, 0.5)
     means = np.array([g.mean() for g in groups])
     theory = means.var(ddof=1) / 6 + np.mean([g.var() / 40 for g in groups]) / 6 * 6 / 5
-    assert estimate(groups, resamples=20_000).standard_error == pytest.approx(np.sqrt(theory), rel=0.03)
+    assert estimate(groups, resamples=20_000).standard_error == pytest.approx(
+        np.sqrt(theory), rel=0.03
+    )
 
 
 def test_groups_of_unequal_length_are_drawn_from_their_own_values():
     groups = [np.array([1.0, 2.0]), np.array([5.0] * 7), np.array([9.0])]
     rng = np.random.default_rng(8)
     for which, expected in ((0, 1.5), (1, 5.0), (2, 9.0)):
-        drawn_means = statistics._drawn_means([[g] for g in groups], np.full((20_000, 3), which), rng)
+        drawn_means = statistics._drawn_means(
+            [[g] for g in groups], np.full((20_000, 3), which), rng
+        )
         assert drawn_means.mean() == pytest.approx(expected, abs=0.01)
-        assert drawn_means.var() == pytest.approx(0.25 / 2 / 3 if which == 0 else 0, rel=0.05, abs=1e-12)
+        assert drawn_means.var() == pytest.approx(
+            0.25 / 2 / 3 if which == 0 else 0, rel=0.05, abs=1e-12
+        )
 
 
 def test_memory_stays_small_and_pieces_fit_together(monkeypatch):

@@ -20,7 +20,9 @@ PROTOCOL = TTestProtocol()
 
 @pytest.fixture(scope="module")
 def run(planned_trial):
-    """A pelvis that goes along the course at `SPEED`, `aside` of it; legs as in the planned walk."""
+    """A pelvis that goes along the course at `SPEED`, `aside` of it; legs as in the planned
+    walk.
+    """
 
     def made(aside=0.0, outcome=rollout.ARRIVED, share=1.0):
         course = PROTOCOL.course
@@ -77,22 +79,36 @@ def test_every_measure_is_described_and_none_besides(run):
 
 
 def test_standing_does_not_reach_a_waypoint(design):
-    found = evaluate_t_test(standing(14), PROTOCOL.changed(trials=3, time_limit=15), design=design, task=load_task("goal"))
+    found = evaluate_t_test(
+        standing(14),
+        PROTOCOL.changed(trials=3, time_limit=15),
+        design=design,
+        task=load_task("goal"),
+    )
     assert found.outcomes == ["fell"] * 3
     assert found.values("waypoints_reached").tolist() == [0] * 3
     assert np.isnan(found.values("time")).all()
 
 
 def test_the_course_is_the_protocols(design):
-    protocol = PROTOCOL.changed(points={"S": (1.0, 1.0), "G": (4.0, 1.0)}, order=("S", "G"), arrival=0.3)
+    protocol = PROTOCOL.changed(
+        points={"S": (1.0, 1.0), "G": (4.0, 1.0)}, order=("S", "G"), arrival=0.3
+    )
     task = t_test_task(load_task("goal"), protocol)
     assert task.commands.courses == (((3.0, 0.0),),)
     assert (task.commands.course_share, task.commands.arrival) == (1.0, 0.3)
 
 
 def test_simulation_and_measures_agree_on_arrivals(design):
-    """A waypoint so near that a falling robot reaches it: judged by the simulation and found in the record alike."""
-    protocol = PROTOCOL.changed(trials=6, points={"A": (0.0, 0.0), "B": (0.5, 0.0), "C": (3.0, 0.0)}, order=("A", "B", "C"), arrival=0.4)
+    """A waypoint so near that a falling robot reaches it: judged by the simulation and found in the
+    record alike.
+    """
+    protocol = PROTOCOL.changed(
+        trials=6,
+        points={"A": (0.0, 0.0), "B": (0.5, 0.0), "C": (3.0, 0.0)},
+        order=("A", "B", "C"),
+        arrival=0.4,
+    )
     found = evaluate_t_test(standing(14), protocol, design=design, task=load_task("goal"))
     times = found.values("waypoint_1")
     assert np.isfinite(times).any()
@@ -106,9 +122,20 @@ def test_simulation_and_measures_agree_on_arrivals(design):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda d: evaluate_t_test(standing(14), "walk", design=d, task=load_task("goal")), "kind t_test"),
-        (lambda d: evaluate_t_test(standing(14), WalkProtocol(), design=d, task=load_task("goal")), "kind t_test"),
-        (lambda d: evaluate_t_test(standing(14), design=d, task=load_task("walk")), "expects waypoints"),
+        (
+            lambda d: evaluate_t_test(standing(14), "walk", design=d, task=load_task("goal")),
+            "kind t_test",
+        ),
+        (
+            lambda d: evaluate_t_test(
+                standing(14), WalkProtocol(), design=d, task=load_task("goal")
+            ),
+            "kind t_test",
+        ),
+        (
+            lambda d: evaluate_t_test(standing(14), design=d, task=load_task("walk")),
+            "expects waypoints",
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused(design, call, message):

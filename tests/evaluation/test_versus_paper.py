@@ -1,4 +1,6 @@
-"""Printed numbers inside our intervals agree, others differ, what was not measured cannot be reproduced."""
+"""Printed numbers inside our intervals agree, others differ, what was not measured cannot be
+reproduced.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,12 @@ ITEM = paper.Printed("Table X", "time", "s", 10.0, 12.0, "time", "nothing is sta
 def table(toe, ablation, seeds=5, spread=0.1):
     rng = np.random.default_rng(0)
     rows = [
-        {"variant": variant, "policy": f"{variant}_{seed}", "seed": seed, "time": mean + spread * rng.normal()}
+        {
+            "variant": variant,
+            "policy": f"{variant}_{seed}",
+            "seed": seed,
+            "time": mean + spread * rng.normal(),
+        }
         for variant, mean in (("toe", toe), ("toe_removed_matched", ablation))
         for seed in range(seeds)
         for _ in range(10)
@@ -27,7 +34,12 @@ def table(toe, ablation, seeds=5, spread=0.1):
 
 def test_what_lies_in_the_interval_agrees():
     (row,) = paper_rows(table(10.0, 12.0), [ITEM])
-    assert (row.toe_verdict, row.ablation_verdict, row.change_verdict, row.why) == (AGREES, AGREES, AGREES, "")
+    assert (row.toe_verdict, row.ablation_verdict, row.change_verdict, row.why) == (
+        AGREES,
+        AGREES,
+        AGREES,
+        "",
+    )
     assert row.difference.verdict == DIFFERS
     assert row.difference.relative == pytest.approx(ITEM.change, abs=0.01)
 

@@ -1,4 +1,6 @@
-"""The walk protocol on a planned walk that the sizing room has measured, and in simulation with policies that cannot walk."""
+"""The walk protocol on a planned walk that the sizing room has measured, and in simulation with
+policies that cannot walk.
+"""
 
 from __future__ import annotations
 
@@ -35,11 +37,17 @@ def test_power_and_cost_of_transport_are_those_of_the_sizing_room(measured, plan
     assert found["steady_power"] == pytest.approx(whole["motor_side"], rel=1e-9)
     assert found["steady_joule_power"] == pytest.approx(whole["joule"], rel=1e-9)
     assert found["steady_mechanical_power"] == pytest.approx(whole["mechanical"], rel=1e-9)
-    assert found["steady_positive_power"] - found["steady_negative_power"] == pytest.approx(whole["mechanical_absolute"], rel=1e-9)
+    assert found["steady_positive_power"] - found["steady_negative_power"] == pytest.approx(
+        whole["mechanical_absolute"], rel=1e-9
+    )
     assert found["steady_battery_power"] == pytest.approx(whole["battery"], rel=1e-9)
     assert found["steady_cost_of_transport"] == pytest.approx(whole["cost_of_transport"], rel=1e-9)
-    assert found["steady_battery_cost_of_transport"] == pytest.approx(whole["cost_of_transport_battery"], rel=1e-9)
-    assert found["cost_of_transport"] == pytest.approx(whole["cost_of_transport"], rel=1e-3)  # its last stride is cut
+    assert found["steady_battery_cost_of_transport"] == pytest.approx(
+        whole["cost_of_transport_battery"], rel=1e-9
+    )
+    assert found["cost_of_transport"] == pytest.approx(
+        whole["cost_of_transport"], rel=1e-3
+    )  # its last stride is cut
 
 
 def test_gait_is_the_planned_one(measured):
@@ -52,7 +60,9 @@ def test_gait_is_the_planned_one(measured):
     assert found["duty_factor"] == pytest.approx((1 + PLAN.double_support) / 2, abs=0.01)
     assert found["duty_factor"] > found["heel_off"] > 0.4
     assert (found["flight"], found["alternation"], found["heel_or_flat"]) == (0, 1, 1)
-    assert found["heel_lead"] == pytest.approx(PLAN.foot_flat * PLAN.double_support * PLAN.step_time, abs=0.011)
+    assert found["heel_lead"] == pytest.approx(
+        PLAN.foot_flat * PLAN.double_support * PLAN.step_time, abs=0.011
+    )
     assert (found["arrived"], found["fell"], found["largest_tilt"], found["turned"]) == (1, 0, 0, 0)
 
 
@@ -72,7 +82,9 @@ def test_right_leg_power_is_half_of_a_symmetric_walk(measured, planned):
     means = measured[2].means
     assert means["total"] == pytest.approx(planned.power.motor_side / 2, rel=2e-3)
     assert means["joule"] == pytest.approx(planned.power.joule / 2, rel=2e-3)
-    assert sum(means[g] for g in ("hip", "knee", "ankle", "toe")) == pytest.approx(planned.power.mechanical / 2, rel=5e-3)
+    assert sum(means[g] for g in ("hip", "knee", "ankle", "toe")) == pytest.approx(
+        planned.power.mechanical / 2, rel=5e-3
+    )
 
 
 def test_every_measure_is_described_and_none_besides(measured):
@@ -91,7 +103,9 @@ def test_a_fall_has_no_steady_state_but_is_there(planned_trial):
 
 
 def test_a_diverged_trial_gives_no_number(planned_trial):
-    found, _, _ = measure_walk(dataclasses.replace(planned_trial, outcome=rollout.DIVERGED), WalkProtocol())
+    found, _, _ = measure_walk(
+        dataclasses.replace(planned_trial, outcome=rollout.DIVERGED), WalkProtocol()
+    )
     assert found.pop("diverged") == 1
     assert set(found) == set(measures.WALK) - {"diverged"}
     assert all(np.isnan(v) or v == 0 for v in found.values())
@@ -114,12 +128,21 @@ def test_standing_falls_and_falls_are_counted(design):
 
 
 def test_same_seed_same_bytes_whatever_the_threads(design):
-    protocol = WalkProtocol(trials=SMALLEST_SPLIT, distance=1.0, time_limit=1.2, steady=Steady(begin=0.5))  # so there are two chunks
+    protocol = WalkProtocol(
+        trials=SMALLEST_SPLIT, distance=1.0, time_limit=1.2, steady=Steady(begin=0.5)
+    )  # so there are two chunks
     actions = Scripted(0.3 * np.random.default_rng(0).normal(size=(200, 14)))
-    one, two = (evaluate_walk(actions, protocol, design=design, task=load_task("walk"), threads=n) for n in (1, 2))
+    one, two = (
+        evaluate_walk(actions, protocol, design=design, task=load_task("walk"), threads=n)
+        for n in (1, 2)
+    )
     for name in measures.WALK:
         assert np.array_equal(one.values(name), two.values(name), equal_nan=True)
-    assert all(np.array_equal(getattr(a, n), getattr(b, n)) for a, b in zip(one.trials, two.trials, strict=True) for n in rollout.SIGNALS)
+    assert all(
+        np.array_equal(getattr(a, n), getattr(b, n))
+        for a, b in zip(one.trials, two.trials, strict=True)
+        for n in rollout.SIGNALS
+    )
     other = evaluate_walk(actions, protocol.changed(seed=1), design=design, task=load_task("walk"))
     assert not np.array_equal(one.values("distance"), other.values("distance"))
 
@@ -141,13 +164,32 @@ def test_the_task_is_the_policys_under_the_protocol():
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda d: evaluate_walk(standing(14), "t_test", design=d, task=load_task("walk")), "kind walk"),
-        (lambda d: evaluate_walk(standing(14), TTestProtocol(), design=d, task=load_task("walk")), "kind walk"),
-        (lambda d: evaluate_walk(standing(14), SHORT, design=d, task=load_task("goal")), "expects velocity commands"),
+        (
+            lambda d: evaluate_walk(standing(14), "t_test", design=d, task=load_task("walk")),
+            "kind walk",
+        ),
+        (
+            lambda d: evaluate_walk(
+                standing(14), TTestProtocol(), design=d, task=load_task("walk")
+            ),
+            "kind walk",
+        ),
+        (
+            lambda d: evaluate_walk(standing(14), SHORT, design=d, task=load_task("goal")),
+            "expects velocity commands",
+        ),
         (lambda d: evaluate_walk(standing(14), SHORT, design=d), "task: is needed"),
         (lambda d: evaluate_walk(standing(14), SHORT), "design: is needed"),
-        (lambda d: evaluate_walk(standing(12), SHORT, design=d, task=load_task("walk")), "another robot"),
-        (lambda d: evaluate_walk(standing(14), SHORT.changed(heading_gain=1.0), design=d, task=load_task("walk")), "trained without turning"),
+        (
+            lambda d: evaluate_walk(standing(12), SHORT, design=d, task=load_task("walk")),
+            "another robot",
+        ),
+        (
+            lambda d: evaluate_walk(
+                standing(14), SHORT.changed(heading_gain=1.0), design=d, task=load_task("walk")
+            ),
+            "trained without turning",
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused(design, call, message):
@@ -157,8 +199,17 @@ def test_what_does_not_fit_is_refused(design, call, message):
 
 @pytest.fixture(scope="module")
 def march(design):
-    """A robot in simulation that lifts its legs by turns once a second, held upright and pulled along by the assist."""
-    protocol = WalkProtocol(speed=0.6, distance=3.0, time_limit=8.0, trials=2, start=Start(joint_position=0, tilt=0), steady=Steady(begin=0.5))
+    """A robot in simulation that lifts its legs by turns once a second, held upright and pulled
+    along by the assist.
+    """
+    protocol = WalkProtocol(
+        speed=0.6,
+        distance=3.0,
+        time_limit=8.0,
+        trials=2,
+        start=Start(joint_position=0, tilt=0),
+        steady=Steady(begin=0.5),
+    )
     layout = layout_of(design)
     phase = (np.arange(1, 401)[:, None] * 0.02 + np.array([0.0, 0.5])) % 1.0
     lift = np.where(phase < 0.5, np.sin(2 * np.pi * phase), 0.0)
@@ -171,9 +222,12 @@ def march(design):
         made.assist = Assist()
 
     trials = rollout.record(
-        Scripted(actions), environment, protocol.time_limit, before_step=help_along,
+        Scripted(actions),
+        environment,
+        protocol.time_limit,
+        before_step=help_along,
         arrived=lambda first, now: np.linalg.norm(now[:, :2] - first[:, :2], axis=-1) >= 3.0,
-    )  # fmt: skip
+    )
     return trials, [measure_walk(trial, protocol) for trial in trials]
 
 
@@ -182,10 +236,16 @@ def test_simulated_steps_are_found_as_they_were_commanded(march):
         assert trial.outcome == rollout.ARRIVED
         assert found["cadence"] == pytest.approx(2.0, rel=0.01)
         assert found["alternation"] == 1
-        assert found["step_length"] * found["cadence"] == pytest.approx(found["steady_speed"], rel=0.02)
+        assert found["step_length"] * found["cadence"] == pytest.approx(
+            found["steady_speed"], rel=0.02
+        )
         assert found["time"] == pytest.approx(trial.end_time, abs=0.02)
-        assert found["double_support"] + found["single_support"] + found["flight"] == pytest.approx(1)
-        assert found["duty_factor"] == pytest.approx((1 + found["double_support"] - found["flight"]) / 2, abs=0.01)
+        assert found["double_support"] + found["single_support"] + found["flight"] == pytest.approx(
+            1
+        )
+        assert found["duty_factor"] == pytest.approx(
+            (1 + found["double_support"] - found["flight"]) / 2, abs=0.01
+        )
 
 
 def test_simulated_impacts_bear_on_the_simulations_forces(march):
@@ -193,7 +253,9 @@ def test_simulated_impacts_bear_on_the_simulations_forces(march):
     assert 0.5 < found["grf_peak_body_weights"] < 4
     assert found["grf_peak"] < found["grf_raw_peak"] <= trial.foot_load.max()
     mean = trial.foot_load.sum(-1).mean() / trial.layout.weight
-    assert mean == pytest.approx(1.0, abs=0.05)  # the assist pulls forward and turns, it does not carry
+    assert mean == pytest.approx(
+        1.0, abs=0.05
+    )  # the assist pulls forward and turns, it does not carry
 
 
 def test_simulated_feet_drift_no_farther_than_they_slide(march):
@@ -202,11 +264,16 @@ def test_simulated_feet_drift_no_farther_than_they_slide(march):
 
 
 def test_drift_is_how_far_a_flat_foot_was_carried(planned_trial):
-    """Sliding at a speed while flat: the drift is speed times the time for which the foot is flat."""
+    """Sliding at a speed while flat: the drift is speed times the time for which the foot is
+    flat.
+    """
     protocol = WalkProtocol()
     time = np.arange(planned_trial.samples) * planned_trial.time_step
     moved = planned_trial.base_position + np.column_stack([0.1 * time, 0 * time, 0 * time])
-    plain, carried = (measure_walk(t, protocol)[0]["foot_drift"] for t in (planned_trial, dataclasses.replace(planned_trial, base_position=moved)))
+    plain, carried = (
+        measure_walk(t, protocol)[0]["foot_drift"]
+        for t in (planned_trial, dataclasses.replace(planned_trial, base_position=moved))
+    )
     contacts = foot_contacts(planned_trial, protocol.events)
     flat = (contacts.heel & contacts.forefoot)[:168, 0].sum() * 0.005
     assert plain < 0.002

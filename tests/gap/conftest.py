@@ -10,7 +10,10 @@ sys.path.insert(0, str(Path(__file__).parent))
 @pytest.fixture(scope="session")
 def real_logs() -> Path:
     """Folder of real hardware logs, which is not part of the repository."""
-    folder = Path(os.environ.get("HYPERLEG_DATA") or Path(__file__).resolve().parents[2].parent / "shared" / "data")
+    folder = Path(
+        os.environ.get("HYPERLEG_DATA")
+        or Path(__file__).resolve().parents[2].parent / "shared" / "data"
+    )
     if not folder.is_dir():
         pytest.skip(f"no real logs in {folder}; set HYPERLEG_DATA to their folder")
     return folder
@@ -34,8 +37,15 @@ def runs():
     """Logs of ten seconds of each of those robots at 200 Hz, without noise."""
     import robots
 
-    targets = {"pendulum": robots.waves(1, 0.4), "arm": robots.waves(6, 0.6, 0.1, 1.0), "coupled": robots.waves(2, [1.0, 1.0])}
-    return {name: robots.servo_run(getattr(robots, name.upper()), target, 10.0) for name, target in targets.items()}
+    targets = {
+        "pendulum": robots.waves(1, 0.4),
+        "arm": robots.waves(6, 0.6, 0.1, 1.0),
+        "coupled": robots.waves(2, [1.0, 1.0]),
+    }
+    return {
+        name: robots.servo_run(getattr(robots, name.upper()), target, 10.0)
+        for name, target in targets.items()
+    }
 
 
 @pytest.fixture(scope="session")
@@ -51,7 +61,9 @@ def viscous_ready(robot_files):
     """What causes are fitted on, of two logs of a coupled rig with viscous friction at its knee."""
     import diagnosed
 
-    return diagnosed.prepared(robot_files["coupled"], diagnosed.run("viscous", 0), diagnosed.run("viscous", 1))
+    return diagnosed.prepared(
+        robot_files["coupled"], diagnosed.run("viscous", 0), diagnosed.run("viscous", 1)
+    )
 
 
 @pytest.fixture(scope="session")
@@ -74,7 +86,9 @@ def judged(robot_files):
     from hyperleg_design.gap.screen import places
     from hyperleg_design.gap.thresholds import load_thresholds
 
-    ready = diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1)))
+    ready = diagnosed.prepared(
+        robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1))
+    )
     subject = ready.base.samples.sieves[0].signals.subject
     friction = ("viscous_friction", "coulomb_friction", "stribeck_friction", "torque_constant")
     return decide(ready.base, load_thresholds(), places(subject, friction))
@@ -88,5 +102,7 @@ def two_wrong(robot_files):
     from hyperleg_design.gap.judge import Judge
     from hyperleg_design.gap.thresholds import load_thresholds
 
-    ready = diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("both", s, session="a") for s in (0, 1)))
+    ready = diagnosed.prepared(
+        robot_files["coupled"], *(diagnosed.run("both", s, session="a") for s in (0, 1))
+    )
     return Judge(ready.base, load_thresholds(), 1)

@@ -14,15 +14,30 @@ from hyperleg_design.gap.thresholds import load_thresholds
 
 CHANGES = {
     "healthy": [],
-    "viscous": [('name="knee" axis="0 1 0" damping="0.03"', 'name="knee" axis="0 1 0" damping="0.33"')],
-    "dry": [('name="hip" axis="0 1 0" damping="0.05"', 'name="hip" axis="0 1 0" damping="0.05" frictionloss="0.8"')],
+    "viscous": [
+        ('name="knee" axis="0 1 0" damping="0.03"', 'name="knee" axis="0 1 0" damping="0.33"')
+    ],
+    "dry": [
+        (
+            'name="hip" axis="0 1 0" damping="0.05"',
+            'name="hip" axis="0 1 0" damping="0.05" frictionloss="0.8"',
+        )
+    ],
     "both": [
         ('name="knee" axis="0 1 0" damping="0.03"', 'name="knee" axis="0 1 0" damping="0.33"'),
-        ('name="hip" axis="0 1 0" damping="0.05"', 'name="hip" axis="0 1 0" damping="0.05" frictionloss="0.8"'),
+        (
+            'name="hip" axis="0 1 0" damping="0.05"',
+            'name="hip" axis="0 1 0" damping="0.05" frictionloss="0.8"',
+        ),
     ],
     "cubic": [],
-    "limited": [('name="m_front" tendon="front" ctrlrange="-4 4"', 'name="m_front" tendon="front" ctrlrange="-0.5 0.5"')],
-}  # fmt: skip
+    "limited": [
+        (
+            'name="m_front" tendon="front" ctrlrange="-4 4"',
+            'name="m_front" tendon="front" ctrlrange="-0.5 0.5"',
+        )
+    ],
+}
 
 
 def run(kind: str, seed: int, **metadata):
@@ -35,22 +50,35 @@ def run(kind: str, seed: int, **metadata):
     log = robots.servo_run(text, target, 12.0, **metadata)
     rng = np.random.default_rng([7, seed])
     noise = {"position": 5e-5, "velocity": 5e-3, "motor_torque": 5e-3}
-    signals = {c: v + rng.normal(0, noise[c.partition("/")[0]], len(v)) for c, v in log.signals.items()}
-    if kind == "cubic":  # a torque that no effect has, as if somebody pulled at the hip with a spring that hardens
+    signals = {
+        c: v + rng.normal(0, noise[c.partition("/")[0]], len(v)) for c, v in log.signals.items()
+    }
+    if (
+        kind == "cubic"
+    ):  # a torque that no effect has, as if somebody pulled at the hip with a spring that hardens
         q = log.column("position/hip")
-        signals["motor_torque/m_front"] = signals["motor_torque/m_front"] + 4.0 * (q - 0.0) ** 3 / 12
+        signals["motor_torque/m_front"] = (
+            signals["motor_torque/m_front"] + 4.0 * (q - 0.0) ** 3 / 12
+        )
         signals["motor_torque/m_back"] = signals["motor_torque/m_back"] + 4.0 * (q - 0.0) ** 3 / 12
     if kind == "limited":
         asked = np.array([target(t) for t in log.time])
-        signals |= {f"motor_torque_command/{motor}": asked[:, i] for i, motor in enumerate(("m_front", "m_back"))}
+        signals |= {
+            f"motor_torque_command/{motor}": asked[:, i]
+            for i, motor in enumerate(("m_front", "m_back"))
+        }
     return log.changed(signals=signals, name=f"{kind}_{seed}")
 
 
 def stamped_badly(seed: int):
-    """Targets and positions of two healthy servos, by a clock that is a quarter of a millisecond early or late."""
+    """Targets and positions of two healthy servos, by a clock that is a quarter of a millisecond
+    early or late.
+    """
     log = robots.servo_run(robots.SERVOS, robots.waves(2, [0.6, 0.8], seed=seed), 12.0)
     late = np.random.default_rng([8, seed]).uniform(-2.5e-4, 2.5e-4, len(log.time))
-    return robots.without(log, "velocity", "motor_torque").changed(time=log.time + late, name=f"stamped_badly_{seed}")
+    return robots.without(log, "velocity", "motor_torque").changed(
+        time=log.time + late, name=f"stamped_badly_{seed}"
+    )
 
 
 def conditioned(robot, *logs):
@@ -71,4 +99,10 @@ def in_episodes(share, *balances):
     group = np.tile((np.arange(1000) < 1000 * share).astype(int), len(balances))
     rows = tuple(SimpleNamespace(balance=balance) for balance in balances)
     row = np.repeat(np.arange(len(balances)), 1000)
-    return SimpleNamespace(rows=rows, row=row, group=group, episodic=np.array([False, True]), share=np.full(len(row), 0.5))
+    return SimpleNamespace(
+        rows=rows,
+        row=row,
+        group=group,
+        episodic=np.array([False, True]),
+        share=np.full(len(row), 0.5),
+    )

@@ -15,13 +15,22 @@ def rig_log(ticks=4000, step=0.005, seed=0, **metadata):
         position = 0.95 * size * np.sin(speed * (time - 0.03) + 0.05 * (time - 0.03) ** 2)
         velocity = np.gradient(position, time)
         torque = 20 * (target - position) - velocity
-        noise = {name: rng.normal(0, s, ticks) for name, s in (("p", 1e-4), ("v", 5e-3), ("t", 5e-3))}
+        noise = {
+            name: rng.normal(0, s, ticks) for name, s in (("p", 1e-4), ("v", 5e-3), ("t", 5e-3))
+        }
         signals |= {
-            f"position_target/{joint}": target, f"position/{joint}": position + noise["p"], f"velocity/{joint}": velocity + noise["v"],
-            f"motor_torque_command/{joint}": torque, f"motor_torque/{joint}": torque + noise["t"],
+            f"position_target/{joint}": target,
+            f"position/{joint}": position + noise["p"],
+            f"velocity/{joint}": velocity + noise["v"],
+            f"motor_torque_command/{joint}": torque,
+            f"motor_torque/{joint}": torque + noise["t"],
             f"motor_current/{joint}": torque / 0.5 + noise["t"],
-        }  # fmt: skip
-    given = {"gains": {"hip": (20.0, 1.0), "knee": (20.0, 1.0)}, "torque_constant": {"hip": 0.5, "knee": 0.5}, **metadata}
+        }
+    given = {
+        "gains": {"hip": (20.0, 1.0), "knee": (20.0, 1.0)},
+        "torque_constant": {"hip": 0.5, "knee": 0.5},
+        **metadata,
+    }
     return Log("rig", time, signals, Metadata(**given))
 
 

@@ -1,4 +1,6 @@
-"""Robots as other people write them, and logs of their simulation in plain MuJoCo, away from the code under test."""
+"""Robots as other people write them, and logs of their simulation in plain MuJoCo, away from the
+code under test.
+"""
 
 from __future__ import annotations
 
@@ -87,7 +89,7 @@ COUPLED = """
   </tendon>
   <actuator><motor name="m_front" tendon="front" ctrlrange="-4 4"/><motor name="m_back" tendon="back" ctrlrange="-4 4"/></actuator>
 </mujoco>
-"""
+"""  # noqa: E501
 
 SERVOS = """
 <mujoco model="servos">
@@ -112,7 +114,9 @@ SERVOS = """
 
 def without_missing_meshes(text: str) -> str:
     """The arm as its simulation can load it."""
-    return "\n".join(line for line in text.splitlines() if "mesh=" not in line and "<mesh" not in line).replace(' meshdir="nowhere"', "")
+    return "\n".join(
+        line for line in text.splitlines() if "mesh=" not in line and "<mesh" not in line
+    ).replace(' meshdir="nowhere"', "")
 
 
 def servo_run(text: str, target, duration: float, rate: float = 200.0, **metadata) -> Log:
@@ -135,13 +139,19 @@ def servo_run(text: str, target, duration: float, rate: float = 200.0, **metadat
         if step % every == 0:
             data.ctrl[:] = target(data.time)
             mujoco.mj_forward(model, data)
-            rows.append(np.concatenate([[data.time], data.qpos, data.qvel, data.ctrl, data.actuator_force]))
-        data.ctrl[:] = target(data.time + model.opt.timestep / 2)  # held for a step, so that of its middle
+            rows.append(
+                np.concatenate([[data.time], data.qpos, data.qvel, data.ctrl, data.actuator_force])
+            )
+        data.ctrl[:] = target(
+            data.time + model.opt.timestep / 2
+        )  # held for a step, so that of its middle
         mujoco.mj_step(model, data)
     table = np.array(rows)
     n, m = len(joints), len(motors)
     position, velocity, control, force = np.split(table[:, 1:], [n, 2 * n, 2 * n + m], 1)
-    signals = {f"position/{j}": position[:, i] for i, j in enumerate(joints)} | {f"velocity/{j}": velocity[:, i] for i, j in enumerate(joints)}
+    signals = {f"position/{j}": position[:, i] for i, j in enumerate(joints)} | {
+        f"velocity/{j}": velocity[:, i] for i, j in enumerate(joints)
+    }
     signals |= {f"motor_torque/{a}": force[:, i] for i, a in enumerate(motors)}
     if m == n and (model.actuator_biastype != 0).all():
         signals |= {f"position_target/{j}": control[:, i] for i, j in enumerate(joints)}
@@ -155,7 +165,9 @@ def waves(count: int, amplitude, slow: float = 0.2, fast: float = 1.5, seed: int
 
     def at(time: float) -> np.ndarray:
         ramp = 1 - np.exp(-((time / 0.5) ** 2))
-        return ramp * np.asarray(amplitude) / 3 * np.sin(2 * np.pi * frequency * time + phase).sum(0)
+        return (
+            ramp * np.asarray(amplitude) / 3 * np.sin(2 * np.pi * frequency * time + phase).sum(0)
+        )
 
     return at
 
@@ -170,12 +182,17 @@ def swift(seed: int):
 
 def quantised(log: Log, size: float) -> Log:
     """Positions rounded to a grid, velocities taken out."""
-    signals = {c: np.round(v / size) * size if c.startswith("position/") else v for c, v in log.signals.items() if not c.startswith("velocity/")}
+    signals = {
+        c: np.round(v / size) * size if c.startswith("position/") else v
+        for c, v in log.signals.items()
+        if not c.startswith("velocity/")
+    }
     return log.changed(signals=signals)
 
 
 def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
-    """Our biped bending its knees, standing or thrown up, in plain MuJoCo at half a millisecond; all a log can hold.
+    """Our biped bending its knees, standing or thrown up, in plain MuJoCo at half a millisecond;
+    all a log can hold.
 
     Args:
         height: of the soles over the floor at the start [m]; above 0 it also turns.
@@ -193,7 +210,9 @@ def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
     data = mujoco.MjData(model)
     data.qpos[7:] = subject.default
     mujoco.mj_kinematics(model, data)
-    data.qpos[2] += height - 0.0005 - min(data.geom(p.name).xpos[2] - p.radius for p in subject.pads)
+    data.qpos[2] += (
+        height - 0.0005 - min(data.geom(p.name).xpos[2] - p.radius for p in subject.pads)
+    )
     data.qvel[3:6] = [0.5, -0.3, 0.2] if height else 0.0
     stiffness, damping = subject.gains.T
     pads = [p.name for p in subject.pads]
@@ -202,7 +221,9 @@ def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
         bend = np.array([0, 0, -1, 2, -1, 0, 0] * 2) * 0.08 * np.sin(2 * np.pi * 0.8 * data.time)
         torque = stiffness * (subject.default + bend - data.qpos[7:]) - damping * data.qvel[6:]
         data.qfrc_applied[6:] = torque
-        model.dof_damping[6:] = friction_damping(subject.coulomb, subject.viscous, data.qvel[6:], subject.friction_speed)
+        model.dof_damping[6:] = friction_damping(
+            subject.coulomb, subject.viscous, data.qvel[6:], subject.friction_speed
+        )
         if step % 10 == 0:
             mujoco.mj_forward(model, data)
             felt = data.xmat[1].reshape(3, 3).T @ (data.qacc[:3] - model.opt.gravity)
@@ -212,25 +233,53 @@ def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
                 mujoco.mj_contactForce(model, data, number, wrench)
                 force = contact.frame.reshape(3, 3).T @ wrench[:3]
                 first, second = (model.geom(g).name for g in (contact.geom1, contact.geom2))
-                pushed[pads.index(second if second in pads else first)] += force if second in pads else -force
-            state = [[data.time], data.qpos, data.qvel, torque, subject.default + bend, felt, pushed.ravel()]
+                pushed[pads.index(second if second in pads else first)] += (
+                    force if second in pads else -force
+                )
+            state = [
+                [data.time],
+                data.qpos,
+                data.qvel,
+                torque,
+                subject.default + bend,
+                felt,
+                pushed.ravel(),
+            ]
             rows.append(np.concatenate(state))
         mujoco.mj_step(model, data)
-    time, place, turn, q, v, spin, _, torque, target, felt, force = np.split(np.array(rows), np.cumsum([1, 3, 4, 14, 3, 3, 14, 14, 14, 3]), 1)
+    time, place, turn, q, v, spin, _, torque, target, felt, force = np.split(
+        np.array(rows), np.cumsum([1, 3, 4, 14, 3, 3, 14, 14, 14, 3]), 1
+    )
     columns = [(f"position/{j}", q[:, i]) for i, j in enumerate(subject.joints)] + [
         (f"joint_torque/{j}", torque[:, i]) for i, j in enumerate(subject.joints)
     ]
     columns += [(f"position_target/{j}", target[:, i]) for i, j in enumerate(subject.joints)]
-    for kind, values in (("base_position", place), ("base_velocity", v), ("gyro", spin), ("accelerometer", felt)):
+    for kind, values in (
+        ("base_position", place),
+        ("base_velocity", v),
+        ("gyro", spin),
+        ("accelerometer", felt),
+    ):
         columns += [(f"{kind}/{axis}", values[:, i]) for i, axis in enumerate("xyz")]
     columns += [(f"base_orientation/{axis}", turn[:, i]) for i, axis in enumerate("wxyz")]
-    columns += [(f"contact_force/{p}_{axis}", force[:, 3 * k + i]) for k, p in enumerate(pads) for i, axis in enumerate("xyz")]
-    return Log("biped", time[:, 0], dict(columns), Metadata(**{"robot": "hyperleg", "base": "floating", **metadata}))
+    columns += [
+        (f"contact_force/{p}_{axis}", force[:, 3 * k + i])
+        for k, p in enumerate(pads)
+        for i, axis in enumerate("xyz")
+    ]
+    return Log(
+        "biped",
+        time[:, 0],
+        dict(columns),
+        Metadata(**{"robot": "hyperleg", "base": "floating", **metadata}),
+    )
 
 
 def without(log: Log, *kinds: str) -> Log:
     """A log that lacks some signals."""
-    return log.changed(signals={c: v for c, v in log.signals.items() if c.partition("/")[0] not in kinds})
+    return log.changed(
+        signals={c: v for c, v in log.signals.items() if c.partition("/")[0] not in kinds}
+    )
 
 
 GEARS = np.array([9.0, -6.0])
@@ -241,11 +290,13 @@ GEARED = """
 <inertial pos="0 0 -0.15" mass="3" diaginertia="0.03 0.03 0.004"/>
 <body name="shank" pos="0 0 -0.35"><joint name="knee" axis="0 1 0" damping="0.2" frictionloss="0.2" armature="0.02"/>
 <inertial pos="0 0 -0.15" mass="1.5" diaginertia="0.015 0.015 0.002"/></body></body></worldbody>
-<actuator><motor name="a" joint="hip" gear="9" ctrlrange="-12 12"/><motor name="b" joint="knee" gear="-6" ctrlrange="-8 8"/></actuator></mujoco>"""
+<actuator><motor name="a" joint="hip" gear="9" ctrlrange="-12 12"/><motor name="b" joint="knee" gear="-6" ctrlrange="-8 8"/></actuator></mujoco>"""  # noqa: E501
 
 
 def geared_run(side, names, *, weak=1.0, load=0.0, constant=None, seed=0, **metadata):
-    """A log of `GEARED`, torques and speeds of the motors as of one side of their gears; a weak hip, a load on the shank [kg]."""
+    """A log of `GEARED`, torques and speeds of the motors as of one side of their gears; a weak
+    hip, a load on the shank [kg].
+    """
     model = mujoco.MjModel.from_xml_string(GEARED)
     shank = model.body("shank").id
     model.body_mass[shank] += load  # at its centre of mass
@@ -253,7 +304,9 @@ def geared_run(side, names, *, weak=1.0, load=0.0, constant=None, seed=0, **meta
     phase, rows = rng.uniform(0, 6, (3, 2)), []
     for step in range(10000):
         time = step * 0.001
-        waves = np.sin(2 * np.pi * np.array([[0.17], [0.6], [1.3]]) * time + phase) * np.array([[0.5], [0.3], [0.1]])
+        waves = np.sin(2 * np.pi * np.array([[0.17], [0.6], [1.3]]) * time + phase) * np.array(
+            [[0.5], [0.3], [0.1]]
+        )
         target = waves.sum(0) * min(time, 1.0)
         if step % 5 == 0:
             asked = GAINS[:, 0] * (target - data.qpos) - GAINS[:, 1] * data.qvel
@@ -265,11 +318,27 @@ def geared_run(side, names, *, weak=1.0, load=0.0, constant=None, seed=0, **meta
     gear = GEARS if side == "motor" else np.ones(2)
     signals = {}
     for i, joint in enumerate(("hip", "knee")):
-        signals |= {f"position_target/{joint}": table[:, 1 + i], f"position/{joint}": table[:, 3 + i], f"velocity/{joint}": table[:, 5 + i]}
+        signals |= {
+            f"position_target/{joint}": table[:, 1 + i],
+            f"position/{joint}": table[:, 3 + i],
+            f"velocity/{joint}": table[:, 5 + i],
+        }
         torque = table[:, 7 + i] / gear[i]
-        signals |= {f"motor_torque_command/{names[i]}": torque, f"motor_velocity/{names[i]}": table[:, 5 + i] * gear[i]}
+        signals |= {
+            f"motor_torque_command/{names[i]}": torque,
+            f"motor_velocity/{names[i]}": table[:, 5 + i] * gear[i],
+        }
         told = torque + 5e-3 * rng.normal(size=len(torque))
-        signals |= {f"motor_torque/{names[i]}": told} if constant is None else {f"motor_current/{names[i]}": told / constant}
+        signals |= (
+            {f"motor_torque/{names[i]}": told}
+            if constant is None
+            else {f"motor_current/{names[i]}": told / constant}
+        )
     gains = dict(zip(("hip", "knee"), map(tuple, GAINS), strict=True))
     constants = {} if constant is None else dict.fromkeys(names, constant)
-    return Log(f"geared_{seed}", table[:, 0], signals, Metadata(gains=gains, torque_constant=constants, **metadata))
+    return Log(
+        f"geared_{seed}",
+        table[:, 0],
+        signals,
+        Metadata(gains=gains, torque_constant=constants, **metadata),
+    )

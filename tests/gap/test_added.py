@@ -6,7 +6,11 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation.protocol import load_protocol, protocol_from_mapping, protocol_mapping
+from hyperleg_design.evaluation.protocol import (
+    load_protocol,
+    protocol_from_mapping,
+    protocol_mapping,
+)
 from hyperleg_design.gap import added
 from hyperleg_design.gap.overlay import Overlay
 from hyperleg_design.report.gap_text import changed_text, replayed_text
@@ -42,7 +46,13 @@ def test_a_mapping_has_no_nan(signals):
 @pytest.mark.slow
 def test_a_stiff_knee_costs_a_walk_energy():
     short = protocol_from_mapping({**protocol_mapping(load_protocol("walk")), "trials": 2}, "short")
-    overlay = Overlay("hyperleg", {("coulomb_friction", "left_knee"): {"torque": 3.0}, ("coulomb_friction", "right_knee"): {"torque": 3.0}})
+    overlay = Overlay(
+        "hyperleg",
+        {
+            ("coulomb_friction", "left_knee"): {"torque": 3.0},
+            ("coulomb_friction", "right_knee"): {"torque": 3.0},
+        },
+    )
     rows = {row.measure: row for row in added.walked("walk-toe-0", overlay, short, workers=1)}
     assert rows["power"].difference > 0
     assert np.isclose(rows["power"].difference, rows["power"].after - rows["power"].before)

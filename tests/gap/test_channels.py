@@ -11,7 +11,9 @@ from hyperleg_design.gap.log import Log
 def test_what_is_unknown_stays_unknown_only_where_it_is_needed():
     matrix = np.array([[1.0, 2.0, 0.0], [0.0, 0.0, 3.0]])
     values = np.array([[1.0, 1.0, 1.0], [1.0, np.nan, 1.0], [np.nan, np.nan, np.nan]])
-    assert np.array_equal(applied(matrix, values), [[3.0, 3.0], [np.nan, 3.0], [np.nan, np.nan]], equal_nan=True)
+    assert np.array_equal(
+        applied(matrix, values), [[3.0, 3.0], [np.nan, 3.0], [np.nan, np.nan]], equal_nan=True
+    )
 
 
 @given(st.integers(0, 1000))
@@ -31,7 +33,19 @@ def test_a_slow_channel_is_interpolated_and_a_gap_is_not():
 
 
 def test_signals_of_motors_are_found_under_either_name_and_brought_to_the_robots_side_of_gears():
-    subject = SimpleNamespace(motors=("hip", "knee"), motor_aliases=("a", "knee"), motor_scale={"motor_torque": np.array([10.0, -2.0])})
-    log = Log("run", np.arange(3.0), {"position/hip": np.zeros(3), "motor_torque/a": np.ones(3), "motor_torque/knee": np.ones(3)})
+    subject = SimpleNamespace(
+        motors=("hip", "knee"),
+        motor_aliases=("a", "knee"),
+        motor_scale={"motor_torque": np.array([10.0, -2.0])},
+    )
+    log = Log(
+        "run",
+        np.arange(3.0),
+        {
+            "position/hip": np.zeros(3),
+            "motor_torque/a": np.ones(3),
+            "motor_torque/knee": np.ones(3),
+        },
+    )
     assert np.array_equal(of_motors(log, "motor_torque", subject), np.tile([10.0, -2.0], (3, 1)))
     assert np.isnan(of_motors(log, "motor_current", subject)).all()

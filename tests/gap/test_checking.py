@@ -11,13 +11,20 @@ from hyperleg_design.gap.log import read_log, write_log
 
 
 def test_logs_are_checked_and_converted(tmp_path):
-    (tmp_path / "a.csv").write_text("stamp,q1\n" + "".join(f"{i * 0.01},{np.sin(i * 0.01)}\n" for i in range(500)))
-    checks = check_sources([tmp_path / "a.csv"], mapping=["stamp=t", "q1=position/knee"], out=tmp_path / "out")
+    (tmp_path / "a.csv").write_text(
+        "stamp,q1\n" + "".join(f"{i * 0.01},{np.sin(i * 0.01)}\n" for i in range(500))
+    )
+    checks = check_sources(
+        [tmp_path / "a.csv"], mapping=["stamp=t", "q1=position/knee"], out=tmp_path / "out"
+    )
     assert [c.name for c in checks] == ["a"]
     assert not checks[0].usable  # no target, no torque
     (content,) = json.loads((tmp_path / "out" / "check.json").read_text())
     assert content["usable"] is False
-    np.testing.assert_allclose(read_log(tmp_path / "out" / "a.parquet").signals["position/knee"], np.sin(np.arange(500) * 0.01))
+    np.testing.assert_allclose(
+        read_log(tmp_path / "out" / "a.parquet").signals["position/knee"],
+        np.sin(np.arange(500) * 0.01),
+    )
 
 
 def test_names_of_files_are_kept_apart(tmp_path):
@@ -25,7 +32,10 @@ def test_names_of_files_are_kept_apart(tmp_path):
         write_log(tmp_path / folder / "run.parquet", rig_log())
     checks = check_sources([tmp_path / "x", tmp_path / "y"], out=tmp_path / "out")
     assert [c.name for c in checks] == ["run", "run"]
-    assert sorted(p.name for p in (tmp_path / "out").glob("*.parquet")) == ["run.parquet", "run_1.parquet"]
+    assert sorted(p.name for p in (tmp_path / "out").glob("*.parquet")) == [
+        "run.parquet",
+        "run_1.parquet",
+    ]
 
 
 def test_the_robot_that_a_log_names_is_found_beside_it(tmp_path, robot_files):
@@ -78,7 +88,9 @@ def test_a_simulation_passes_the_check_against_its_own_robot(tmp_path):
 
     environment = Environment(load_design(), load_task("walk"), simulations=1, threads=1)
     steps = iter(range(200))
-    recording = rollout(environment, lambda o: np.full((1, 14), 0.2 * np.sin(0.3 * next(steps))), 120)
+    recording = rollout(
+        environment, lambda o: np.full((1, 14), 0.2 * np.sin(0.3 * next(steps))), 120
+    )
     path = write_log(tmp_path / "run.parquet", log_of_recording(environment, recording))
     (check,) = check_sources([path])
     assert check.usable

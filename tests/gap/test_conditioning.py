@@ -19,7 +19,10 @@ def share(signals, balance="motion"):
     return np.sqrt(np.nanmean(residual**2, 0)) / np.sqrt(np.mean(torque[signals.valid] ** 2, 0))
 
 
-@pytest.mark.parametrize(("name", "clean", "rough"), [("pendulum", 1e-4, 0.02), ("arm", 0.02, 0.02), ("coupled", 1e-3, 0.08)])
+@pytest.mark.parametrize(
+    ("name", "clean", "rough"),
+    [("pendulum", 1e-4, 0.02), ("arm", 0.02, 0.02), ("coupled", 1e-3, 0.08)],
+)
 def test_motion_balance_of_a_simulated_robot_vanishes(robot_files, runs, name, clean, rough):
     log = runs[name]
     assert share(condition(log, load_subject(robot_files[name], [log]))).max() < clean
@@ -50,10 +53,18 @@ def test_torques_from_currents_and_joint_torques(robot_files, runs):
     subject = load_subject(robot_files["coupled"], [log])
     torque = log.stack("motor_torque", ("m_front", "m_back"))
     kept = {c: v for c, v in log.signals.items() if c.startswith("position/")}
-    current = {f"motor_current/{m}": torque[:, i] / 0.25 for i, m in enumerate(("m_front", "m_back"))}
-    joint = {f"joint_torque/{j}": (torque @ subject.joint_from_motor.T)[:, i] for i, j in enumerate(subject.joints)}
+    current = {
+        f"motor_current/{m}": torque[:, i] / 0.25 for i, m in enumerate(("m_front", "m_back"))
+    }
+    joint = {
+        f"joint_torque/{j}": (torque @ subject.joint_from_motor.T)[:, i]
+        for i, j in enumerate(subject.joints)
+    }
     declared = Metadata(torque_constant={"m_front": 0.25, "m_back": 0.25})
-    for signals in (condition(Log("c", log.time, kept | current, declared), subject), condition(Log("j", log.time, kept | joint), subject)):
+    for signals in (
+        condition(Log("c", log.time, kept | current, declared), subject),
+        condition(Log("j", log.time, kept | joint), subject),
+    ):
         np.testing.assert_allclose(signals.measured, torque, atol=1e-9)
         assert signals.command is None
     with pytest.raises(InputError, match="torque_constant"):
@@ -65,7 +76,9 @@ def test_targets_with_gains_stand_in_for_torques(robot_files, runs):
     kept = {c: v for c, v in log.signals.items() if not c.startswith("motor_torque/")}
     signals = condition(Log("t", log.time, kept), load_subject(robot_files["arm"]))
     assert signals.measured is None
-    np.testing.assert_allclose(signals.believed, log.stack("motor_torque", ("a1", "a2", "a3", "a4", "a5", "a6")), atol=1e-6)
+    np.testing.assert_allclose(
+        signals.believed, log.stack("motor_torque", ("a1", "a2", "a3", "a4", "a5", "a6")), atol=1e-6
+    )
     bare = {c: v for c, v in kept.items() if c.startswith("position/")}
     with pytest.raises(InputError, match="tells the torque of no motor"):
         condition(Log("t", log.time, bare), load_subject(robot_files["arm"]))
@@ -110,18 +123,30 @@ def test_too_short_or_of_another_robot(robot_files, runs):
 
 def test_units_of_the_rows(robot_files, runs):
     signals = condition(runs["coupled"], load_subject(robot_files["coupled"]))
-    assert signals.position.shape == signals.rigid.shape == signals.residual["motion"].shape == (2000, 2)
+    assert (
+        signals.position.shape
+        == signals.rigid.shape
+        == signals.residual["motion"].shape
+        == (2000, 2)
+    )
     assert signals.believed.shape == (2000, 2)
     assert signals.bandwidth.shape == (2,)
 
 
 def test_stops_push_with_a_force_that_nobody_knows(robot_files, runs, tmp_path):
-    """Range that ends inside the motion: rows there are unknown; a range that is exceeded by far is none."""
+    """Range that ends inside the motion: rows there are unknown; a range that is exceeded by far is
+    none.
+    """
     log = runs["pendulum"]
     position = log.column("position/swing")
     for margin, hits in ((0.05, True), (0.3, False)):
         high = position.max() - margin
-        text = robots.PENDULUM.replace('name="swing"', f'name="swing" limited="true" range="-200 {np.rad2deg(high)}"')
+        text = robots.PENDULUM.replace(
+            'name="swing"', f'name="swing" limited="true" range="-200 {np.rad2deg(high)}"'
+        )
         (tmp_path / "stop.xml").write_text(text)
         signals = condition(log, load_subject(tmp_path / "stop.xml"))
-        np.testing.assert_array_equal(np.isnan(signals.residual["motion"][:, 0]), hits & (signals.position[:, 0] > high - 0.003))
+        np.testing.assert_array_equal(
+            np.isnan(signals.residual["motion"][:, 0]),
+            hits & (signals.position[:, 0] > high - 0.003),
+        )

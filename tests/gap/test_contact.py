@@ -37,7 +37,12 @@ def test_without_forces_stance_is_unknown_and_flight_is_not(biped_runs):
 def test_a_foot_in_the_air_keeps_its_rows(biped_runs):
     """Right leg drawn up: forward kinematics alone says that only the left may touch."""
     log = robots.without(biped_runs["standing"], "contact_force")
-    lifted = log.changed(signals={c: v + {"position/right_knee": 0.8, "position/right_hip_pitch": -0.4}.get(c, 0.0) for c, v in log.signals.items()})
+    lifted = log.changed(
+        signals={
+            c: v + {"position/right_knee": 0.8, "position/right_hip_pitch": -0.4}.get(c, 0.0)
+            for c, v in log.signals.items()
+        }
+    )
     signals = conditioned(lifted)
     joints = signals.subject.joints
     right = [i for i, j in enumerate(joints) if j.startswith("right")]
@@ -51,7 +56,11 @@ def test_total_of_a_foot_with_several_pads_has_no_known_place(biped_runs):
     signals = {c: v for c, v in log.signals.items() if not c.startswith("contact_force/")}
     for side in ("left", "right"):
         for axis in "xyz":
-            pads = [v for c, v in log.signals.items() if c.startswith(f"contact_force/{side}") and c.endswith(f"_{axis}")]
+            pads = [
+                v
+                for c, v in log.signals.items()
+                if c.startswith(f"contact_force/{side}") and c.endswith(f"_{axis}")
+            ]
             signals[f"contact_force/{side}_foot_{axis}"] = np.sum(pads, 0)
     found = conditioned(log.changed(signals=signals))
     np.testing.assert_allclose(found.contact, conditioned(log).contact, atol=1e-9)

@@ -20,7 +20,9 @@ def test_commands_as_declared_leave_nothing():
 def test_other_gains_leave_their_difference():
     logged = (0.8 * SPRING + 1.3 * DAMPER) @ SUBJECT.motor_from_joint.T
     found, others = control_residual(SUBJECT, logged, SPRING, DAMPER)
-    np.testing.assert_allclose(found, (-0.2 * SPRING + 0.3 * DAMPER) @ SUBJECT.motor_from_joint.T, atol=1e-12)
+    np.testing.assert_allclose(
+        found, (-0.2 * SPRING + 0.3 * DAMPER) @ SUBJECT.motor_from_joint.T, atol=1e-12
+    )
     assert others == ()
 
 

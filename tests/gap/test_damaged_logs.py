@@ -1,4 +1,6 @@
-"""Damaged logs of a healthy robot: a clear error, or an answer that says less; never a confident wrong cause."""
+"""Damaged logs of a healthy robot: a clear error, or an answer that says less; never a confident
+wrong cause.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,12 @@ def gaps(signals, time):
 
 def some_unknown(signals, time):
     """A channel that comes and goes."""
-    return {**signals, "motor_torque/m_front": np.where((time % 0.4) < 0.1, np.nan, signals["motor_torque/m_front"])}
+    return {
+        **signals,
+        "motor_torque/m_front": np.where(
+            (time % 0.4) < 0.1, np.nan, signals["motor_torque/m_front"]
+        ),
+    }
 
 
 def no_velocities(signals, time):
@@ -35,7 +42,10 @@ def no_velocities(signals, time):
 def two_rates(signals, time):
     """Torques at a fifth of the rate, empty between."""
     rare = np.arange(len(time)) % 5 != 0
-    return {c: np.where(rare, np.nan, v) if c.startswith("motor_torque/") else v for c, v in signals.items()}
+    return {
+        c: np.where(rare, np.nan, v) if c.startswith("motor_torque/") else v
+        for c, v in signals.items()
+    }
 
 
 def saturated(signals, time):
@@ -58,7 +68,11 @@ def frozen_position(signals, time):
 
 
 def swapped(signals, time):
-    return {**signals, "position/hip": signals["position/knee"], "position/knee": signals["position/hip"]}
+    return {
+        **signals,
+        "position/hip": signals["position/knee"],
+        "position/knee": signals["position/hip"],
+    }
 
 
 def degrees(signals, time):
@@ -68,7 +82,9 @@ def degrees(signals, time):
 def coarse(signals, time):
     """Positions in steps of a third of a degree."""
     step = np.radians(1 / 3)
-    return {c: np.round(v / step) * step if c.startswith("position/") else v for c, v in signals.items()}
+    return {
+        c: np.round(v / step) * step if c.startswith("position/") else v for c, v in signals.items()
+    }
 
 
 REFUSED = (flat_velocity, swapped, degrees)
@@ -80,7 +96,10 @@ WRONG = (saturated, frozen_position)
 @pytest.mark.parametrize("damage", REFUSED)
 def test_what_cannot_be_right_is_refused(robot_files, healthy, damage):
     with pytest.raises(InputError, match=r"velocity|position"):
-        diagnose(robot_files["coupled"], [healthy.changed(signals=damage(dict(healthy.signals), healthy.time))])
+        diagnose(
+            robot_files["coupled"],
+            [healthy.changed(signals=damage(dict(healthy.signals), healthy.time))],
+        )
 
 
 @pytest.mark.parametrize("damage", ENDURED)
@@ -92,7 +111,11 @@ def test_what_is_lacking_names_no_cause(robot_files, healthy, damage):
 @pytest.mark.parametrize("damage", WRONG)
 def test_broken_sensors_are_told_or_lead_nowhere(robot_files, healthy, damage):
     log = healthy.changed(signals=damage(dict(healthy.signals), healthy.time))
-    told = [f"{f.signal} {f.what}" for f in check_log(log).findings if f.severity in ("warning", "error")]
+    told = [
+        f"{f.signal} {f.what}"
+        for f in check_log(log).findings
+        if f.severity in ("warning", "error")
+    ]
     found = diagnose(robot_files["coupled"], [log])
     if found.verdict in ("explained", "ambiguous"):
         assert told

@@ -56,14 +56,20 @@ def test_causes_that_leave_far_more_than_the_floor_must_close_most_of_it(judged)
     rules = judge.thresholds
     closed = judge.closed(found.model.held, found.rows, found.model.held)
     strict = replace(rules, far=0.0, far_required=1.01 * closed)
-    for several, verdict in ((strict, "unknown"), (replace(strict, far_required=0.5 * closed), "explained")):
+    for several, verdict in (
+        (strict, "unknown"),
+        (replace(strict, far_required=0.5 * closed), "explained"),
+    ):
         assert _verdict(replace(judge, thresholds=several), found.model, found.rows, ()) == verdict
 
 
 def test_several_drives_at_limits_that_nobody_declared_have_something_else_in_common(judged):
     judge, found = judged
     limit = replace(found.model.causes[0], effect="torque_saturation")
-    for causes, verdict in (((limit,), "explained"), ((limit, replace(limit, location="hip")), "unknown")):
+    for causes, verdict in (
+        ((limit,), "explained"),
+        ((limit, replace(limit, location="hip")), "unknown"),
+    ):
         assert _verdict(judge, replace(found.model, causes=causes), found.rows, ()) == verdict
 
 
@@ -73,7 +79,15 @@ def test_a_belt_may_leave_more_of_a_large_gap_than_other_causes(judged):
     strict = replace(judge.thresholds, far=0.0, far_required=1.01 * closed, required=0.9 * closed)
     belt = replace(found.model.causes[0], effect=BELTS[1])
     for causes, verdict in ((found.model.causes, "unknown"), ((belt,), "explained")):
-        assert _verdict(replace(judge, thresholds=strict), replace(found.model, causes=causes), found.rows, ()) == verdict
+        assert (
+            _verdict(
+                replace(judge, thresholds=strict),
+                replace(found.model, causes=causes),
+                found.rows,
+                (),
+            )
+            == verdict
+        )
 
 
 def test_balances_that_tell_play_from_a_spring_by_far_are_believed(judged):
@@ -93,15 +107,26 @@ def test_balances_that_tell_play_from_a_spring_by_far_are_believed(judged):
 def test_a_belt_gives_in_one_way(judged):
     one = judged[1].model.causes[0]
     assert _taken([one]) == {one.name}
-    assert _taken([one, replace(one, effect=BELTS[0], location="hip")]) == {one.name, (BELTS[0], "hip"), (BELTS[1], "hip")}
+    assert _taken([one, replace(one, effect=BELTS[0], location="hip")]) == {
+        one.name,
+        (BELTS[0], "hip"),
+        (BELTS[1], "hip"),
+    }
 
 
 def test_a_pair_that_none_of_its_rivals_leads_to_is_found_among_the_finalists(two_wrong):
     true = {("viscous_friction", "knee"), ("coulomb_friction", "hip")}
-    wanted = [*true, ("coulomb_friction", "knee"), ("stribeck_friction", "hip"), ("viscous_friction", "hip")]
+    wanted = [
+        *true,
+        ("coulomb_friction", "knee"),
+        ("stribeck_friction", "hip"),
+        ("viscous_friction", "hip"),
+    ]
     singles, _ = _finalists(two_wrong, wanted, ())
     alone = {m.names[0]: m for m in singles}
-    wrong = two_wrong.model([alone["coulomb_friction", "knee"].causes[0], alone["viscous_friction", "hip"].causes[0]])
+    wrong = two_wrong.model(
+        [alone["coulomb_friction", "knee"].causes[0], alone["viscous_friction", "hip"].causes[0]]
+    )
     found, slots = _paired(two_wrong, wanted, singles, wrong, [(wrong,), (wrong,)])
     assert set(found.names) == true
     assert rank(found) > rank(wrong)
@@ -110,10 +135,17 @@ def test_a_pair_that_none_of_its_rivals_leads_to_is_found_among_the_finalists(tw
     assert _from([wrong, found], found) == (found,)
 
 
-def test_an_error_of_a_links_mass_is_judged_beside_a_load_on_it_however_few_are(robot_files, monkeypatch):
+def test_an_error_of_a_links_mass_is_judged_beside_a_load_on_it_however_few_are(
+    robot_files, monkeypatch
+):
     log = robots.geared_run("joint", ("hip", "knee"), load=0.5)
     judge = Judge(diagnosed.prepared(robot_files["geared"], log).base, load_thresholds(), 1)
-    wanted = [("link_mass", "shank"), ("payload", "shank"), ("link_mass", "thigh"), ("viscous_friction", "knee")]
+    wanted = [
+        ("link_mass", "shank"),
+        ("payload", "shank"),
+        ("link_mass", "thigh"),
+        ("viscous_friction", "knee"),
+    ]
     monkeypatch.setattr(decide, "FINALISTS", 1)
     models, _ = _finalists(judge, wanted, ())
     assert {m.names[0] for m in models} == {("link_mass", "shank"), ("payload", "shank")}
@@ -123,7 +155,11 @@ def test_an_error_of_a_links_mass_is_judged_beside_a_load_on_it_however_few_are(
 
 def supplied(voltage, nominal):
     subject = SimpleNamespace(voltage=nominal)
-    return SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(voltage=v, subject=subject)) for v in voltage])
+    return SimpleNamespace(
+        sieves=[
+            SimpleNamespace(signals=SimpleNamespace(voltage=v, subject=subject)) for v in voltage
+        ]
+    )
 
 
 def test_a_battery_as_full_as_in_reference_logs_is_no_cause():
@@ -150,8 +186,12 @@ def test_a_drive_that_often_fails_its_commands_is_a_gap():
 def test_commands_that_get_lost_leave_something_in_rows_or_their_episodes(judged):
     judge, found = judged
     assert _leaves_nothing(judge, found.model)
-    assert not _leaves_nothing(judge, replace(found.model, causes=())), "what nobody explains may be anything"
-    assert not _leaves_nothing(replace(judge, thresholds=replace(judge.thresholds, largest_excess=0.1)), found.model)
+    assert not _leaves_nothing(judge, replace(found.model, causes=())), (
+        "what nobody explains may be anything"
+    )
+    assert not _leaves_nothing(
+        replace(judge, thresholds=replace(judge.thresholds, largest_excess=0.1)), found.model
+    )
 
 
 def test_the_first_cause_is_not_what_imitates_a_much_likelier_one(two_wrong, monkeypatch):
@@ -159,6 +199,8 @@ def test_the_first_cause_is_not_what_imitates_a_much_likelier_one(two_wrong, mon
     singles, _ = _finalists(two_wrong, wanted, ())
     assert [m.names[0] for m in singles] == wanted
     assert rank(singles[0]) > rank(singles[1]) + two_wrong.thresholds.alike
-    monkeypatch.setattr(decide, "worth_naming", lambda judge, model: model.names == singles[1].names)
+    monkeypatch.setattr(
+        decide, "worth_naming", lambda judge, model: model.names == singles[1].names
+    )
     monkeypatch.setattr(decide, "worth_adding", lambda *_: False)
     assert _chosen(two_wrong, wanted, singles)[0].names == singles[0].names

@@ -55,7 +55,10 @@ def test_reference_logs_make_it_surer(robot_files):
 
 def test_two_causes_are_both_named(robot_files):
     result = found(robot_files, "both")
-    assert {(c.effect, c.location) for c in result.causes} == {("viscous_friction", "knee"), ("coulomb_friction", "hip")}
+    assert {(c.effect, c.location) for c in result.causes} == {
+        ("viscous_friction", "knee"),
+        ("coulomb_friction", "hip"),
+    }
 
 
 def test_a_torque_that_no_effect_has_is_unknown(robot_files):
@@ -89,6 +92,10 @@ def test_logs_that_are_all_references_are_refused(robot_files):
 
 def test_a_log_in_degrees_is_refused(robot_files):
     log = diagnosed.run("healthy", 0)
-    wrong = log.changed(signals={c: np.degrees(v) if c.startswith("velocity/") else v for c, v in log.signals.items()})
+    wrong = log.changed(
+        signals={
+            c: np.degrees(v) if c.startswith("velocity/") else v for c, v in log.signals.items()
+        }
+    )
     with pytest.raises(InputError, match="rad"):
         diagnose(robot_files["coupled"], [wrong])

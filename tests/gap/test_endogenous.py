@@ -13,7 +13,9 @@ def test_the_slopes_are_the_derivatives():
     for phi in (-1.5, 0.0, 2.0):
         step = 1e-4
         first, second = one.slopes(phi)
-        assert first == pytest.approx((one.log(phi + step) - one.log(phi - step)) / (2 * step), rel=1e-4, abs=1e-6)
+        assert first == pytest.approx(
+            (one.log(phi + step) - one.log(phi - step)) / (2 * step), rel=1e-4, abs=1e-6
+        )
         curve = (one.log(phi + step) - 2 * one.log(phi) + one.log(phi - step)) / step**2
         assert second == pytest.approx(-curve, rel=1e-2)
 
@@ -45,21 +47,37 @@ def test_noise_that_shrinks_gains_nothing():
     for phi in (-1.0, 0.0, 1.0):
         step = 1e-4
         first, second = one.slopes(phi)
-        assert first == pytest.approx((one.log(phi + step) - one.log(phi - step)) / (2 * step), rel=1e-4)
+        assert first == pytest.approx(
+            (one.log(phi + step) - one.log(phi - step)) / (2 * step), rel=1e-4
+        )
         curve = (one.log(phi + step) - 2 * one.log(phi) + one.log(phi - step)) / step**2
         assert second == pytest.approx(max(-curve, 0.0), rel=1e-2, abs=1e-4)
     pure = replace(one, slope=np.full(1, 0.3), part=np.ones(1), number=np.full(1, 20.0))
-    assert pure.log(2.0) == pytest.approx(20 * np.log(1 - 0.6))  # what the noise's own density gains by it
+    assert pure.log(2.0) == pytest.approx(
+        20 * np.log(1 - 0.6)
+    )  # what the noise's own density gains by it
 
 
 def test_belts_pay_where_encoders_at_the_joints_bring_noise_into_their_load(robot_files):
     samples = diagnosed.prepared(robot_files["servos"], diagnosed.stamped_badly(0)).base.samples
     usual = np.array([0.004, 0.05, 1.0, 1.0, 30.0])
-    at_joints, at_rotors = (factor(samples, "transmission_elasticity", "knee", usual, np.array([0.004, 0.05, side, 0.0, 0.0])) for side in (0.0, 1.0))
+    at_joints, at_rotors = (
+        factor(
+            samples,
+            "transmission_elasticity",
+            "knee",
+            usual,
+            np.array([0.004, 0.05, side, 0.0, 0.0]),
+        )
+        for side in (0.0, 1.0)
+    )
     assert isinstance(at_joints, Shrinking)
     assert at_joints.log(0.5) < 0
     assert at_rotors is None
 
 
 def test_a_clock_that_jitters_is_no_belt(robot_files):
-    assert diagnose(robot_files["servos"], [diagnosed.stamped_badly(seed) for seed in (0, 1)]).verdict == "none"
+    assert (
+        diagnose(robot_files["servos"], [diagnosed.stamped_badly(seed) for seed in (0, 1)]).verdict
+        == "none"
+    )

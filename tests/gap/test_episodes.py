@@ -17,25 +17,40 @@ def jumpy(signals, time):
 
 def test_rare_large_residuals_are_set_apart(robot_files):
     log = diagnosed.run("healthy", 0)
-    spoiled = diagnosed.prepared(robot_files["coupled"], log.changed(signals=jumpy(log.signals, log.time)))
+    spoiled = diagnosed.prepared(
+        robot_files["coupled"], log.changed(signals=jumpy(log.signals, log.time))
+    )
     samples = spoiled.base.samples
     assert samples.episodic[samples.group].mean() > 0.005
     assert episodes(diagnosed.prepared(robot_files["coupled"], log).base).mean() < 0.05
 
 
 def drives(wild):
-    """Samples of three drives in one band, and what is left of them: noise, and 20 times as much where `wild (3, t)`."""
+    """Samples of three drives in one band, and what is left of them: noise, and 20 times as much
+    where `wild (3, t)`.
+    """
     row = np.repeat(np.arange(3), TICKS)
     samples = SimpleNamespace(
-        rows=[SimpleNamespace(balance="drive")] * 3, share=np.ones(3 * TICKS), log=np.zeros(1, int), part=np.zeros(3 * TICKS, int),
-        time=np.tile(np.arange(TICKS) * STEP, 3), row=row, group=row, group_row=np.arange(3), group_band=np.ones(3, int),
-    )  # fmt: skip
+        rows=[SimpleNamespace(balance="drive")] * 3,
+        share=np.ones(3 * TICKS),
+        log=np.zeros(1, int),
+        part=np.zeros(3 * TICKS, int),
+        time=np.tile(np.arange(TICKS) * STEP, 3),
+        row=row,
+        group=row,
+        group_row=np.arange(3),
+        group_band=np.ones(3, int),
+    )
     left = np.random.default_rng(0).normal(size=3 * TICKS) * np.where(wild.ravel(), 20.0, 1.0)
     return samples, left
 
 
-@pytest.mark.parametrize(("together_with", "least", "most"), [(3, 0.08, 0.12), (2, 0.08, 0.12), (1, 0.0, 0.001)])
-def test_what_happens_to_most_drives_at_once_is_told_from_what_happens_to_one(together_with, least, most):
+@pytest.mark.parametrize(
+    ("together_with", "least", "most"), [(3, 0.08, 0.12), (2, 0.08, 0.12), (1, 0.0, 0.001)]
+)
+def test_what_happens_to_most_drives_at_once_is_told_from_what_happens_to_one(
+    together_with, least, most
+):
     wild = np.zeros((3, TICKS), bool)
     wild[:together_with] = (np.arange(TICKS) * STEP) % 1.0 < 0.1
     assert least <= together(*drives(wild)) <= most

@@ -30,11 +30,15 @@ def test_what_predicts_the_same_is_alike_and_the_cause_itself_is_no_rival(found)
 
 def test_what_predicts_worse_is_not(found):
     judge, chosen, rows = found
-    wrong = judge.model([linearise(judge.base.samples, EFFECTS["coulomb_friction"], "hip", np.zeros(1))])
+    wrong = judge.model(
+        [linearise(judge.base.samples, EFFECTS["coulomb_friction"], "hip", np.zeros(1))]
+    )
     assert alike(judge, [wrong], chosen, rows) == []
 
 
 def test_as_likely_but_closing_less_is_not(found):
     judge, chosen, rows = found
-    short = replace(twin(chosen, "coulomb_friction"), held=replace(chosen.held, square=chosen.held.bare))
+    short = replace(
+        twin(chosen, "coulomb_friction"), held=replace(chosen.held, square=chosen.held.bare)
+    )
     assert alike(judge, [short], chosen, rows) == []

@@ -10,8 +10,15 @@ from hyperleg_design.gap.subject import load_subject
 
 from .robots import PENDULUM, servo_run, waves
 
-LOAD = '<body name="load" pos="0 0 -0.2"><inertial pos="0 0 0" mass="0.2" diaginertia="1e-5 1e-5 1e-5"/></body>'
-TRUE = {"effect": "payload", "location": "arm", "parameters": {"mass": {"value": 0.2}, "com_z": {"value": -0.2}}}
+LOAD = (
+    '<body name="load" pos="0 0 -0.2"><inertial pos="0 0 0" mass="0.2" diaginertia="1e-5 1e-5 '
+    '1e-5"/></body>'
+)
+TRUE = {
+    "effect": "payload",
+    "location": "arm",
+    "parameters": {"mass": {"value": 0.2}, "com_z": {"value": -0.2}},
+}
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +31,16 @@ def signals(tmp_path_factory: pytest.TempPathFactory) -> Signals:
 
 def test_the_true_cause_explains_and_another_does_not(signals: Signals) -> None:
     right, nothing = evidence(signals, [TRUE]), evidence(signals, [])
-    wrong = evidence(signals, [{"effect": "coulomb_friction", "location": "swing", "parameters": {"torque": {"value": 0.05}}}])
+    wrong = evidence(
+        signals,
+        [
+            {
+                "effect": "coulomb_friction",
+                "location": "swing",
+                "parameters": {"torque": {"value": 0.05}},
+            }
+        ],
+    )
     before = rms(nothing.before)[0]
     assert before > 0.02
     assert rms(right.after)[0] < 0.02 * before
@@ -44,6 +60,16 @@ def test_unknown_ticks_are_left_out() -> None:
 def test_the_row_that_is_drawn_is_the_one_that_causes_explain():
     """A larger residual elsewhere is another matter, unless nothing is explained."""
     before = np.tile([3.0, 1.0], (5, 1))
-    one = Evidence("log", "motion", ("hip", "knee"), np.arange(5.0), before, np.tile([0.0, 0.5], (5, 1)), np.zeros((5, 2)))
-    nothing = Evidence("log", "motion", ("hip", "knee"), np.arange(5.0), before, np.zeros((5, 2)), np.zeros((5, 2)))
+    one = Evidence(
+        "log",
+        "motion",
+        ("hip", "knee"),
+        np.arange(5.0),
+        before,
+        np.tile([0.0, 0.5], (5, 1)),
+        np.zeros((5, 2)),
+    )
+    nothing = Evidence(
+        "log", "motion", ("hip", "knee"), np.arange(5.0), before, np.zeros((5, 2)), np.zeros((5, 2))
+    )
     assert (one.worst, nothing.worst) == (1, 0)

@@ -6,11 +6,31 @@ from hyperleg_design.gap.log import Log
 from hyperleg_design.gap.metadata import Metadata
 
 CATALOGUE = [
-    "coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction", "torque_constant", "torque_saturation",
-    "thermal_derating", "voltage_sag", "command_delay", "actuator_bandwidth", "rotor_inertia", "transmission_elasticity", "backlash",
-    "transmission_ratio", "encoder_offset", "controller_gain", "payload", "link_mass", "link_com", "cogging", "joint_spring", "imu_bias",
-    "ground_friction", "ground_compliance",
-]  # fmt: skip
+    "coulomb_friction",
+    "viscous_friction",
+    "stribeck_friction",
+    "load_dependent_friction",
+    "torque_constant",
+    "torque_saturation",
+    "thermal_derating",
+    "voltage_sag",
+    "command_delay",
+    "actuator_bandwidth",
+    "rotor_inertia",
+    "transmission_elasticity",
+    "backlash",
+    "transmission_ratio",
+    "encoder_offset",
+    "controller_gain",
+    "payload",
+    "link_mass",
+    "link_com",
+    "cogging",
+    "joint_spring",
+    "imu_bias",
+    "ground_friction",
+    "ground_compliance",
+]
 
 
 def of(log):
@@ -26,7 +46,15 @@ def test_every_effect_of_the_catalogue_has_a_rule():
 
 def test_a_rich_log():
     found = of(rig_log())
-    for effect in ("coulomb_friction", "viscous_friction", "payload", "torque_constant", "controller_gain", "encoder_offset", "backlash"):
+    for effect in (
+        "coulomb_friction",
+        "viscous_friction",
+        "payload",
+        "torque_constant",
+        "controller_gain",
+        "encoder_offset",
+        "backlash",
+    ):
         assert found[effect].shown, effect
         assert found[effect].where == ("hip", "knee")
     for effect, word in (
@@ -44,7 +72,13 @@ def test_without_reversals_no_friction_and_no_backlash():
     time = np.arange(2000) * 0.005
     signals = {"position/knee": 0.2 * time, "position_target/knee": 0.2 * time + 0.1}
     found = of(Log("ramp", time, signals, Metadata(gains={"knee": (20.0, 1.0)})))
-    for effect in ("coulomb_friction", "viscous_friction", "stribeck_friction", "backlash", "load_dependent_friction"):
+    for effect in (
+        "coulomb_friction",
+        "viscous_friction",
+        "stribeck_friction",
+        "backlash",
+        "load_dependent_friction",
+    ):
         assert not found[effect].shown, effect
     assert "reverses" in found["coulomb_friction"].why
     assert found["payload"].shown
@@ -52,7 +86,14 @@ def test_without_reversals_no_friction_and_no_backlash():
 
 def test_without_any_torque():
     log = rig_log(gains={})
-    log = spoiled(log, **{f"{kind}__{j}": None for kind in ("motor_torque_command", "motor_torque", "motor_current") for j in ("hip", "knee")})
+    log = spoiled(
+        log,
+        **{
+            f"{kind}__{j}": None
+            for kind in ("motor_torque_command", "motor_torque", "motor_current")
+            for j in ("hip", "knee")
+        },
+    )
     found = of(log)
     assert not any(e.shown for e in found.values())
     assert "no torque" in found["coulomb_friction"].why
@@ -83,8 +124,14 @@ def test_a_voltage_that_all_drives_follow_is_no_news():
 
 def test_temperature_voltage_and_ground():
     ramp = np.linspace(0, 1, 4000)
-    log = spoiled(rig_log(), motor_temperature__hip=30 + 40 * ramp, motor_temperature__knee=30 + ramp, battery_voltage=24 - 2 * ramp,
-                  contact_force__foot_z=ramp, gyro__x=ramp)  # fmt: skip
+    log = spoiled(
+        rig_log(),
+        motor_temperature__hip=30 + 40 * ramp,
+        motor_temperature__knee=30 + ramp,
+        battery_voltage=24 - 2 * ramp,
+        contact_force__foot_z=ramp,
+        gyro__x=ramp,
+    )
     found = of(log)
     assert found["thermal_derating"].where == ("hip",)
     assert found["voltage_sag"].shown

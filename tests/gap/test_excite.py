@@ -9,7 +9,14 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import excite as module
 from hyperleg_design.gap import information as info
-from hyperleg_design.gap.excite import CLEAR, apart, design_experiment, excite, fixed_subject, inseparable
+from hyperleg_design.gap.excite import (
+    CLEAR,
+    apart,
+    design_experiment,
+    excite,
+    fixed_subject,
+    inseparable,
+)
 from hyperleg_design.gap.subject import load_subject
 
 
@@ -21,7 +28,9 @@ def made(robot_files, tmp_path_factory):
     path = folder / "servo.xml"
     servo = '<position name="servo" joint="swing" kp="12" kv="0.4" forcerange="-3 3"/>'
     path.write_text(
-        robots.PENDULUM.replace('<motor name="servo" joint="swing" ctrlrange="-3 3"/>', servo).replace('axis="0 1 0"', 'axis="0 1 0" range="-80 80"')
+        robots.PENDULUM.replace(
+            '<motor name="servo" joint="swing" ctrlrange="-3 3"/>', servo
+        ).replace('axis="0 1 0"', 'axis="0 1 0" range="-80 80"')
     )
     out = folder / "out"
     out.mkdir()
@@ -46,8 +55,13 @@ def test_files_hold_the_targets(made):
         assert len(rows) == len(motion.time)
         assert list(rows[0]) == ["t", "position_target/swing", "drives_on"]
         assert [row["drives_on"] == "0" for row in rows] == motion.off.tolist()
-        assert float(rows[7]["position_target/swing"]) == pytest.approx(motion.target[7, 0], abs=1e-6)
-        assert all((row["position_target/swing"] == "") == off for row, off in zip(rows, motion.off, strict=True))
+        assert float(rows[7]["position_target/swing"]) == pytest.approx(
+            motion.target[7, 0], abs=1e-6
+        )
+        assert all(
+            (row["position_target/swing"] == "") == off
+            for row, off in zip(rows, motion.off, strict=True)
+        )
         table = pandas.read_parquet(made.out / f"{motion.name}.parquet")
         assert np.allclose(table["position_target/swing"], motion.target[:, 0], equal_nan=True)
 
@@ -59,7 +73,9 @@ def test_plan_says_what_each_motion_tells(made):
     assert "command_delay" in by_name["chirp"]["shows"]
     assert "command_delay" not in by_name["ramps"]["shows"]
     assert "coulomb_friction" in by_name["ramps"]["shows"]
-    coulomb = by_name["ramps"]["effects"]["coulomb_friction"]["swing"]["standard_deviation"]["torque"]
+    coulomb = by_name["ramps"]["effects"]["coulomb_friction"]["swing"]["standard_deviation"][
+        "torque"
+    ]
     assert 0 < coulomb < 0.05
     assert any("not checked" in note for note in plan["notes"])
     assert all(m["use"]["envelope"] <= 0.8 + 1e-9 for m in plan["motions"])
@@ -78,8 +94,16 @@ def test_shortest_set_tells_all_that_can_be_told_with_nothing_to_spare(made):
 
     def all_told(names):
         gram = plan.gram(names)
-        shown = all(info.strength(gram, plan.blocks, p) >= CLEAR for p in plan.blocks.places if info.strength(whole, plan.blocks, p) >= CLEAR)
-        return shown and all(apart(gram, plan.blocks, p) >= CLEAR for p in plan.pairs if apart(whole, plan.blocks, p) >= CLEAR)
+        shown = all(
+            info.strength(gram, plan.blocks, p) >= CLEAR
+            for p in plan.blocks.places
+            if info.strength(whole, plan.blocks, p) >= CLEAR
+        )
+        return shown and all(
+            apart(gram, plan.blocks, p) >= CLEAR
+            for p in plan.pairs
+            if apart(whole, plan.blocks, p) >= CLEAR
+        )
 
     for name in plan.chosen:
         fewer = [n for n in plan.chosen if n != name]
@@ -98,8 +122,14 @@ def test_without_torque_less_is_known(made):
     blind = design_experiment(subject, rate=100.0, torque=False)
     delay, constant = ("command_delay", "robot"), ("torque_constant", "swing")
     assert blind.shown(delay) > CLEAR
-    pair = next(p for p in blind.pairs if p.first[0] == "viscous_friction" and p.second[0] == "controller_gain")
-    assert blind.apart(pair) < made.plan.apart(next(p for p in made.plan.pairs if (p.first, p.second) == (pair.first, pair.second)))
+    pair = next(
+        p
+        for p in blind.pairs
+        if p.first[0] == "viscous_friction" and p.second[0] == "controller_gain"
+    )
+    assert blind.apart(pair) < made.plan.apart(
+        next(p for p in made.plan.pairs if (p.first, p.second) == (pair.first, pair.second))
+    )
     assert constant in blind.blocks.places
 
 
@@ -110,8 +140,11 @@ def test_same_seed_gives_the_same_bytes(made, tmp_path):
 
 
 def test_greedy_choice_on_a_made_up_case():
-    # three effects of one parameter; motion b shows two of them in half the time, c the third, a only what b shows
-    blocks = info.Blocks((("e", "1"), ("e", "2"), ("e", "3")), (0, 2, 4), (("p",),) * 3, (np.ones(1),) * 3)
+    # three effects of one parameter; motion b shows two of them in half the time, c the third, a
+    # only what b shows
+    blocks = info.Blocks(
+        (("e", "1"), ("e", "2"), ("e", "3")), (0, 2, 4), (("p",),) * 3, (np.ones(1),) * 3
+    )
 
     def shows(*which):
         gram = np.zeros((6, 6))
@@ -124,7 +157,13 @@ def test_greedy_choice_on_a_made_up_case():
 
 
 @pytest.mark.parametrize(
-    ("options", "match"), [({"rate": 5.0}, "rate"), ({"noise": 0.0}, "noise"), ({"kinds": "xlsx"}, "format"), ({"base": "floating"}, "fixed")]
+    ("options", "match"),
+    [
+        ({"rate": 5.0}, "rate"),
+        ({"noise": 0.0}, "noise"),
+        ({"kinds": "xlsx"}, "format"),
+        ({"base": "floating"}, "fixed"),
+    ],
 )
 def test_bad_input_is_refused(made, tmp_path, options, match):
     with pytest.raises(InputError, match=match):

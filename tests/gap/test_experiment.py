@@ -35,7 +35,10 @@ def test_experiments_speak_of_the_catalogue_only():
 def test_one_effect_at_two_places_asks_for_one_joint_at_a_time():
     causes = [("coulomb_friction", "hip"), ("coulomb_friction", "knee")]
     assert separating(causes) is ALONE
-    assert as_mapping(ALONE, causes)["separates"] == ["coulomb_friction at hip", "coulomb_friction at knee"]
+    assert as_mapping(ALONE, causes)["separates"] == [
+        "coulomb_friction at hip",
+        "coulomb_friction at knee",
+    ]
     assert separating(causes[:1]) is None
 
 

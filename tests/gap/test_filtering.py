@@ -5,7 +5,15 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects.friction import presliding
-from hyperleg_design.gap.filtering import UNDERWAY, moving, moving_ticks, sieve, sticking, traced, travelled
+from hyperleg_design.gap.filtering import (
+    UNDERWAY,
+    moving,
+    moving_ticks,
+    sieve,
+    sticking,
+    traced,
+    travelled,
+)
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +39,10 @@ def test_the_filter_is_linear_and_blind_to_unknown_ticks(signals):
     one = sieve(signals)
     rng = np.random.default_rng(1)
     a, b = rng.normal(size=(2, len(signals.time)))
-    assert np.allclose(one.sample(0, (2 * a - 3 * b)[None]), 2 * one.sample(0, a[None]) - 3 * one.sample(0, b[None]))
+    assert np.allclose(
+        one.sample(0, (2 * a - 3 * b)[None]),
+        2 * one.sample(0, a[None]) - 3 * one.sample(0, b[None]),
+    )
     spoiled = np.where(one.mask[0], a, np.nan)
     assert np.allclose(one.sample(0, spoiled[None]), one.sample(0, a[None]))
 
@@ -61,7 +72,9 @@ def test_a_joint_at_rest_may_stick_and_a_moving_one_does_not(signals):
 
 def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target_or_comes_far(signals):
     slow = 0.05 * signals.time[:, None] * np.ones(2)
-    creeps = dataclasses.replace(signals, position=slow, velocity=np.full_like(slow, 0.05), chatter=None)
+    creeps = dataclasses.replace(
+        signals, position=slow, velocity=np.full_like(slow, 0.05), chatter=None
+    )
     assert not sticking(dataclasses.replace(creeps, target=slow + 0.01))[20:-20].any()
     astray = dataclasses.replace(creeps, target=np.ones_like(slow))
     far = slow > UNDERWAY * presliding(astray)
@@ -69,7 +82,11 @@ def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target_or_comes_
     assert not sticking(astray)[far][20:].any()
     assert sticking(dataclasses.replace(astray, measured=None)).all()
     swing = 0.002 * np.sin(25 * signals.time)[:, None] * np.ones(2)  # to and fro at the same speed
-    assert sticking(dataclasses.replace(astray, position=swing, velocity=np.gradient(swing, signals.step, axis=0))).all()
+    assert sticking(
+        dataclasses.replace(
+            astray, position=swing, velocity=np.gradient(swing, signals.step, axis=0)
+        )
+    ).all()
     assert not sticking(dataclasses.replace(creeps, target=None))[20:-20].any()
 
 
@@ -95,9 +112,13 @@ def test_the_rest_of_a_joint_that_hardly_moves_counts_only_without_dry_friction(
 
     still = np.ones_like(signals.position, bool)
     still[:50] = False
-    dry = dataclasses.replace(signals, subject=dataclasses.replace(signals.subject, coulomb=np.array([0.0, 1.0])))
+    dry = dataclasses.replace(
+        signals, subject=dataclasses.replace(signals.subject, coulomb=np.array([0.0, 1.0]))
+    )
     one = sieve(dry, still)
-    mask = {row.name: m for row, m in zip(one.rows, one.mask, strict=True) if row.balance == "motion"}
+    mask = {
+        row.name: m for row, m in zip(one.rows, one.mask, strict=True) if row.balance == "motion"
+    }
     assert mask["hip"][60:].any()
     assert "knee" not in mask or not mask["knee"][50:].any()
     every = moving_ticks(dry, np.ones_like(still), still)

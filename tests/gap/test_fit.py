@@ -12,7 +12,9 @@ def test_products_give_the_same_as_samples(viscous_ready, knee_friction):
     fit = design.fit()
     left = design.left(fit.phi, fit.errors)
     samples = viscous_ready.base.samples
-    assert np.allclose(np.bincount(samples.group, left**2, samples.groups), fit.rss, rtol=1e-6, atol=1e-6)
+    assert np.allclose(
+        np.bincount(samples.group, left**2, samples.groups), fit.rss, rtol=1e-6, atol=1e-6
+    )
 
 
 def test_parts_cut_the_parameters_of_all_causes_without_gap(viscous_ready, knee_friction):
@@ -21,7 +23,9 @@ def test_parts_cut_the_parameters_of_all_causes_without_gap(viscous_ready, knee_
     first, second = parts(design.causes)
     assert (first, second) == (slice(0, 1), slice(1, 2))
     weight = viscous_ready.base.samples.weight
-    assert np.allclose(design.trace(phi), sum(knee_friction.trace(phi[part]) for part in (first, second)) * weight)
+    assert np.allclose(
+        design.trace(phi), sum(knee_friction.trace(phi[part]) for part in (first, second)) * weight
+    )
     assert parts(()) == []
 
 
@@ -31,7 +35,9 @@ def test_a_fit_is_the_minimum_of_its_cost(viscous_ready, knee_friction):
     weight = 1 / design.fit().scale
 
     def cost(phi, errors):
-        prior = np.sum((phi / design.deviation) ** 2) + np.einsum("sp,pq,sq->", errors, base.prior.precision, errors)
+        prior = np.sum((phi / design.deviation) ** 2) + np.einsum(
+            "sp,pq,sq->", errors, base.prior.precision, errors
+        )
         return weight @ design.rss(phi, errors) + prior
 
     phi, _, errors, _ = design.solve(weight)
@@ -56,8 +62,12 @@ def test_an_effect_far_larger_than_usual_is_not_shrunk(viscous_ready, knee_frict
     from dataclasses import replace
 
     smaller = 0.05
-    tiny = replace(knee_friction, usual=knee_friction.usual * smaller, columns=knee_friction.columns * smaller)
-    usual, found = (Design(viscous_ready.base, [c]).fit().phi[0] * c.usual[0] for c in (knee_friction, tiny))
+    tiny = replace(
+        knee_friction, usual=knee_friction.usual * smaller, columns=knee_friction.columns * smaller
+    )
+    usual, found = (
+        Design(viscous_ready.base, [c]).fit().phi[0] * c.usual[0] for c in (knee_friction, tiny)
+    )
     assert found == pytest.approx(usual, rel=0.01)
 
 
@@ -78,7 +88,10 @@ def test_bounds_are_kept(viscous_ready, knee_friction):
 def test_least_squares_within_bounds_are_the_least(count, seed):
     rng = np.random.default_rng(seed)
     root = rng.standard_normal((count, count)) * 10 ** rng.uniform(-2, 2, count)
-    matrix, right = root.T @ root + 1e-2 * np.eye(count), 10 * rng.standard_normal(count) * np.linalg.norm(root, axis=0)
+    matrix, right = (
+        root.T @ root + 1e-2 * np.eye(count),
+        10 * rng.standard_normal(count) * np.linalg.norm(root, axis=0),
+    )
     low = np.where(rng.random(count) < 0.2, -np.inf, -rng.random(count))
     high = np.where(rng.random(count) < 0.2, low, rng.random(count))
     high = np.where(np.isfinite(high), high, 0.0)
@@ -86,12 +99,21 @@ def test_least_squares_within_bounds_are_the_least(count, seed):
     assert ((phi >= low) & (phi <= high)).all()
     slope, small = matrix @ phi - right, 1e-6 * (np.abs(matrix) @ np.abs(phi) + np.abs(right))
     assert (slope[phi > low] <= small[phi > low]).all(), "what could be less would make it better"
-    assert (slope[phi < high] >= -small[phi < high]).all(), "what could be more would make it better"
+    assert (slope[phi < high] >= -small[phi < high]).all(), (
+        "what could be more would make it better"
+    )
 
 
 def test_what_is_held_stays_and_the_rest_is_fitted_around_it():
     matrix, right = np.array([[2.0, 1.0], [1.0, 2.0]]), np.array([1.0, 0.0])
-    free, held = _bounded(matrix, right, np.full(2, -9.0), np.full(2, 9.0))[0], np.array([3.0, np.nan])
+    free, held = (
+        _bounded(matrix, right, np.full(2, -9.0), np.full(2, 9.0))[0],
+        np.array([3.0, np.nan]),
+    )
     assert np.allclose(matrix @ free, right)
-    assert np.allclose(_bounded(matrix, right, np.full(2, -9.0), np.full(2, 9.0), held)[0], [3.0, -1.5])
-    assert np.allclose(_bounded(matrix, right, np.full(2, -9.0), np.array([9.0, -2.0]), held)[0], [3.0, -2.0])
+    assert np.allclose(
+        _bounded(matrix, right, np.full(2, -9.0), np.full(2, 9.0), held)[0], [3.0, -1.5]
+    )
+    assert np.allclose(
+        _bounded(matrix, right, np.full(2, -9.0), np.array([9.0, -2.0]), held)[0], [3.0, -2.0]
+    )

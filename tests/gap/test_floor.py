@@ -22,14 +22,21 @@ def jittering(robot_files):
 
 def noise_of(one, floors, row):
     band, _, _ = one.labels(row)
-    return {b: float(np.sqrt(np.mean(floors[row][band == b] ** 2))) for b in np.unique(band).tolist()}
+    return {
+        b: float(np.sqrt(np.mean(floors[row][band == b] ** 2))) for b in np.unique(band).tolist()
+    }
 
 
 def test_white_torque_noise_is_told_from_the_log_itself(one):
-    nothing = dataclasses.replace(load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0)
+    nothing = dataclasses.replace(
+        load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0
+    )
     rng = np.random.default_rng(0)
     level = 0.3
-    noisy = dataclasses.replace(one.signals, residual={"motion": level * rng.normal(size=one.signals.residual["motion"].shape)})
+    noisy = dataclasses.replace(
+        one.signals,
+        residual={"motion": level * rng.normal(size=one.signals.residual["motion"].shape)},
+    )
     noisy_sieve = sieve(noisy)
     floors = expected(noisy_sieve, nothing)
     band, _, _ = noisy_sieve.labels(0)
@@ -41,12 +48,16 @@ def test_white_torque_noise_is_told_from_the_log_itself(one):
 
 
 def test_what_rings_at_high_frequencies_is_no_noise_at_low_ones(one):
-    nothing = dataclasses.replace(load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0)
+    nothing = dataclasses.replace(
+        load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0
+    )
     rng = np.random.default_rng(1)
     quiet = 0.05 * rng.normal(size=one.signals.residual["motion"].shape)
     rung = np.zeros_like(quiet)
     for frequency in np.linspace(25, 45, 400):  # a dense ringing above all bands
-        rung += 0.03 * np.sin(2 * np.pi * frequency * one.signals.time[:, None] + rng.uniform(0, 2 * np.pi))
+        rung += 0.03 * np.sin(
+            2 * np.pi * frequency * one.signals.time[:, None] + rng.uniform(0, 2 * np.pi)
+        )
     floors = []
     for residual in (quiet, quiet + rung):
         noisy = sieve(dataclasses.replace(one.signals, residual={"motion": residual}))
@@ -67,11 +78,22 @@ def test_a_worse_known_torque_raises_the_floor(one):
 
 def test_positions_stamped_early_or_late_are_noisier_where_joints_are_fast(jittering):
     signals, rules = jittering.signals, load_thresholds()
-    even = sieve(dataclasses.replace(signals, velocity=np.ones_like(signals.velocity)))  # no tick faster than any other
-    for row, (told, before) in enumerate(zip(expected(jittering, rules), expected(even, rules), strict=True)):
+    even = sieve(
+        dataclasses.replace(signals, velocity=np.ones_like(signals.velocity))
+    )  # no tick faster than any other
+    for row, (told, before) in enumerate(
+        zip(expected(jittering, rules), expected(even, rules), strict=True)
+    ):
         top = jittering.labels(row)[0] == jittering.labels(row)[0].max()
-        shown = jittering.sample(row, signals.residual["motion"][:, jittering.rows[row].column][None])[0][top] ** 2
-        after, flat = (np.corrcoef(np.log(shown), np.log(floors[top]))[0, 1] for floors in (told, before))
+        shown = (
+            jittering.sample(row, signals.residual["motion"][:, jittering.rows[row].column][None])[
+                0
+            ][top]
+            ** 2
+        )
+        after, flat = (
+            np.corrcoef(np.log(shown), np.log(floors[top]))[0, 1] for floors in (told, before)
+        )
         assert after > flat + 0.1
 
 

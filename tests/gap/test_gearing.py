@@ -1,4 +1,6 @@
-"""Robots with gears in their file: logs of motors on either side mean the same robot, and a healthy one has no gap."""
+"""Robots with gears in their file: logs of motors on either side mean the same robot, and a healthy
+one has no gap.
+"""
 
 import numpy as np
 import pytest
@@ -25,7 +27,10 @@ def test_a_log_tells_on_which_side_of_the_gear_it_is(robot, side, names, constan
     assert any("before the gears" in note for note in subject.notes) == (side == "motor")
     signals = condition(log, subject)
     joints = signals.believed
-    wanted = robots.GAINS[:, 0] * (signals.target - signals.position) - robots.GAINS[:, 1] * signals.velocity
+    wanted = (
+        robots.GAINS[:, 0] * (signals.target - signals.position)
+        - robots.GAINS[:, 1] * signals.velocity
+    )
     assert np.abs(joints - wanted)[100:-100].max() < 0.3
     for balance, most in {"motion": 0.15, "control": 0.02, "transmission": 0.01}.items():
         found = signals.residual[balance][100:-100]

@@ -1,4 +1,6 @@
-"""The balance of the ground, on a biped that stands, bends its knees and presses its feet apart in MuJoCo."""
+"""The balance of the ground, on a biped that stands, bends its knees and presses its feet apart in
+MuJoCo.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,15 @@ from hyperleg_design.gap import show
 from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.ground_friction import ChangedGround
-from hyperleg_design.gap.ground import balance, floor_geoms, foot_bodies, foot_geoms, footings, nominal_ground, pair_settings
+from hyperleg_design.gap.ground import (
+    balance,
+    floor_geoms,
+    foot_bodies,
+    foot_geoms,
+    footings,
+    nominal_ground,
+    pair_settings,
+)
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.simulation.alteration import edited
 
@@ -54,27 +64,38 @@ def test_the_nominal_ground_explains_a_nominal_log(biped, standing):
     weight = float(biped.model.body_subtreemass[1]) * 9.81
     assert rms(residual[:, [0, 1, 3, 4]]) < 0.01 * weight
     assert rms(residual[:, [2, 5]]) < 0.1 * weight / 2  # MuJoCo's contacts resist acceleration too
-    assert np.nansum(late(signals, signals.contact)[..., 2].mean(0)) == pytest.approx(weight, rel=0.03)
+    assert np.nansum(late(signals, signals.contact)[..., 2].mean(0)) == pytest.approx(
+        weight, rel=0.03
+    )
 
 
 def test_a_slippery_foot_leaves_what_the_trace_says(standing):
     signals = standing(friction=0.2)
-    trace = effect("ground_friction").trace(signals, "left_foot", np.array([[1.0], [0.2]]))["ground"]
+    trace = effect("ground_friction").trace(signals, "left_foot", np.array([[1.0], [0.2]]))[
+        "ground"
+    ]
     assert np.nanmax(np.abs(trace[0])) < 1e-9
-    residual, expected = late(signals, signals.residual["ground"][:, :2]), late(signals, trace[1][:, :2])
+    residual, expected = (
+        late(signals, signals.residual["ground"][:, :2]),
+        late(signals, trace[1][:, :2]),
+    )
     assert rms(residual) > 30.0
     assert rms(residual - expected) < 0.2 * rms(residual)
     assert np.nanmax(np.abs(trace[1][:, 3:])) < 1e-9
 
 
 def test_what_creeps_or_lands_does_not_slide(biped, standing):
-    """Feet of a simulated walk move at 0.05-0.25 m/s under load, with a tenth of the cone: no friction is that small."""
+    """Feet of a simulated walk move at 0.05-0.25 m/s under load, with a tenth of the cone: no
+    friction is that small.
+    """
     foot = footings(standing())[0]
     one = np.ones(1)
     ticks = foot.settled & (foot.force[:, 2] > 100)
 
     def left(speed):
-        moved = dataclasses.replace(foot, slide=np.tile([speed, 0.0], (len(foot.force), 1)), known={})
+        moved = dataclasses.replace(
+            foot, slide=np.tile([speed, 0.0], (len(foot.force), 1)), known={}
+        )
         return rms((foot.force - moved.ground(one, one, one)[0])[ticks, :2])
 
     creeping = foot.friction * float(np.nanmax(foot.force[:, 2])) / foot.law.creep
@@ -86,14 +107,19 @@ def test_a_soft_foot_leaves_what_the_trace_says(standing):
     signals = standing(compliance=3.0)
     one = effect("ground_compliance")
     trace = one.trace(signals, "left_foot", np.array([[3.0, 1.0], [1.0, 1.0]]))["ground"]
-    residual, expected = late(signals, signals.residual["ground"][:, 2]), late(signals, trace[0][:, 2])
+    residual, expected = (
+        late(signals, signals.residual["ground"][:, 2]),
+        late(signals, trace[0][:, 2]),
+    )
     assert rms(residual) > 2 * rms(late(standing(), standing().residual["ground"][:, 2]))
     assert rms(residual - expected) < 0.5 * rms(residual)
     assert np.nanmax(np.abs(trace[1])) < 1e-9
 
 
 def test_edits_scale_the_contact_and_leave_the_other_foot(biped):
-    changed = edited(biped.model, (effect("ground_friction").alteration("left_foot", np.array([0.5]), biped),))
+    changed = edited(
+        biped.model, (effect("ground_friction").alteration("left_foot", np.array([0.5]), biped),)
+    )
     own, other = (foot_geoms(biped.model, foot_bodies(biped, foot)) for foot in (0, 1))
     for geom in own:
         before, after = pair_settings(biped.model, geom), pair_settings(changed, geom)
@@ -102,9 +128,14 @@ def test_edits_scale_the_contact_and_leave_the_other_foot(biped):
         assert after[1].tolist() == before[1].tolist()
         assert after[2] == before[2]
     for geom in other:
-        assert pair_settings(changed, geom)[0].tolist() == pair_settings(biped.model, geom)[0].tolist()
+        assert (
+            pair_settings(changed, geom)[0].tolist() == pair_settings(biped.model, geom)[0].tolist()
+        )
     assert len(floor_geoms(biped.model)) == 1
-    same = edited(biped.model, (effect("ground_compliance").alteration("left_foot", np.array([1.0, 1.0]), biped),))
+    same = edited(
+        biped.model,
+        (effect("ground_compliance").alteration("left_foot", np.array([1.0, 1.0]), biped),),
+    )
     np.testing.assert_array_equal(same.geom_priority, biped.model.geom_priority)
 
 
@@ -137,9 +168,12 @@ def test_static_force_of_a_pad_is_mujocos(tmp_path, friction, cone):
     path = tmp_path / "ball.xml"
     path.write_text(
         f'<mujoco><option cone="{cone}"/><default><geom friction="{friction}"/></default>'
-        '<worldbody><geom name="floor" type="plane" size="1 1 1"/><body name="hull" pos="0 0 0.5"><freejoint/>'
-        '<inertial pos="0 0 0" mass="3" diaginertia="0.01 0.01 0.01"/><body name="sole"><joint name="j" axis="0 0 1" type="slide"/>'
-        '<inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/><geom type="sphere" size="0.1" mass="0"/></body></body></worldbody>'
+        '<worldbody><geom name="floor" type="plane" size="1 1 1"/><body name="hull" pos="0 0 '
+        '0.5"><freejoint/>'
+        '<inertial pos="0 0 0" mass="3" diaginertia="0.01 0.01 0.01"/><body name="sole"><joint '
+        'name="j" axis="0 0 1" type="slide"/>'
+        '<inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/><geom type="sphere" '
+        'size="0.1" mass="0"/></body></body></worldbody>'
         '<actuator><position joint="j" kp="5000" kv="50"/></actuator></mujoco>'
     )
     subject = load_subject(path)

@@ -12,12 +12,18 @@ from hyperleg_design.gap.screen import linearise
 
 
 @pytest.mark.parametrize("way", [BLOCKS, LOGS])
-def test_data_that_were_held_out_are_better_predicted_with_the_true_cause(viscous_ready, knee_friction, way):
+def test_data_that_were_held_out_are_better_predicted_with_the_true_cause(
+    viscous_ready, knee_friction, way
+):
     nothing = predict(Design(viscous_ready.base), way)
     held = predict(Design(viscous_ready.base, [knee_friction]), way)
     assert held.total > nothing.total + 20
     assert held.square.sum() < 0.3 * nothing.square.sum()
-    assert held.bare.shape == held.square.shape == (viscous_ready.base.blocks, viscous_ready.base.samples.groups)
+    assert (
+        held.bare.shape
+        == held.square.shape
+        == (viscous_ready.base.blocks, viscous_ready.base.samples.groups)
+    )
 
 
 def test_without_causes_nothing_is_left_out(viscous_ready):
@@ -28,7 +34,10 @@ def test_without_causes_nothing_is_left_out(viscous_ready):
 
 def test_a_pointless_cause_gains_nothing(viscous_ready):
     other = linearise(viscous_ready.base.samples, EFFECTS["joint_spring"], "hip", np.zeros(2))
-    assert predict(Design(viscous_ready.base, [other])).total < predict(Design(viscous_ready.base)).total + 8
+    assert (
+        predict(Design(viscous_ready.base, [other])).total
+        < predict(Design(viscous_ready.base)).total + 8
+    )
 
 
 def test_a_fold_and_all_but_it_are_everything(viscous_ready):
@@ -40,7 +49,9 @@ def test_a_fold_and_all_but_it_are_everything(viscous_ready):
 
 @pytest.mark.parametrize("way", [BLOCKS, LOGS])
 def test_what_others_leave_open_is_what_their_priors_would_foretell(viscous_ready, way):
-    """Against a direct computation, of one sample of each fold: its errors' covariance given all samples of the other folds."""
+    """Against a direct computation, of one sample of each fold: its errors' covariance given all
+    samples of the other folds.
+    """
     base = viscous_ready.base
     samples, design = base.samples, Design(base)
     found = doubt(base, way)
@@ -61,7 +72,10 @@ def test_what_others_leave_open_is_what_their_priors_would_foretell(viscous_read
 def test_a_row_that_other_blocks_pin_down_is_hardly_open(viscous_ready):
     base = viscous_ready.base
     found = doubt(base)
-    prior = np.einsum("ps,pq,qs->s", base.errors, base.prior.covariance, base.errors) / base.samples.share
+    prior = (
+        np.einsum("ps,pq,qs->s", base.errors, base.prior.covariance, base.errors)
+        / base.samples.share
+    )
     assert found.mean() < 0.3 * prior.mean()
 
 
@@ -70,7 +84,9 @@ def test_other_logs_tell_a_cause_that_they_show_and_no_other(viscous_ready, knee
     design = Design(viscous_ready.base, [knee_friction])
     assert (untold(design, design.fit(), LOGS) < 0.2).all()
     warm = samples.fold[LOGS][samples.part] == 0
-    alone = Design(viscous_ready.base, [replace(knee_friction, columns=knee_friction.columns * warm)])
+    alone = Design(
+        viscous_ready.base, [replace(knee_friction, columns=knee_friction.columns * warm)]
+    )
     found = untold(alone, alone.fit(), LOGS)
     assert found[0] > 0.5, "no other log shows it"
     assert (found[1:] == 0).all(), "it leaves nothing there"

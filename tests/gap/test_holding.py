@@ -13,7 +13,8 @@ from hyperleg_design.gap.preparation import prepare
 from hyperleg_design.gap.thresholds import load_thresholds
 
 SERVO = robots.PENDULUM.replace(
-    '<motor name="servo" joint="swing" ctrlrange="-3 3"/>', '<position name="servo" joint="swing" kp="8" kv="0.3" forcerange="-3 3"/>'
+    '<motor name="servo" joint="swing" ctrlrange="-3 3"/>',
+    '<position name="servo" joint="swing" kp="8" kv="0.3" forcerange="-3 3"/>',
 )
 
 
@@ -31,13 +32,22 @@ def ramps(time):
 
 
 def log(friction=0.0, mass=0.5, rotor=0.0, target=ramps, **metadata):
-    """A servo that ramps, with dry friction [Nm] and a further rotor [kg m^2] at its joint and a mass at its end [kg]."""
-    text = SERVO.replace('damping="0.02"', f'damping="0.02" frictionloss="{friction}"').replace('mass="0.5"', f'mass="{mass}"')
+    """A servo that ramps, with dry friction [Nm] and a further rotor [kg m^2] at its joint and a
+    mass at its end [kg].
+    """
+    text = SERVO.replace('damping="0.02"', f'damping="0.02" frictionloss="{friction}"').replace(
+        'mass="0.5"', f'mass="{mass}"'
+    )
     text = text.replace('armature="0.003"', f'armature="{0.003 + rotor}"')
     found = robots.servo_run(text, target, 10.0, **metadata)
     rng = np.random.default_rng(3)
     noise = {"position": 2e-5, "velocity": 2e-3, "motor_torque": 5e-3}
-    return found.changed(signals={c: v + rng.normal(0, noise.get(c.partition("/")[0], 0.0), len(v)) for c, v in found.signals.items()})
+    return found.changed(
+        signals={
+            c: v + rng.normal(0, noise.get(c.partition("/")[0], 0.0), len(v))
+            for c, v in found.signals.items()
+        }
+    )
 
 
 def test_a_joint_that_sticks_shows_its_friction_and_never_more(servo):
@@ -46,9 +56,16 @@ def test_a_joint_that_sticks_shows_its_friction_and_never_more(servo):
         assert 0.6 * friction < shown < 1.1 * friction
 
 
-@pytest.mark.parametrize(("rotor", "friction", "pace"), [(0.05, 0.2, 2.0), (0.15, 0.2, 1.3), (0.15, 0.4, 2.0), (0.15, 0.4, 1.3)])
+@pytest.mark.parametrize(
+    ("rotor", "friction", "pace"),
+    [(0.05, 0.2, 2.0), (0.15, 0.2, 1.3), (0.15, 0.4, 2.0), (0.15, 0.4, 1.3)],
+)
 def test_what_a_heavy_rotor_needs_to_set_off_is_not_held(servo, rotor, friction, pace):
-    swung = log(friction, rotor=rotor, target=lambda t: (0.8 if pace < 2 else 0.6) * np.sign(np.sin(pace * t))[None])
+    swung = log(
+        friction,
+        rotor=rotor,
+        target=lambda t: (0.8 if pace < 2 else 0.6) * np.sign(np.sin(pace * t))[None],
+    )
     assert float(held(conditioned(servo, swung)[0])[0]) < 1.1 * friction
 
 
@@ -66,16 +83,29 @@ def test_what_held_before_is_no_news(servo):
 
 
 def test_errors_that_rub_are_known_together(servo):
-    errors = [Usual("coulomb_friction", "swing", 0, 0.1), Usual("stribeck_friction", "swing", 0, 0.2), Usual("viscous_friction", "swing", 0, 1.0)]
-    prior = Prior(np.array([3.0, -0.5, 4.0]), np.array([[4.0, -1.9, 0.0], [-1.9, 1.0, 0.0], [0.0, 0.0, 1.0]]))
+    errors = [
+        Usual("coulomb_friction", "swing", 0, 0.1),
+        Usual("stribeck_friction", "swing", 0, 0.2),
+        Usual("viscous_friction", "swing", 0, 1.0),
+    ]
+    prior = Prior(
+        np.array([3.0, -0.5, 4.0]), np.array([[4.0, -1.9, 0.0], [-1.9, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    )
     variance = 0.04 + 0.04 - 2 * 0.1 * 0.2 * 1.9  # Nm^2: much less than of either alone
-    assert calibrated(errors, prior, conditioned(servo, log()))[0] == pytest.approx(0.3 - 0.1 + OPEN * np.sqrt(variance))
+    assert calibrated(errors, prior, conditioned(servo, log()))[0] == pytest.approx(
+        0.3 - 0.1 + OPEN * np.sqrt(variance)
+    )
 
 
 def test_calibrated_friction_is_known_at_rest_as_far_as_it_may_reach(servo):
     signals = conditioned(servo, log(0.5))
     errors = [Usual("coulomb_friction", "swing", 0, 0.01)]
-    for mean, deviation, holds in ((0.5, 0.02, False), (0.1, 0.02, True), (0.1, 0.2, False), (-0.5, 0.02, True)):
+    for mean, deviation, holds in (
+        (0.5, 0.02, False),
+        (0.1, 0.02, True),
+        (0.1, 0.2, False),
+        (-0.5, 0.02, True),
+    ):
         prior = Prior(np.array([mean / 0.01]), np.array([[(deviation / 0.01) ** 2]]))
         assert bool(noticed(signals, (), (), errors, prior)) == holds
 
@@ -105,7 +135,10 @@ def test_a_joint_that_sticks_is_never_called_healthy(servo):
 
 def test_noise_of_a_slow_log_is_no_friction(servo):
     healthy, rng = log(), np.random.default_rng(4)
-    rough = {c: v[::4] + (rng.normal(0, 0.2, len(v[::4])) if c.startswith("motor_torque") else 0.0) for c, v in healthy.signals.items()}
+    rough = {
+        c: v[::4] + (rng.normal(0, 0.2, len(v[::4])) if c.startswith("motor_torque") else 0.0)
+        for c, v in healthy.signals.items()
+    }
     signals = conditioned(servo, healthy.changed(time=healthy.time[::4], signals=rough))
     assert noticed(signals, ()) == {}
     assert float(held(signals[0])[0]) < 0.12
@@ -121,10 +154,14 @@ def test_loads_that_knock_or_stand_on_feet_are_known_less_well():
 
 
 def test_a_leg_on_its_feet_and_a_joint_among_knocks_hold_nothing(servo):
-    """The same rests show friction as long as the load does not change more than what they are said to hold."""
+    """The same rests show friction as long as the load does not change more than what they are said
+    to hold.
+    """
     signals = conditioned(servo, log(0.6))[0]
     shown = float(held(signals)[0])
     rng = np.random.default_rng(5)
-    knocked = dataclasses.replace(signals, rigid=signals.rigid + 4.0 * rng.standard_normal(signals.rigid.shape))
+    knocked = dataclasses.replace(
+        signals, rigid=signals.rigid + 4.0 * rng.standard_normal(signals.rigid.shape)
+    )
     assert shown > 0.3
     assert float(held(knocked)[0]) < 0.2 * shown

@@ -19,13 +19,18 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("rig")
     (place / "pendulum.xml").write_text(PENDULUM)
     heavy = PENDULUM.replace('mass="0.5"', 'mass="0.7"')
-    write_log(place / "clean.parquet", servo_run(PENDULUM, waves(1, 1.0), 6.0, base="fixed", role="reference"))
+    write_log(
+        place / "clean.parquet",
+        servo_run(PENDULUM, waves(1, 1.0), 6.0, base="fixed", role="reference"),
+    )
     write_log(place / "heavy.parquet", servo_run(heavy, waves(1, 1.0, seed=1), 6.0, base="fixed"))
     return place
 
 
 def test_logs_that_say_so_are_references(folder: Path) -> None:
-    found = take_in(str(folder / "pendulum.xml"), [folder / "heavy.parquet", folder / "clean.parquet"])
+    found = take_in(
+        str(folder / "pendulum.xml"), [folder / "heavy.parquet", folder / "clean.parquet"]
+    )
     assert [len(found.tests), len(found.references), len(found.checks)] == [1, 1, 2]
     assert found.tests[0].subject.joints == ("swing",)
     gap = measure(found.tests, found.references)

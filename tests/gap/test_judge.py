@@ -4,7 +4,18 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.judge import CHATTERS, INWARD, MISSING, NEGATIVE, OUTERMOST, PER_PARAMETER, RARE, Judge, plausible, rank
+from hyperleg_design.gap.judge import (
+    CHATTERS,
+    INWARD,
+    MISSING,
+    NEGATIVE,
+    OUTERMOST,
+    PER_PARAMETER,
+    RARE,
+    Judge,
+    plausible,
+    rank,
+)
 from hyperleg_design.gap.screen import linearise
 from hyperleg_design.gap.thresholds import load_thresholds
 
@@ -23,12 +34,16 @@ def right(judge, knee_friction):
 def weak_motor(judge):
     samples = judge.base.samples
     motor = samples.sieves[0].signals.subject.motors[0]
-    return judge.model([linearise(samples, EFFECTS["torque_constant"], motor, EFFECTS["torque_constant"].nulls)])
+    return judge.model(
+        [linearise(samples, EFFECTS["torque_constant"], motor, EFFECTS["torque_constant"].nulls)]
+    )
 
 
 def test_nothing_closes_nothing_and_the_cause_nearly_all(judge, right):
     rows = judge.excess_rows(right)
-    assert judge.closed(judge.nothing.held, rows, judge.nothing.held) == pytest.approx(0.0, abs=1e-9)
+    assert judge.closed(judge.nothing.held, rows, judge.nothing.held) == pytest.approx(
+        0.0, abs=1e-9
+    )
     assert judge.closed(right.held, rows, right.held) > 0.9
     assert right.gain > judge.thresholds.evident
 
@@ -41,13 +56,21 @@ def test_a_trace_is_as_large_as_what_leaving_it_out_leaves(judge, right):
 
 
 def test_what_is_under_the_floor_is_no_evidence(judge, right, knee_friction):
-    """The same data over a floor a hundred and fifty times as high: a model foretells them as much better, but all of it is under that floor."""
+    """The same data over a floor a hundred and fifty times as high: a model foretells them as much
+    better, but all of it is under that floor.
+    """
     base, high = judge.base, 150.0
     samples = replace(base.samples, floor=high * base.samples.floor)
-    noisy = Judge(replace(base, samples=samples, errors=base.errors / high, value=base.value / high), judge.thresholds, 1)
+    noisy = Judge(
+        replace(base, samples=samples, errors=base.errors / high, value=base.value / high),
+        judge.thresholds,
+        1,
+    )
     faint = noisy.model([knee_friction])
     assert right.over > 0.6 * right.gain
-    errors = noisy.nothing.fit.implausible - faint.fit.implausible  # which explain it otherwise, and are unlikely over any floor
+    errors = (
+        noisy.nothing.fit.implausible - faint.fit.implausible
+    )  # which explain it otherwise, and are unlikely over any floor
     assert faint.over - errors < judge.thresholds.evident < faint.gain - errors
 
 
@@ -84,7 +107,11 @@ def test_rows_that_are_known_for_a_moment_do_not_count(judge, right, viscous_rea
         mask = sieve.mask.copy()
         mask[knee, 20:] = False
         sieves.append(replace(sieve, mask=mask))
-    short = Judge(replace(viscous_ready.base, samples=replace(samples, sieves=tuple(sieves))), load_thresholds(), 1)
+    short = Judge(
+        replace(viscous_ready.base, samples=replace(samples, sieves=tuple(sieves))),
+        load_thresholds(),
+        1,
+    )
     assert short.present.tolist() == [i != knee for i in range(len(samples.rows))]
     assert judge.excess_rows(right)[knee]
     assert not short.excess_rows(right)[knee]
@@ -99,18 +126,30 @@ def test_loads_hang_at_the_ends_and_odds_are_of_all_causes(judge, right):
     assert plausible(both) == pytest.approx(2 * plausible(right))
 
 
-@pytest.mark.parametrize(("effect", "gone", "against"), [
-    ("viscous_friction", 0.8, True), ("viscous_friction", 0.3, False), ("rotor_inertia", 0.8, True), ("payload", 0.8, False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("effect", "gone", "against"),
+    [
+        ("viscous_friction", 0.8, True),
+        ("viscous_friction", 0.3, False),
+        ("rotor_inertia", 0.8, True),
+        ("payload", 0.8, False),
+    ],
+)
 def test_hardly_any_friction_or_rotor_inertia_of_the_model_is_gone(right, effect, gone, against):
     own = replace(right.causes[0], effect=effect, low=np.array([-0.5]), beyond=1)
 
     def of(value):
-        return replace(right, causes=(own,), fit=replace(right.fit, phi=(np.array([value]) - own.nulls) / own.usual))
+        return replace(
+            right,
+            causes=(own,),
+            fit=replace(right.fit, phi=(np.array([value]) - own.nulls) / own.usual),
+        )
 
     assert of(-0.5 * gone).values(0) == pytest.approx(-0.5 * gone)
     negative = NEGATIVE if effect == "payload" else 0.0
-    assert plausible(of(0.4)) - plausible(of(-0.5 * gone)) - negative == pytest.approx(MISSING if against else 0.0)
+    assert plausible(of(0.4)) - plausible(of(-0.5 * gone)) - negative == pytest.approx(
+        MISSING if against else 0.0
+    )
 
 
 def test_loops_that_chatter_are_explained_once(judge, right):

@@ -1,4 +1,6 @@
-"""Joints that knock about in their play unseen, on an arm of two links that is written here: textbook dynamics, rotors on stiff springs."""
+"""Joints that knock about in their play unseen, on an arm of two links that is written here:
+textbook dynamics, rotors on stiff springs.
+"""
 
 from functools import cache
 
@@ -25,11 +27,13 @@ MJCF = f"""<mujoco><worldbody><body name="upper" euler="90 0 0">
 <body name="fore" pos="{LENGTH[0]} 0 0">
 <joint name="elbow" type="hinge" axis="0 0 1" armature="{ROTOR}" frictionloss="{LOSS}"/>
 <inertial pos="{COM[1]} 0 0" mass="{MASS[1]}" diaginertia="0.006 0.006 {INERTIA[1]}"/></body></body></worldbody>
-<actuator><motor name="shoulder" joint="shoulder" ctrlrange="-40 40"/><motor name="elbow" joint="elbow" ctrlrange="-40 40"/></actuator></mujoco>"""
+<actuator><motor name="shoulder" joint="shoulder" ctrlrange="-40 40"/><motor name="elbow" joint="elbow" ctrlrange="-40 40"/></actuator></mujoco>"""  # noqa: E501
 
 
 def mass_and_bias(q, v):
-    """Of a planar arm in a vertical plane, angles from the horizontal, gravity down (Craig, Introduction to Robotics, 6.7)."""
+    """Of a planar arm in a vertical plane, angles from the horizontal, gravity down (Craig,
+    Introduction to Robotics, 6.7).
+    """
     c2, s2 = np.cos(q[1]), np.sin(q[1])
     far = MASS[1] * LENGTH[0] * COM[1]
     m22 = INERTIA[1] + MASS[1] * COM[1] ** 2
@@ -37,27 +41,38 @@ def mass_and_bias(q, v):
     m11 = INERTIA[0] + MASS[0] * COM[0] ** 2 + MASS[1] * LENGTH[0] ** 2 + m22 + 2 * far * c2
     fore = 9.81 * MASS[1] * COM[1] * np.cos(q[0] + q[1])
     upper = 9.81 * (MASS[0] * COM[0] + MASS[1] * LENGTH[0]) * np.cos(q[0])
-    bias = np.array([-far * s2 * v[1] * (2 * v[0] + v[1]) + upper + fore, far * s2 * v[0] ** 2 + fore])
+    bias = np.array(
+        [-far * s2 * v[1] * (2 * v[0] + v[1]) + upper + fore, far * s2 * v[0] ** 2 + fore]
+    )
     return np.array([[m11, m12], [m12, m22]]), bias
 
 
 @cache
 def arm(play=(0.0, 0.0), bumps=0.0, seed=0, role="test", seconds=10):
-    """A log with encoders on the rotors; `bumps` are torques that hit the elbow now and then [Nm]."""
+    """A log with encoders on the rotors; `bumps` are torques that hit the elbow now and then
+    [Nm].
+    """
     rng = np.random.default_rng(seed)
     phase = rng.uniform(0, 2 * np.pi, 4)
     stiffness, damping = (np.array([GAINS[j][k] for j in JOINTS]) for k in (0, 1))
-    rotor = np.array([-1.2 + 0.3 * np.sin(phase[0]) + 0.2 * np.sin(phase[1]), 0.5 + 0.3 * np.sin(phase[2]) + 0.2 * np.sin(phase[3])])
+    rotor = np.array(
+        [
+            -1.2 + 0.3 * np.sin(phase[0]) + 0.2 * np.sin(phase[1]),
+            0.5 + 0.3 * np.sin(phase[2]) + 0.2 * np.sin(phase[3]),
+        ]
+    )
     joint, turning, moving = rotor.copy(), np.zeros(2), np.zeros(2)
     hits = np.sort(rng.uniform(0, seconds, 25))
     rows = []
     for i in range(round(seconds / STEP)):
         t = i * STEP
         w = 2 * np.pi * t
-        target = np.array([
-            -1.2 + 0.3 * np.sin(0.5 * w + phase[0]) + 0.2 * np.sin(1.3 * w + phase[1]),
-            0.5 + 0.3 * np.sin(0.7 * w + phase[2]) + 0.2 * np.sin(1.7 * w + phase[3]),
-        ])  # fmt: skip
+        target = np.array(
+            [
+                -1.2 + 0.3 * np.sin(0.5 * w + phase[0]) + 0.2 * np.sin(1.3 * w + phase[1]),
+                0.5 + 0.3 * np.sin(0.7 * w + phase[2]) + 0.2 * np.sin(1.7 * w + phase[3]),
+            ]
+        )
         torque = stiffness * (target - rotor) - damping * turning
         if i % round(1 / RATE / STEP) == 0:
             rows.append(np.r_[t, target, rotor, turning, torque])
@@ -90,7 +105,9 @@ def robot(tmp_path):
 
 def heard(robot, *logs, references=()):
     subject = load_subject(robot, list(logs))
-    return knocking([condition(one, subject) for one in logs], [condition(one, subject) for one in references])
+    return knocking(
+        [condition(one, subject) for one in logs], [condition(one, subject) for one in references]
+    )
 
 
 def test_the_model_is_the_same_arm(robot):
@@ -111,7 +128,9 @@ def test_the_model_is_the_same_arm(robot):
 @pytest.mark.parametrize("place", [0, 1])
 def test_the_joint_that_has_play_is_told_by_the_other_one(robot, place):
     play = tuple(0.02 * (i == place) for i in range(2))
-    found = heard(robot, arm(play, seed=1), arm(play, seed=2), references=[arm(seed=3, role="reference")])
+    found = heard(
+        robot, arm(play, seed=1), arm(play, seed=2), references=[arm(seed=3, role="reference")]
+    )
     assert found.location == JOINTS[place]
     assert found.closed_interval[0] <= found.closed <= found.closed_interval[1]
     angle = next(c for c in found.causes if c.effect == "backlash").parameters["angle"]
@@ -137,13 +156,26 @@ def test_torques_that_hit_one_joint_are_no_play(robot):
 
 def test_what_reference_logs_show_too_is_nothing_new(robot):
     play = (0.0, 0.02)
-    assert heard(robot, arm(play, seed=1), arm(play, seed=2), references=[arm(play, seed=3, role="reference")]) is None
+    assert (
+        heard(
+            robot,
+            arm(play, seed=1),
+            arm(play, seed=2),
+            references=[arm(play, seed=3, role="reference")],
+        )
+        is None
+    )
 
 
 @pytest.mark.parametrize("every", [4, 10, 20])
 def test_slow_logs_hear_no_knocks(robot, every):
     whole = arm((0.0, 0.02), seed=1)
-    log = Log("slow", whole.time[::every], {k: v[::every] for k, v in whole.signals.items()}, whole.metadata)
+    log = Log(
+        "slow",
+        whole.time[::every],
+        {k: v[::every] for k, v in whole.signals.items()},
+        whole.metadata,
+    )
     found = heard(robot, log)
     assert found is None or (every == 4 and found.location == "elbow")
 
@@ -151,21 +183,31 @@ def test_slow_logs_hear_no_knocks(robot, every):
 def test_one_joint_alone_has_nothing_to_tell_motion_from_torque_by(tmp_path):
     path = tmp_path / "one.xml"
     path.write_text(
-        MJCF[: MJCF.index('<body name="fore"')] + '</body></worldbody><actuator><motor name="shoulder" joint="shoulder"/></actuator></mujoco>'
+        MJCF[: MJCF.index('<body name="fore"')]
+        + '</body></worldbody><actuator><motor name="shoulder" '
+        'joint="shoulder"/></actuator></mujoco>'
     )
     whole = arm((0.02, 0.0), seed=1)
     own = {k: v for k, v in whole.signals.items() if k.endswith("shoulder")}
-    assert heard(path, Log("one", whole.time, own, Metadata(gains={"shoulder": GAINS["shoulder"]}))) is None
+    assert (
+        heard(path, Log("one", whole.time, own, Metadata(gains={"shoulder": GAINS["shoulder"]})))
+        is None
+    )
 
 
 def test_the_diagnosis_says_so_and_its_page_shows_it(robot, tmp_path):
     play = (0.0, 0.02)
-    logs, references = [arm(play, seed=1), arm(play, seed=2)], [arm(seed=s, role="reference") for s in (3, 4)]
+    logs, references = (
+        [arm(play, seed=1), arm(play, seed=2)],
+        [arm(seed=s, role="reference") for s in (3, 4)],
+    )
     found = diagnose(robot, logs, references, threads=1)
     assert found.verdict == "ambiguous"
     assert (found.causes[0].effect, found.causes[0].location) == ("backlash", "elbow")
     subject = load_subject(robot, logs)
-    page = write_gap_page(tmp_path, found.mapping(), [condition(one, subject) for one in logs]).read_text()
+    page = write_gap_page(
+        tmp_path, found.mapping(), [condition(one, subject) for one in logs]
+    ).read_text()
     assert "elbow knocks about" in page
     assert "figures/knocking-1.png" in page
 
@@ -173,7 +215,15 @@ def test_the_diagnosis_says_so_and_its_page_shows_it(robot, tmp_path):
 def test_another_cause_is_named_beside_it(robot):
     """A shoulder whose drive tells 1.3 times its torque, and an elbow with play."""
     plain = [arm((0.0, 0.02), seed=s) for s in (1, 2)]
-    logs = [log.changed(signals={**log.signals, "motor_torque/shoulder": 1.3 * log.column("motor_torque/shoulder")}) for log in plain]
+    logs = [
+        log.changed(
+            signals={
+                **log.signals,
+                "motor_torque/shoulder": 1.3 * log.column("motor_torque/shoulder"),
+            }
+        )
+        for log in plain
+    ]
     found = diagnose(robot, logs, [arm(seed=s, role="reference") for s in (3, 4)], threads=1)
     assert {c.location for c in found.causes} == {"shoulder", "elbow"}
     (play,) = [c for c in found.causes if c.location == "elbow"]

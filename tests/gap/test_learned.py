@@ -39,11 +39,16 @@ def test_its_trace_and_what_is_open_of_it_are_those_of_the_effect(shown, viscous
 def test_a_limit_that_the_healthy_robot_reaches_too_is_no_cause(robot_files):
     logs = [diagnosed.run("limited", s, session="a") for s in (0, 1)]
     healthy = [diagnosed.run("limited", s, session="b", role="reference") for s in (2, 3)]
-    alone, beside = diagnosed.prepared(robot_files["coupled"], *logs), diagnosed.prepared(robot_files["coupled"], *logs, references=healthy)
+    alone, beside = (
+        diagnosed.prepared(robot_files["coupled"], *logs),
+        diagnosed.prepared(robot_files["coupled"], *logs, references=healthy),
+    )
     assert alone.learned == ()
     assert any("torque_saturation" in line for line in beside.learned)
     rules = load_thresholds()
-    wanted = places(alone.base.samples.sieves[0].signals.subject, ("torque_saturation", "torque_constant"))
+    wanted = places(
+        alone.base.samples.sieves[0].signals.subject, ("torque_saturation", "torque_constant")
+    )
     assert decide(alone.base, rules, wanted)[1].model.names[0][0] == "torque_saturation"
     assert decide(beside.base, rules, wanted)[1].model.names == ()
 

@@ -16,7 +16,9 @@ from hyperleg_design.gap.metadata import Metadata
 
 def example(ticks: int = 50, **signals: np.ndarray) -> Log:
     time = np.arange(ticks) * 0.005
-    return Log("run", time, {"position/knee": np.sin(time), "motor_current/m": np.cos(time), **signals})
+    return Log(
+        "run", time, {"position/knee": np.sin(time), "motor_current/m": np.cos(time), **signals}
+    )
 
 
 NAMES = st.text("abcdefgh_/.äß 1", min_size=1, max_size=8)
@@ -25,16 +27,30 @@ VALUES = hnp.arrays(float, 7, elements=st.floats(allow_infinity=False))
 
 @settings(max_examples=40, deadline=None)
 @given(
-    joints=st.dictionaries(NAMES, VALUES, max_size=4), motors=st.dictionaries(NAMES, VALUES, max_size=3),
+    joints=st.dictionaries(NAMES, VALUES, max_size=4),
+    motors=st.dictionaries(NAMES, VALUES, max_size=3),
     gains=st.dictionaries(NAMES, st.tuples(st.floats(0, 1e6), st.floats(0, 1e6)), max_size=3),
-    extra=st.dictionaries(st.text("xyz", min_size=1), st.recursive(st.none() | st.booleans() | st.integers() | st.text(), st.lists), max_size=3),
-    notes=st.text(), start=st.floats(-1e6, 1e6),
-)  # fmt: skip
+    extra=st.dictionaries(
+        st.text("xyz", min_size=1),
+        st.recursive(st.none() | st.booleans() | st.integers() | st.text(), st.lists),
+        max_size=3,
+    ),
+    notes=st.text(),
+    start=st.floats(-1e6, 1e6),
+)
 def test_round_trip(tmp_path_factory, joints, motors, gains, extra, notes, start):
     signals = (
-        {"position/always": np.arange(7.0)} | {f"position/{k}": v for k, v in joints.items()} | {f"motor_current/{k}": v for k, v in motors.items()}
+        {"position/always": np.arange(7.0)}
+        | {f"position/{k}": v for k, v in joints.items()}
+        | {f"motor_current/{k}": v for k, v in motors.items()}
     )
-    metadata = Metadata(gains=gains, extra=extra, notes=notes, payload={"hand": (1.0, 0.0, 0.1, 0.2)}, role="reference")
+    metadata = Metadata(
+        gains=gains,
+        extra=extra,
+        notes=notes,
+        payload={"hand": (1.0, 0.0, 0.1, 0.2)},
+        role="reference",
+    )
     log = Log("one", start + np.arange(7) * 0.01, signals, metadata)
     path = write_log(tmp_path_factory.mktemp("logs") / "one.parquet", log)
     again = read_log(path)
@@ -47,7 +63,10 @@ def test_round_trip(tmp_path_factory, joints, motors, gains, extra, notes, start
 
 
 def test_same_log_gives_the_same_bytes(tmp_path):
-    assert write_log(tmp_path / "a.parquet", example()).read_bytes() == write_log(tmp_path / "b.parquet", example()).read_bytes()
+    assert (
+        write_log(tmp_path / "a.parquet", example()).read_bytes()
+        == write_log(tmp_path / "b.parquet", example()).read_bytes()
+    )
 
 
 def test_stack_gives_nan_where_a_column_is_missing():
@@ -65,7 +84,12 @@ def test_stack_gives_nan_where_a_column_is_missing():
 
 def test_vectors_feet_and_battery():
     ones = np.ones(50)
-    signals = {"gyro/z": 3 * ones, "battery_voltage": 7.4 * ones, "contact_force/left_foot_x": ones, "contact_force/left_foot_z": ones}
+    signals = {
+        "gyro/z": 3 * ones,
+        "battery_voltage": 7.4 * ones,
+        "contact_force/left_foot_x": ones,
+        "contact_force/left_foot_z": ones,
+    }
     log = example(**signals)
     assert np.isnan(log.vector("gyro")[:, :2]).all()
     assert (log.vector("gyro")[:, 2] == 3).all()
@@ -74,7 +98,18 @@ def test_vectors_feet_and_battery():
     assert log.feet == ("left_foot",)
 
 
-@pytest.mark.parametrize("column", ["position", "gyro/q", "battery_voltage/x", "contact_force/foot", "speed/knee", "t", "position/"])
+@pytest.mark.parametrize(
+    "column",
+    [
+        "position",
+        "gyro/q",
+        "battery_voltage/x",
+        "contact_force/foot",
+        "speed/knee",
+        "t",
+        "position/",
+    ],
+)
 def test_unknown_columns(column):
     assert not known_column(column)
     with pytest.raises(InputError, match="no column of the log format"):
@@ -121,7 +156,11 @@ def test_side_file_wins_field_by_field(tmp_path):
     path = write_log(tmp_path / "run.parquet", log)
     (tmp_path / "run.json").write_text(json.dumps({"robot": "beside", "operator": "me"}))
     found = read_log(path).metadata
-    assert (found.robot, found.session, found.extra) == ("beside", "a", {"kept": 1, "operator": "me"})
+    assert (found.robot, found.session, found.extra) == (
+        "beside",
+        "a",
+        {"kept": 1, "operator": "me"},
+    )
     (tmp_path / "run.json").write_text("{")
     with pytest.raises(InputError, match=r"run.json: is not JSON"):
         read_log(path)
@@ -151,9 +190,20 @@ def test_wrong_columns(tmp_path):
     with pytest.raises(InputError, match=r"run.parquet: t.*is missing"):
         read_log(write_table(tmp_path / "run.parquet", time=[0.0, 1.0]))
     with pytest.raises(InputError, match=r"position/knee = 'string': is no column of numbers"):
-        read_log(write_table(tmp_path / "run.parquet", **{"t": [0.0, 1.0], "position/knee": ["1.0", "2.0"]}))
+        read_log(
+            write_table(
+                tmp_path / "run.parquet", **{"t": [0.0, 1.0], "position/knee": ["1.0", "2.0"]}
+            )
+        )
     found = read_log(
-        write_table(tmp_path / "run.parquet", **{"t": [0, 1], "position/knee": pyarrow.array([1, None], pyarrow.int32()), "comment": ["a", "b"]})
+        write_table(
+            tmp_path / "run.parquet",
+            **{
+                "t": [0, 1],
+                "position/knee": pyarrow.array([1, None], pyarrow.int32()),
+                "comment": ["a", "b"],
+            },
+        )
     )
     np.testing.assert_array_equal(found.signals["position/knee"], [1, np.nan])
     assert any("comment" in remark for remark in found.metadata.remarks)
@@ -161,16 +211,32 @@ def test_wrong_columns(tmp_path):
 
 def test_clock_of_a_file(tmp_path):
     with pytest.raises(InputError, match=r"run.parquet: t = '1 s in row 3"):
-        read_log(write_table(tmp_path / "run.parquet", **{"t": [0.0, 1.0, 2.0, 1.0], "position/knee": [0.0] * 4}))
-    found = read_log(write_table(tmp_path / "run.parquet", **{"t": [0.0, 1.0, 1.0, 2.0], "position/knee": [0.0, None, 5.0, 2.0]}))
+        read_log(
+            write_table(
+                tmp_path / "run.parquet", **{"t": [0.0, 1.0, 2.0, 1.0], "position/knee": [0.0] * 4}
+            )
+        )
+    found = read_log(
+        write_table(
+            tmp_path / "run.parquet",
+            **{"t": [0.0, 1.0, 1.0, 2.0], "position/knee": [0.0, None, 5.0, 2.0]},
+        )
+    )
     np.testing.assert_array_equal(found.signals["position/knee"], [0, 5, 2])
     assert any("repeat" in remark for remark in found.metadata.remarks)
     with pytest.raises(InputError, match="stands still"):
-        read_log(write_table(tmp_path / "run.parquet", **{"t": [0.0, 0.0, 0.0, 0.0, 1.0], "position/knee": [0.0] * 5}))
+        read_log(
+            write_table(
+                tmp_path / "run.parquet",
+                **{"t": [0.0, 0.0, 0.0, 0.0, 1.0], "position/knee": [0.0] * 5},
+            )
+        )
 
 
 def test_tidied_leaves_out_rows_without_time_and_infinities():
-    time, signals, remarks = tidied(np.array([0, 1, np.nan, 2]), {"position/knee": np.array([1, np.inf, 3, 4])}, "run")
+    time, signals, remarks = tidied(
+        np.array([0, 1, np.nan, 2]), {"position/knee": np.array([1, np.inf, 3, 4])}, "run"
+    )
     np.testing.assert_array_equal(time, [0, 1, 2])
     np.testing.assert_array_equal(signals["position/knee"], [1, np.nan, 4])
     assert len(remarks) == 2

@@ -1,4 +1,6 @@
-"""Belts that ring, against a pendulum on a belt that is written here: two masses, a controller at 1 kHz, none of the package's physics."""
+"""Belts that ring, against a pendulum on a belt that is written here: two masses, a controller at 1
+kHz, none of the package's physics.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -32,14 +34,18 @@ def recorded(spring=RIGID, play=0.0, delay=1, damping=DAMPING, seconds=10):
         time = i * STEP
         target = 0.4 * np.sin(2 * np.pi * 0.4 * time) + 0.15 * np.sin(2 * np.pi * 1.3 * time)
         if i % 10 == 0:
-            asked.append(float(np.clip(STIFFNESS * (target - place[1]) - damping * speed[1], -LIMIT, LIMIT)))
+            asked.append(
+                float(np.clip(STIFFNESS * (target - place[1]) - damping * speed[1], -LIMIT, LIMIT))
+            )
         torque = asked[-1 - delay]
         if i % round(1 / RATE / STEP) == 0:
             rows.append((time, target, place[1], speed[1], torque))
         stretch = place[0] - place[1]
         taut = stretch - min(max(stretch, -play / 2), play / 2)
         pull = spring * taut + (loss * (speed[0] - speed[1]) if taut or not play else 0.0)
-        held = 0.05 * np.tanh(speed[1] / 0.02) + 0.02 * speed[1] + 9.81 * 0.3 * 0.15 * np.sin(place[1])
+        held = (
+            0.05 * np.tanh(speed[1] / 0.02) + 0.02 * speed[1] + 9.81 * 0.3 * 0.15 * np.sin(place[1])
+        )
         speed = speed + STEP * np.array([(torque - pull) / ROTOR, (pull - held) / INERTIA])
         place = place + STEP * speed
     return np.array(rows)[RATE:].T
@@ -48,7 +54,10 @@ def recorded(spring=RIGID, play=0.0, delay=1, damping=DAMPING, seconds=10):
 def log(rows, *, velocity=True, torque=True, every=1, role="test", damping=DAMPING):
     time, target, angle, speed, given = rows[:, ::every]
     noise = np.random.default_rng(0).normal(size=(2, len(time)))
-    signals = {"position_target/hinge": target, "position/hinge": np.round(angle + 5e-5 * noise[0], 4)}
+    signals = {
+        "position_target/hinge": target,
+        "position/hinge": np.round(angle + 5e-5 * noise[0], 4),
+    }
     if torque:
         signals["motor_torque/hinge"] = given
     if velocity:
@@ -119,11 +128,15 @@ def test_what_friction_may_hold_is_no_belts(robot, tmp_path):
 
 
 def test_what_rang_before_is_no_news(robot):
-    signals = condition(log(recorded(spring=2000.0)), load_subject(robot, [log(recorded(spring=2000.0))]))
+    signals = condition(
+        log(recorded(spring=2000.0)), load_subject(robot, [log(recorded(spring=2000.0))])
+    )
     known = replace(signals, chatter=replace(signals.chatter, joints=np.zeros(1, bool)))
     assert loose([signals]) is not None
     assert loose([known]) is None
-    assert loose([replace(signals, subject=replace(signals.subject, base="floating"))]) is None  # on its feet, nothing is known
+    assert (
+        loose([replace(signals, subject=replace(signals.subject, base="floating"))]) is None
+    )  # on its feet, nothing is known
 
 
 def test_a_diagnosis_names_the_belt_and_how_to_tell_play_from_softness(robot, tmp_path):
@@ -137,7 +150,9 @@ def test_a_diagnosis_names_the_belt_and_how_to_tell_play_from_softness(robot, tm
     assert found.gap.closed == pytest.approx(1 - found.gap.after / found.gap.before)
     assert found.causes[0].probability > 0.5
     assert sum(c.probability for c in (*found.causes, *found.rivals)) < 1 + 1e-9
-    page = write_gap_page(tmp_path, found.mapping(), [condition(test, load_subject(robot, [test]))]).read_text()
+    page = write_gap_page(
+        tmp_path, found.mapping(), [condition(test, load_subject(robot, [test]))]
+    ).read_text()
     assert "hinge rings at" in page
     assert "figures/ringing-1.png" in page
     assert "trace-1" not in page

@@ -15,9 +15,21 @@ def test_a_design_has_one_machine_however_it_is_asked():
     own, other = machine_of(subject_of(design)), machine_of_design(design)
     assert own.joints == other.joints
     assert own.motors == other.motors
-    for name in ("joint_from_motor", "motor_from_joint", "stiffness", "damping", "rotor_inertia", "no_load_speed", "stall_torque", "peak_torque",
-                 "power_constant", "rated_torque"):  # fmt: skip
-        np.testing.assert_allclose(getattr(own, name), getattr(other, name), rtol=1e-9, atol=1e-12, err_msg=name)
+    for name in (
+        "joint_from_motor",
+        "motor_from_joint",
+        "stiffness",
+        "damping",
+        "rotor_inertia",
+        "no_load_speed",
+        "stall_torque",
+        "peak_torque",
+        "power_constant",
+        "rated_torque",
+    ):
+        np.testing.assert_allclose(
+            getattr(own, name), getattr(other, name), rtol=1e-9, atol=1e-12, err_msg=name
+        )
 
 
 def test_a_file_has_what_it_says_and_no_limit_that_it_does_not(robot_files):

@@ -11,7 +11,12 @@ from hyperleg_design.gap.subject import load_subject
 def noisy(log, seed, torque=0.02):
     rng = np.random.default_rng(seed)
     rounded = robots.quantised(log, 5e-4)
-    return rounded.changed(signals={c: v + rng.normal(0, torque, len(v)) if c.startswith("motor_torque/") else v for c, v in rounded.signals.items()})
+    return rounded.changed(
+        signals={
+            c: v + rng.normal(0, torque, len(v)) if c.startswith("motor_torque/") else v
+            for c, v in rounded.signals.items()
+        }
+    )
 
 
 def conditioned(robot_files, name, *logs):
@@ -22,12 +27,16 @@ def conditioned(robot_files, name, *logs):
 @pytest.fixture(scope="module")
 def stiction():
     """The coupled rig with more friction at the knee than its file says."""
-    text = robots.COUPLED.replace('name="knee" axis="0 1 0" damping="0.03"', 'name="knee" axis="0 1 0" damping="0.23"')
+    text = robots.COUPLED.replace(
+        'name="knee" axis="0 1 0" damping="0.03"', 'name="knee" axis="0 1 0" damping="0.23"'
+    )
     return robots.servo_run(text, robots.waves(2, [1.0, 1.0]), 10.0)
 
 
 def test_a_faultless_log_has_no_excess_over_its_references(robot_files, runs):
-    one, two = conditioned(robot_files, "coupled", noisy(runs["coupled"], 0), noisy(runs["coupled"], 1))
+    one, two = conditioned(
+        robot_files, "coupled", noisy(runs["coupled"], 0), noisy(runs["coupled"], 1)
+    )
     gap = measure([one], [two])
     assert gap.floor_from == "reference"
     for row in gap.select("torque"):
@@ -35,7 +44,9 @@ def test_a_faultless_log_has_no_excess_over_its_references(robot_files, runs):
 
 
 def test_the_gap_lies_where_the_fault_is(robot_files, runs, stiction):
-    test, reference = conditioned(robot_files, "coupled", noisy(stiction, 0), noisy(runs["coupled"], 1))
+    test, reference = conditioned(
+        robot_files, "coupled", noisy(stiction, 0), noisy(runs["coupled"], 1)
+    )
     gap = measure([test], [reference])
     rows = {r.location: r for r in gap.select("torque", "joint")}
     assert rows["knee"].share > 0.9
@@ -75,7 +86,9 @@ def test_repeats_of_a_motion_are_found_and_give_the_floor(robot_files, runs):
     logs = [noisy(runs["arm"], seed, torque=0.5) for seed in (0, 1)]
     gap = measure(conditioned(robot_files, "arm", *logs), predict=False)
     assert gap.floor_from == "repeats"
-    assert gap.select("torque", "joint", "shoulder_pan")[0].floor == pytest.approx(0.5 * np.sqrt(0.1), rel=0.2)
+    assert gap.select("torque", "joint", "shoulder_pan")[0].floor == pytest.approx(
+        0.5 * np.sqrt(0.1), rel=0.2
+    )
 
 
 def test_table_and_bands(robot_files, runs, stiction):
@@ -85,7 +98,9 @@ def test_table_and_bands(robot_files, runs, stiction):
     assert len({len(column) for column in table.values()}) == 1
     bands = [r for r in gap.select("torque", "joint", "knee", "") if r.regime.endswith("Hz")]
     whole = gap.select("torque", "joint", "knee")[0]
-    assert np.sqrt(sum(r.gap**2 for r in bands if r.regime != "10-25 Hz")) == pytest.approx(whole.gap, rel=0.05)
+    assert np.sqrt(sum(r.gap**2 for r in bands if r.regime != "10-25 Hz")) == pytest.approx(
+        whole.gap, rel=0.05
+    )
 
 
 def test_no_logs():

@@ -6,19 +6,31 @@ from hyperleg_design.gap.metadata import Metadata, metadata_from_mapping
 
 
 def test_unknown_keys_are_kept():
-    found = metadata_from_mapping({"robot": "hyperleg", "operator": "me", "extra": {"a": 1}}, "run.json")
+    found = metadata_from_mapping(
+        {"robot": "hyperleg", "operator": "me", "extra": {"a": 1}}, "run.json"
+    )
     assert found.extra == {"operator": "me", "a": 1}
     assert metadata_from_mapping(found.mapping(), "run.json") == found
 
 
 def test_what_is_written_is_plain():
-    found = Metadata(gains={"knee": np.array([20, 1.5])}, torque_constant={"m": np.float32(0.5)}, gravity=np.array([0, 0, -9.81]))
+    found = Metadata(
+        gains={"knee": np.array([20, 1.5])},
+        torque_constant={"m": np.float32(0.5)},
+        gravity=np.array([0, 0, -9.81]),
+    )
     assert found.gains == {"knee": (20.0, 1.5)}
     assert found.mapping() == {"gains": {"knee": [20.0, 1.5]}, "torque_constant": {"m": 0.5}}
 
 
 def test_overrides_and_payload_in_both_spellings():
-    found = metadata_from_mapping({"overrides": {"toe.mass": 0.3}, "payload": {"hand": [1, [0, 0, 0.1]], "foot": [2, 0, 0, 0]}}, "x")
+    found = metadata_from_mapping(
+        {
+            "overrides": {"toe.mass": 0.3},
+            "payload": {"hand": [1, [0, 0, 0.1]], "foot": [2, 0, 0, 0]},
+        },
+        "x",
+    )
     assert found.overrides == ("toe.mass=0.3",)
     assert found.payload == {"hand": (1, 0, 0, 0.1), "foot": (2, 0, 0, 0)}
 

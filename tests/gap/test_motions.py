@@ -1,7 +1,14 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.motions import LeftOut, Motion, best_phases, fitted, loaded_postures, recommended
+from hyperleg_design.gap.motions import (
+    LeftOut,
+    Motion,
+    best_phases,
+    fitted,
+    loaded_postures,
+    recommended,
+)
 from hyperleg_design.gap.rig_room import room_of, use_of
 from hyperleg_design.gap.subject import load_subject
 
@@ -56,7 +63,11 @@ def test_an_arm_that_falls_does_not_swing(robot_files):
     import robots
 
     path = robot_files["arm"].parent / "ranged.xml"
-    path.write_text(robots.without_missing_meshes(robots.ARM).replace('<joint name="elbow"', '<joint name="elbow" range="-0.4 0.4"'))
+    path.write_text(
+        robots.without_missing_meshes(robots.ARM).replace(
+            '<joint name="elbow"', '<joint name="elbow" range="-0.4 0.4"'
+        )
+    )
     subject = load_subject(str(path))
     motions, left = recommended(subject, room_of(subject), 50.0, np.random.default_rng(0))
     assert [one.name for one in left] == ["swing"]

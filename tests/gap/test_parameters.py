@@ -17,14 +17,28 @@ def model_of(effect, values, deviation):
     count = len(one.nulls)
     low, high = (np.array([getattr(p, end) for p in one.parameters]) for end in ("low", "high"))
     none = np.zeros((count, 0))
-    cause = Cause(effect, "swing", np.array(values), one.nulls, np.ones(count), low, high, np.zeros(count, bool), none, none, True)
+    cause = Cause(
+        effect,
+        "swing",
+        np.array(values),
+        one.nulls,
+        np.ones(count),
+        low,
+        high,
+        np.zeros(count, bool),
+        none,
+        none,
+        True,
+    )
     fit = SimpleNamespace(phi=cause.phi, covariance=np.diag(np.square(deviation)))
     return Model((cause,), fit, None, 0.0)
 
 
 def judge(interval=1.0):
     samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=SUBJECT))])
-    return SimpleNamespace(thresholds=SimpleNamespace(interval=interval), base=SimpleNamespace(samples=samples))
+    return SimpleNamespace(
+        thresholds=SimpleNamespace(interval=interval), base=SimpleNamespace(samples=samples)
+    )
 
 
 def test_a_limit_is_told_with_the_interval_of_its_inverse():
@@ -42,7 +56,9 @@ def test_what_is_infinite_is_not_told():
 def test_a_rest_angle_has_the_doubt_of_both_numbers_it_comes_of():
     found = parameters(judge(), model_of("joint_spring", [2.0, 1.0], [0.1, 0.2]), 0)["rest"]
     assert found.value == pytest.approx(-0.5)
-    assert found.high - found.value == pytest.approx(np.hypot(1.96 * 0.2 / 2, 0.5 - 1 / (2 + 1.96 * 0.1)), rel=1e-6)
+    assert found.high - found.value == pytest.approx(
+        np.hypot(1.96 * 0.2 / 2, 0.5 - 1 / (2 + 1.96 * 0.1)), rel=1e-6
+    )
 
 
 def test_intervals_end_at_bounds_and_scale_with_the_rule():
@@ -53,7 +69,13 @@ def test_intervals_end_at_bounds_and_scale_with_the_rule():
 
 
 def test_sizes_of_belts_are_no_better_known_than_their_traces():
-    sure = parameters(judge(), model_of("backlash", [0.02, 1.0, 1.0, 0.0], [1e-5, 0, 0, 0]), 0)["angle"]
-    assert (sure.low, sure.high) == pytest.approx((0.02 * (1 - 1.96 * 0.15), 0.02 * (1 + 1.96 * 0.15)), rel=1e-3)
-    doubtful = parameters(judge(), model_of("backlash", [0.02, 1.0, 1.0, 0.0], [0.004, 0, 0, 0]), 0)["angle"]
+    sure = parameters(judge(), model_of("backlash", [0.02, 1.0, 1.0, 0.0], [1e-5, 0, 0, 0]), 0)[
+        "angle"
+    ]
+    assert (sure.low, sure.high) == pytest.approx(
+        (0.02 * (1 - 1.96 * 0.15), 0.02 * (1 + 1.96 * 0.15)), rel=1e-3
+    )
+    doubtful = parameters(
+        judge(), model_of("backlash", [0.02, 1.0, 1.0, 0.0], [0.004, 0, 0, 0]), 0
+    )["angle"]
     assert doubtful.high - 0.02 == pytest.approx(1.96 * np.hypot(0.004, 0.003), rel=1e-6)

@@ -42,9 +42,16 @@ def test_position_in_degrees():
 
 
 def test_everything_in_degrees():
-    changes = {f"{kind}__{joint}": np.degrees for kind in ("position", "velocity", "position_target") for joint in ("hip", "knee")}
+    changes = {
+        f"{kind}__{joint}": np.degrees
+        for kind in ("position", "velocity", "position_target")
+        for joint in ("hip", "knee")
+    }
     found = implausible(spoiled(rig_log(), **changes), Robot())
-    assert {f.signal for f in found if f.severity == ERROR} >= {"position/hip", "motor_torque_command/hip"}
+    assert {f.signal for f in found if f.severity == ERROR} >= {
+        "position/hip",
+        "motor_torque_command/hip",
+    }
 
 
 def test_gains_in_degrees():
@@ -59,11 +66,19 @@ def test_a_gear_of_57_is_no_wrong_unit_and_a_motor_that_is_mounted_the_other_way
     class Geared(Robot):
         motor_from_joint = np.diag([1 / 57.3, -1.0])
 
-    turned = {f"{kind}__hip": lambda v: v / 57.3 for kind in ("motor_torque", "motor_torque_command")}
+    turned = {
+        f"{kind}__hip": lambda v: v / 57.3 for kind in ("motor_torque", "motor_torque_command")
+    }
     turned |= {f"{kind}__knee": np.negative for kind in ("motor_torque", "motor_torque_command")}
-    log = spoiled(rig_log(), **{key: change for key, change in turned.items() if rig_log().has(*key.split("__"))})
+    log = spoiled(
+        rig_log(),
+        **{key: change for key, change in turned.items() if rig_log().has(*key.split("__"))},
+    )
     assert not [f for f in implausible(log, Geared()) if "gains ask for" in f.what]
-    assert {f.severity for f in implausible(log, Robot()) if "gains ask for" in f.what} == {ERROR, WARNING}
+    assert {f.severity for f in implausible(log, Robot()) if "gains ask for" in f.what} == {
+        ERROR,
+        WARNING,
+    }
 
 
 def test_milliamps():
@@ -76,7 +91,13 @@ def test_milliamps():
 @pytest.mark.parametrize("kind", ["velocity", "position_target", "position"])
 def test_swapped_joints(kind):
     log = rig_log()
-    swapped = spoiled(log, **{f"{kind}__hip": log.signals[f"{kind}/knee"], f"{kind}__knee": log.signals[f"{kind}/hip"]})
+    swapped = spoiled(
+        log,
+        **{
+            f"{kind}__hip": log.signals[f"{kind}/knee"],
+            f"{kind}__knee": log.signals[f"{kind}/hip"],
+        },
+    )
     found = errors(swapped)
     assert found
     assert all("swapped" in f.remedy for f in implausible(swapped) if f.severity == ERROR)
@@ -84,42 +105,82 @@ def test_swapped_joints(kind):
 
 def test_flipped_signs():
     only(errors(spoiled(rig_log(), velocity__hip=np.negative)), "velocity/hip", "against the rate")
-    assert ("position_target/hip", "runs against its position") in errors(spoiled(rig_log(), position_target__hip=np.negative))
+    assert ("position_target/hip", "runs against its position") in errors(
+        spoiled(rig_log(), position_target__hip=np.negative)
+    )
 
 
 def test_a_load_may_push_a_joint_against_its_target():
     log = rig_log()
-    names = [f"{kind}__hip" for kind in ("joint_torque", "motor_torque", "motor_torque_command", "motor_current") if log.has(kind, "hip")]
-    silent = spoiled(log, position_target__hip=np.negative, **{name: lambda v: np.full_like(v, np.nan) for name in names})
+    names = [
+        f"{kind}__hip"
+        for kind in ("joint_torque", "motor_torque", "motor_torque_command", "motor_current")
+        if log.has(kind, "hip")
+    ]
+    silent = spoiled(
+        log,
+        position_target__hip=np.negative,
+        **{name: lambda v: np.full_like(v, np.nan) for name in names},
+    )
     assert ("position_target/hip", "runs against its position") in errors(silent)
     walked = silent.changed(metadata=replace(silent.metadata, base="floating"))
-    assert {f.severity for f in implausible(walked) if f.what == "runs against its position"} == {WARNING}
+    assert {f.severity for f in implausible(walked) if f.what == "runs against its position"} == {
+        WARNING
+    }
     stiffness, damping = log.metadata.gains["hip"]
-    asked = stiffness * (-log.column("position_target/hip") - log.column("position/hip")) - damping * log.column("velocity/hip")
+    asked = stiffness * (
+        -log.column("position_target/hip") - log.column("position/hip")
+    ) - damping * log.column("velocity/hip")
     followed = spoiled(log, position_target__hip=np.negative, motor_torque__hip=lambda _: asked)
     assert not [f for f in implausible(followed) if f.what == "runs against its position"]
 
 
 def test_stuck_sensors():
-    only(errors(spoiled(rig_log(), velocity__hip=np.zeros_like)), "velocity/hip", "never changes though the joint moves")
-    assert ("position/hip", "never changes though the joint is driven") in errors(spoiled(rig_log(), position__hip=np.ones_like))
+    only(
+        errors(spoiled(rig_log(), velocity__hip=np.zeros_like)),
+        "velocity/hip",
+        "never changes though the joint moves",
+    )
+    assert ("position/hip", "never changes though the joint is driven") in errors(
+        spoiled(rig_log(), position__hip=np.ones_like)
+    )
 
     def freeze(values):
         values = values.copy()
         values[1000:1400] = values[1000]
         return values
 
-    frozen = [f for f in implausible(spoiled(rig_log(), position__hip=freeze)) if "frozen" in f.what]
+    frozen = [
+        f for f in implausible(spoiled(rig_log(), position__hip=freeze)) if "frozen" in f.what
+    ]
     assert [(f.severity, f.signal) for f in frozen] == [(WARNING, "position/hip")]
     assert "2 s from 5 s" in frozen[0].what
 
 
 def test_other_units():
     ones = np.ones(4000)
-    log = spoiled(rig_log(), accelerometer__x=0 * ones, accelerometer__y=0 * ones, accelerometer__z=ones, battery_voltage=24000 * ones,
-                  motor_temperature__hip=300 * ones, gyro__x=500 * np.sin(np.arange(4000)))  # fmt: skip
-    assert {s for s, _ in errors(log)} == {"accelerometer", "battery_voltage", "motor_temperature/hip", "gyro/x"}
-    turned = spoiled(rig_log(), base_orientation__w=ones, base_orientation__x=ones, base_orientation__y=0 * ones, base_orientation__z=0 * ones)
+    log = spoiled(
+        rig_log(),
+        accelerometer__x=0 * ones,
+        accelerometer__y=0 * ones,
+        accelerometer__z=ones,
+        battery_voltage=24000 * ones,
+        motor_temperature__hip=300 * ones,
+        gyro__x=500 * np.sin(np.arange(4000)),
+    )
+    assert {s for s, _ in errors(log)} == {
+        "accelerometer",
+        "battery_voltage",
+        "motor_temperature/hip",
+        "gyro/x",
+    }
+    turned = spoiled(
+        rig_log(),
+        base_orientation__w=ones,
+        base_orientation__x=ones,
+        base_orientation__y=0 * ones,
+        base_orientation__z=0 * ones,
+    )
     assert {s for s, _ in errors(turned)} == {"base_orientation"}
 
 
@@ -155,6 +216,11 @@ def test_real_logs_hold_no_errors(real_logs):
 def test_axes_of_an_accelerometer_told_in_turn_are_no_wrong_unit():
     log = rig_log()
     ticks = np.arange(len(log.time))
-    turns = {f"accelerometer__{axis}": np.where(ticks % 3 == i, 9.81 * (axis == "z"), np.nan) for i, axis in enumerate("xyz")}
+    turns = {
+        f"accelerometer__{axis}": np.where(ticks % 3 == i, 9.81 * (axis == "z"), np.nan)
+        for i, axis in enumerate("xyz")
+    }
     assert not errors(spoiled(log, **turns))
-    assert {s for s, _ in errors(spoiled(log, **{k: v / 9.81 for k, v in turns.items()}))} == {"accelerometer"}
+    assert {s for s, _ in errors(spoiled(log, **{k: v / 9.81 for k, v in turns.items()}))} == {
+        "accelerometer"
+    }

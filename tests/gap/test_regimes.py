@@ -15,12 +15,23 @@ def signals():
     speed = np.gradient(angle, STEP)
     both = np.stack([angle, 2 * angle], -1)
     subject = SimpleNamespace(joint_from_motor=np.array([[1.0, 0.0], [0.0, -1.0]]))
-    return SimpleNamespace(position=both, velocity=np.stack([speed, 2 * speed], -1), rigid=3 * both, step=STEP, subject=subject)
+    return SimpleNamespace(
+        position=both,
+        velocity=np.stack([speed, 2 * speed], -1),
+        rigid=3 * both,
+        step=STEP,
+        subject=subject,
+    )
 
 
 def test_regimes_split_the_time(signals):
     found = regimes(signals, "motion", 1)
-    for one, other in (("forward", "backward"), ("slow", "fast"), ("light load", "heavy load"), ("low posture", "high posture")):
+    for one, other in (
+        ("forward", "backward"),
+        ("slow", "fast"),
+        ("light load", "heavy load"),
+        ("low posture", "high posture"),
+    ):
         assert np.array_equal(found[one], ~found[other])
     assert np.array_equal(found["forward"], signals.velocity[:, 1] >= 0)
     assert found["fast"].mean() == pytest.approx(0.5, abs=0.01)

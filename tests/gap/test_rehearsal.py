@@ -14,7 +14,9 @@ def subjects(robot_files, tmp_path_factory):
 
     path = tmp_path_factory.mktemp("servo") / "servo.xml"
     servo = '<position name="servo" joint="swing" kp="12" kv="0.4" forcerange="-3 3"/>'
-    path.write_text(robots.PENDULUM.replace('<motor name="servo" joint="swing" ctrlrange="-3 3"/>', servo))
+    path.write_text(
+        robots.PENDULUM.replace('<motor name="servo" joint="swing" ctrlrange="-3 3"/>', servo)
+    )
     return {"servo": load_subject(str(path)), "motor": load_subject(str(robot_files["pendulum"]))}
 
 

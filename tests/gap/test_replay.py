@@ -10,7 +10,9 @@ from hyperleg_design.gap.subject import load_subject
 
 @pytest.fixture(scope="module")
 def signals(robot_files, runs):
-    return {name: condition(log, load_subject(robot_files[name], [log])) for name, log in runs.items()}
+    return {
+        name: condition(log, load_subject(robot_files[name], [log])) for name, log in runs.items()
+    }
 
 
 def rms(values):
@@ -31,7 +33,8 @@ def test_closed_loop_replay_of_the_whole_log(signals):
     one = signals["arm"]
     assert best_input(one) == "target"
     position, _ = replay(one, windows=whole_log(one)).errors(one)
-    # the simulation's targets moved on between ticks, where a replay holds them: half a tick of delay
+    # the simulation's targets moved on between ticks, where a replay holds them: half a tick of
+    # delay
     speed = np.sqrt(np.mean(one.velocity**2, 0))
     assert (rms(position) < 1.2 * one.step / 2 * speed).all()
 
@@ -43,13 +46,20 @@ def test_the_result_does_not_depend_on_threads(signals):
 
 def test_finer_steps_come_nearer(signals):
     one = signals["pendulum"]
-    coarse, fine = (rms(replay(one, follow="torque", time_step=step).errors(one)[0])[0] for step in (0.005, 0.0005))
+    coarse, fine = (
+        rms(replay(one, follow="torque", time_step=step).errors(one)[0])[0]
+        for step in (0.005, 0.0005)
+    )
     assert fine < coarse < 1e-3
 
 
 def test_stiff_dry_friction_does_not_chatter(tmp_path):
-    """A light joint with friction of a hundred times what a step can stand explicitly comes to rest, and stays."""
-    text = robots.PENDULUM.replace('armature="0.003"', 'armature="0.0001" frictionloss="0.3"').replace('damping="0.02"', "")
+    """A light joint with friction of a hundred times what a step can stand explicitly comes to
+    rest, and stays.
+    """
+    text = robots.PENDULUM.replace(
+        'armature="0.003"', 'armature="0.0001" frictionloss="0.3"'
+    ).replace('damping="0.02"', "")
     (tmp_path / "dry.xml").write_text(text)
     log = robots.servo_run(text, robots.waves(1, 0.2), 3.0)
     one = condition(log, load_subject(tmp_path / "dry.xml", [log]))
@@ -84,7 +94,11 @@ def test_diverged_simulations_become_unknown(robot_files, runs):
     one = condition(runs["pendulum"], load_subject(robot_files["pendulum"]))
     believed = one.believed.copy()
     believed[300:400] = 1e12
-    found = replay(dataclasses.replace(one, believed=believed), windows=Windows(np.array([100, 310]), 50), follow="torque")
+    found = replay(
+        dataclasses.replace(one, believed=believed),
+        windows=Windows(np.array([100, 310]), 50),
+        follow="torque",
+    )
     assert np.isfinite(found.position[0, 0]).all()
     assert not np.isfinite(found.position[0, 1]).all()
 
@@ -95,20 +109,30 @@ INERTIA = 'mass="0.8" diaginertia="0.008 0.008 0.001"/>'
 
 @pytest.fixture(scope="module")
 def altered(robot_files):
-    """The coupled rig with another knee damping, rotor, and mass than its file says, one at a time."""
+    """The coupled rig with another knee damping, rotor, and mass than its file says, one at a
+    time.
+    """
     base = robots.COUPLED
     texts = {
-        "viscous_friction": base.replace('axis="0 1 0" damping="0.03"', 'axis="0 1 0" damping="0.33"'),
-        "rotor_inertia": base.replace('name="front" armature="0.002"', 'name="front" armature="0.004"'),
-        "payload": base.replace(INERTIA, f'{INERTIA}<body><geom size="0.001" mass="0.5" pos="0 0 -0.2"/></body>'),
+        "viscous_friction": base.replace(
+            'axis="0 1 0" damping="0.03"', 'axis="0 1 0" damping="0.33"'
+        ),
+        "rotor_inertia": base.replace(
+            'name="front" armature="0.002"', 'name="front" armature="0.004"'
+        ),
+        "payload": base.replace(
+            INERTIA, f'{INERTIA}<body><geom size="0.001" mass="0.5" pos="0 0 -0.2"/></body>'
+        ),
         "encoder_offset": base + " ",
-    }  # fmt: skip
+    }
     found = {}
     for name, text in texts.items():
         assert text != base
         log = robots.servo_run(text, robots.waves(2, [1.0, 1.0]), 5.0)
         if name == "encoder_offset":
-            log = log.changed(signals={**log.signals, "position/knee": log.column("position/knee") + 0.1})
+            log = log.changed(
+                signals={**log.signals, "position/knee": log.column("position/knee") + 0.1}
+            )
         found[name] = condition(log, load_subject(robot_files["coupled"], [log]))
     return found
 
@@ -131,10 +155,17 @@ def test_the_right_change_closes_the_gap_in_position(altered, effect, location, 
 
 
 def test_gains_too_stiff_for_a_joint_without_rotor_stay_stable(tmp_path):
-    """Ten times what an explicit step can stand; the joint follows its target as a stiff servo does."""
-    text = robots.PENDULUM.replace('armature="0.003"', "").replace('diaginertia="0.0006 0.0006 0.0001"', 'diaginertia="1e-5 1e-5 1e-5"')
+    """Ten times what an explicit step can stand; the joint follows its target as a stiff servo
+    does.
+    """
+    text = robots.PENDULUM.replace('armature="0.003"', "").replace(
+        'diaginertia="0.0006 0.0006 0.0001"', 'diaginertia="1e-5 1e-5 1e-5"'
+    )
     text = text.replace('pos="0 0 -0.1" mass="0.5"', 'pos="0 0 -0.01" mass="0.05"')
-    text = text.replace('<motor name="servo" joint="swing" ctrlrange="-3 3"/>', '<position name="servo" joint="swing" kp="9" kv="0.5"/>')
+    text = text.replace(
+        '<motor name="servo" joint="swing" ctrlrange="-3 3"/>',
+        '<position name="servo" joint="swing" kp="9" kv="0.5"/>',
+    )
     (tmp_path / "servo.xml").write_text(text)
     log = robots.servo_run(text.replace("RK4", "implicitfast"), robots.waves(1, 0.4), 3.0)
     one = condition(log, load_subject(tmp_path / "servo.xml", [log]))

@@ -51,7 +51,9 @@ def test_a_hold_needs_gravitys_torque_and_uses_that_share_of_the_motor(tmp_path)
     subject = of_text(tmp_path, -120, 120)
     position = np.full((400, 1), 0.7)
     gravity = 0.5 * 9.81 * 0.1 * np.sin(0.7)
-    assert np.abs(needed_torque(subject, position, 0 * position, 0 * position)) == pytest.approx(gravity, rel=1e-9)
+    assert np.abs(needed_torque(subject, position, 0 * position, 0 * position)) == pytest.approx(
+        gravity, rel=1e-9
+    )
     use = use_of(subject, room_of(subject), position, 0.005)
     assert use.envelope == pytest.approx(gravity / 2, rel=1e-6)
     assert use.continuous == pytest.approx(gravity / (0.4 * 2), rel=1e-6)
@@ -77,7 +79,9 @@ def test_past_the_voltage_line_nothing_fits(leg):
 def test_targets_lead_by_torque_over_stiffness(tmp_path):
     subject = of_text(tmp_path, -120, 120)
     position = np.full((50, 1), 0.7)
-    assert targets_for(subject, position, 0.005) - position == pytest.approx(0.5 * 9.81 * 0.1 * np.sin(0.7) / 6, rel=1e-9)
+    assert targets_for(subject, position, 0.005) - position == pytest.approx(
+        0.5 * 9.81 * 0.1 * np.sin(0.7) / 6, rel=1e-9
+    )
 
 
 def test_a_joint_without_range_is_refused(tmp_path):

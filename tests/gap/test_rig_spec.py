@@ -26,7 +26,9 @@ def test_coupled_rotors_and_gravity_are_those_of_inverse_dynamics():
     model = rig_spec(subject, 0.001).compile()
     data = mujoco.MjData(model)
     rng = np.random.default_rng(0)
-    position, velocity, acceleration = (rng.uniform(-0.3, 0.3, len(subject.joints)) for _ in range(3))
+    position, velocity, acceleration = (
+        rng.uniform(-0.3, 0.3, len(subject.joints)) for _ in range(3)
+    )
     position = position + subject.default
     data.qpos[:], data.qvel[:] = position, velocity
     mujoco.mj_forward(model, data)

@@ -8,7 +8,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap import robot_file
 
 TWO = """<mujoco><worldbody><body name="a"><joint name="j"/><geom size="0.1"/><body name="b" pos="0 0 1"><joint name="k"/>
-  <geom size="0.1"/></body></body></worldbody><actuator>%s</actuator></mujoco>"""
+  <geom size="0.1"/></body></body></worldbody><actuator>%s</actuator></mujoco>"""  # noqa: E501
 
 
 def drives(actuators, kept=("j", "k")):
@@ -16,7 +16,10 @@ def drives(actuators, kept=("j", "k")):
 
 
 def test_two_actuators_of_one_joint_add_up():
-    found = drives('<position joint="j" kp="50" forcerange="-5 5"/><velocity joint="j" kv="2" forcerange="-3 3"/><motor joint="k"/>')
+    found = drives(
+        '<position joint="j" kp="50" forcerange="-5 5"/><velocity joint="j" kv="2" forcerange="-3 '
+        '3"/><motor joint="k"/>'
+    )
     np.testing.assert_allclose(found.gains[0], [50, 2])
     assert np.isnan(found.gains[1]).all()
     assert found.limit.tolist() == [8.0, np.inf]
@@ -37,7 +40,9 @@ def test_only_kept_joints():
 
 
 def test_lever_that_changes_is_left_out_with_a_note():
-    text = TWO.replace('<geom size="0.1"/></body></body>', '<geom size="0.1"/><site name="s"/></body></body>')
+    text = TWO.replace(
+        '<geom size="0.1"/></body></body>', '<geom size="0.1"/><site name="s"/></body></body>'
+    )
     model = mujoco.MjModel.from_xml_string(text % '<general site="s" gear="0 0 1 0 0 0"/>')
     found = robot_file.read_drives(model, ("j", "k"))
     assert "lever" in found.notes[0]
@@ -54,12 +59,14 @@ def test_added_mass_moves_the_centre():
     before = model.body_mass[2], model.body_ipos[2].copy()
     robot_file.add_mass(model, "b", 2.0, np.array([0.0, 0.3, 0.0]))
     assert model.body_mass[2] == before[0] + 2.0
-    np.testing.assert_allclose(model.body_ipos[2], (before[0] * before[1] + [0, 0.6, 0]) / (before[0] + 2.0))
+    np.testing.assert_allclose(
+        model.body_ipos[2], (before[0] * before[1] + [0, 0.6, 0]) / (before[0] + 2.0)
+    )
 
 
 def test_corners_and_ends_touch_first():
     text = """<mujoco><worldbody><body><geom type="box" size="0.1 0.2 0.3" pos="1 0 0"/><geom type="capsule" size="0.05" fromto="0 0 0 0 0 0.4"/>
-      <geom size="0.07" pos="0 0 2"/></body></worldbody></mujoco>"""
+      <geom size="0.07" pos="0 0 2"/></body></worldbody></mujoco>"""  # noqa: E501
     model = mujoco.MjModel.from_xml_string(text)
     corners, none = robot_file.touching_points(model, 0)
     assert none == 0.0

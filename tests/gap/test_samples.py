@@ -7,7 +7,10 @@ from hyperleg_design.gap.samples import BLOCKS, LOGS, products
 
 @pytest.fixture(scope="module")
 def ready(robot_files):
-    return diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("healthy", s, session="a" if s < 2 else "b") for s in range(3)))
+    return diagnosed.prepared(
+        robot_files["coupled"],
+        *(diagnosed.run("healthy", s, session="a" if s < 2 else "b") for s in range(3)),
+    )
 
 
 def test_every_sample_is_in_one_piece_and_pieces_are_of_one_kind(ready):

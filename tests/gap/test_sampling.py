@@ -2,7 +2,14 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.sampling import columns_of, held_rows, noise, quantum, sampling_of, saturation
+from hyperleg_design.gap.sampling import (
+    columns_of,
+    held_rows,
+    noise,
+    quantum,
+    sampling_of,
+    saturation,
+)
 
 
 def test_even_clock():
@@ -59,7 +66,13 @@ def test_columns_at_rates_of_their_own():
     t = np.arange(2000) * 0.005
     slow = np.where(np.arange(2000) % 4 == 0, np.sin(t), np.nan)
     lost = np.where((t > 2) & (t < 3), np.nan, np.sin(t))
-    signals = {"position/a": np.sin(t), "position/b": slow, "position/c": lost, "position/d": np.ones(2000), "position/e": np.full(2000, np.nan)}
+    signals = {
+        "position/a": np.sin(t),
+        "position/b": slow,
+        "position/c": lost,
+        "position/d": np.ones(2000),
+        "position/e": np.full(2000, np.nan),
+    }
     a, b, c, d, e = columns_of(Log("run", t, signals))
     assert (a.rate, a.missing) == (pytest.approx(200), 0)
     assert (b.rate, b.missing) == (pytest.approx(50), 0)

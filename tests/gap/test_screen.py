@@ -7,7 +7,17 @@ import pytest
 from hyperleg_design.gap import screen as module
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.fit import Design
-from hyperleg_design.gap.screen import Candidate, NotJudged, _unlike, at_rest, descend, lacking, linearise, places, screen
+from hyperleg_design.gap.screen import (
+    Candidate,
+    NotJudged,
+    _unlike,
+    at_rest,
+    descend,
+    lacking,
+    linearise,
+    places,
+    screen,
+)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +47,11 @@ def test_what_logs_lack_is_said(ready, found):
     told = {n.effect: n.reason for n in found if isinstance(n, NotJudged)}
     assert "lack" in told["command_delay"]
     signals = [s.signals for s in ready.base.samples.sieves]
-    assert lacking(EFFECTS["controller_gain"], "knee", signals) if EFFECTS["controller_gain"].locations(signals[0].subject) else True
+    assert (
+        lacking(EFFECTS["controller_gain"], "knee", signals)
+        if EFFECTS["controller_gain"].locations(signals[0].subject)
+        else True
+    )
     assert not lacking(EFFECTS["coulomb_friction"], "knee", signals)
 
 
@@ -59,7 +73,10 @@ def test_descent_finds_a_parameter_that_is_not_linear(robot_files):
     signals = diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
     effect = EFFECTS["stribeck_friction"]
     values = np.array([1.0, 0.2])
-    shifted = {"motion": signals.residual["motion"] + effect.trace(signals, "hip", values[None])["motion"][0]}
+    shifted = {
+        "motion": signals.residual["motion"]
+        + effect.trace(signals, "hip", values[None])["motion"][0]
+    }
     ready = prepare([replace(signals, residual=shifted)], [], load_thresholds())
     result = descend(ready.base, effect, "hip", np.array([0.3, 0.1]), Design(ready.base).fit(), 12)
     assert result.cause.values == pytest.approx(values, rel=0.15)
@@ -74,7 +91,15 @@ def test_what_a_joint_holds_at_rest_speaks_for_its_breakaway_friction_alone():
 
 def test_searches_begin_on_several_sides_where_there_is_a_choice():
     backlash, plain = EFFECTS["backlash"], EFFECTS["controller_gain"]
-    starts = np.array([[0.01, 0.0, 0.0, 0.0], [0.04, 0.0, 0.0, 0.0], [0.02, 1.0, 1.0, 0.0], [0.05, 1.0, 1.0, 0.0], [0.01, 1.0, 1.0, 1.0]])
+    starts = np.array(
+        [
+            [0.01, 0.0, 0.0, 0.0],
+            [0.04, 0.0, 0.0, 0.0],
+            [0.02, 1.0, 1.0, 0.0],
+            [0.05, 1.0, 1.0, 0.0],
+            [0.01, 1.0, 1.0, 1.0],
+        ]
+    )
     np.testing.assert_array_equal(_unlike(backlash, starts), starts[[0, 2, 4]])
     np.testing.assert_array_equal(_unlike(backlash, starts[:2]), starts[:2])
     gains = np.array([[0.8, 0.8], [1.25, 1.25], [0.8, 1.0]])
@@ -82,10 +107,17 @@ def test_searches_begin_on_several_sides_where_there_is_a_choice():
 
 
 def test_traces_are_kept_while_they_are_few_and_change_no_answer(judged, monkeypatch):
-    judge, wanted = judged[0], [("viscous_friction", "knee"), ("coulomb_friction", "hip"), ("controller_gain", "knee")]
+    judge, wanted = (
+        judged[0],
+        [("viscous_friction", "knee"), ("coulomb_friction", "hip"), ("controller_gain", "knee")],
+    )
 
     def gains():
-        return [one.gain for one in screen(judge.base, judge.nothing.fit, wanted) if isinstance(one, Candidate)]
+        return [
+            one.gain
+            for one in screen(judge.base, judge.nothing.fit, wanted)
+            if isinstance(one, Candidate)
+        ]
 
     module._TRACED.clear()
     first = gains()

@@ -12,7 +12,13 @@ SPEED = np.cos(2 * np.pi * 0.7 * TIME)
 @pytest.fixture
 def motion():
     turning = -2 * np.pi * 0.7 * np.sin(2 * np.pi * 0.7 * TIME)
-    return Smooth(np.zeros((len(TIME), 1)), SPEED[:, None], turning[:, None], np.array([60.0]), np.array([1e-5]))
+    return Smooth(
+        np.zeros((len(TIME), 1)),
+        SPEED[:, None],
+        turning[:, None],
+        np.array([60.0]),
+        np.array([1e-5]),
+    )
 
 
 def sensed(motion, logged):
@@ -22,7 +28,11 @@ def sensed(motion, logged):
 @pytest.mark.parametrize("kind", ["noise", "late", "unknown"])
 def test_what_differs_by_noise_or_comes_late_is_the_motion(motion, kind):
     noise = 0.05 * np.random.default_rng(2).normal(size=len(TIME))
-    logged = {"noise": SPEED + noise, "late": np.interp(TIME - 0.008, TIME, SPEED) + 0.1 * noise, "unknown": np.full(len(TIME), np.nan)}[kind]
+    logged = {
+        "noise": SPEED + noise,
+        "late": np.interp(TIME - 0.008, TIME, SPEED) + 0.1 * noise,
+        "unknown": np.full(len(TIME), np.nan),
+    }[kind]
     np.testing.assert_array_equal(sensed(motion, logged), SPEED)
 
 

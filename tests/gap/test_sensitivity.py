@@ -15,7 +15,9 @@ KNEE = ("viscous_friction", "knee")
 @pytest.fixture(scope="module")
 def healthy(robot_files):
     """Judge of two logs of a healthy coupled rig."""
-    ready = diagnosed.prepared(robot_files["coupled"], diagnosed.run("healthy", 0), diagnosed.run("healthy", 1))
+    ready = diagnosed.prepared(
+        robot_files["coupled"], diagnosed.run("healthy", 0), diagnosed.run("healthy", 1)
+    )
     return Judge(ready.base, load_thresholds(), 1)
 
 
@@ -27,7 +29,12 @@ def rubbing(damping, seed):
     """Log of the rig with more viscous friction at its knee."""
     kept = dict(diagnosed.CHANGES)
     try:
-        diagnosed.CHANGES["viscous"] = [('name="knee" axis="0 1 0" damping="0.03"', f'name="knee" axis="0 1 0" damping="{0.03 + damping}"')]
+        diagnosed.CHANGES["viscous"] = [
+            (
+                'name="knee" axis="0 1 0" damping="0.03"',
+                f'name="knee" axis="0 1 0" damping="{0.03 + damping}"',
+            )
+        ]
         return diagnosed.run("viscous", seed)
     finally:
         diagnosed.CHANGES.update(kept)
@@ -36,7 +43,10 @@ def rubbing(damping, seed):
 def test_it_is_what_projecting_the_errors_out_of_the_trace_leaves(healthy):
     """By one large regression of all samples, sessions apart, in place of sums of products."""
     base = healthy.base
-    samples, cause = base.samples, linearise(base.samples, EFFECTS[KNEE[0]], KNEE[1], EFFECTS[KNEE[0]].nulls)
+    samples, cause = (
+        base.samples,
+        linearise(base.samples, EFFECTS[KNEE[0]], KNEE[1], EFFECTS[KNEE[0]].nulls),
+    )
     told = 0.0
     for session in range(samples.sessions):
         here = samples.session[samples.part] == session
@@ -50,22 +60,34 @@ def test_it_is_what_projecting_the_errors_out_of_the_trace_leaves(healthy):
 
 
 @pytest.mark.parametrize(("times", "verdict"), [(2.0, "explained"), (0.25, "none")])
-def test_what_is_larger_is_named_and_what_is_much_smaller_is_not(healthy, robot_files, times, verdict):
+def test_what_is_larger_is_named_and_what_is_much_smaller_is_not(
+    healthy, robot_files, times, verdict
+):
     damping = times * change_of(healthy, KNEE)
     found = diagnose(robot_files["coupled"], [rubbing(damping, 0), rubbing(damping, 1)])
     assert found.verdict == verdict
-    assert [(c.effect, c.location) for c in found.causes] == ([KNEE] if verdict == "explained" else [])
+    assert [(c.effect, c.location) for c in found.causes] == (
+        [KNEE] if verdict == "explained" else []
+    )
 
 
 def test_more_logs_show_less(healthy, robot_files):
-    ready = diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("healthy", seed) for seed in range(4)))
+    ready = diagnosed.prepared(
+        robot_files["coupled"], *(diagnosed.run("healthy", seed) for seed in range(4))
+    )
     assert change_of(Judge(ready.base, load_thresholds(), 1), KNEE) < change_of(healthy, KNEE)
 
 
 def test_each_size_is_possible_and_none_is_of_what_acts_in_rare_moments(healthy):
     subject = healthy.base.samples.sieves[0].signals.subject
     found = smallest(healthy, places(subject))
-    assert {one.effect for one in found} >= {"coulomb_friction", "payload", "encoder_offset", "backlash", "torque_constant"}
+    assert {one.effect for one in found} >= {
+        "coulomb_friction",
+        "payload",
+        "encoder_offset",
+        "backlash",
+        "torque_constant",
+    }
     assert not {one.effect for one in found} & {*RARELY}
     for one in found:
         effect = EFFECTS[one.effect]

@@ -9,7 +9,9 @@ from hyperleg_design.gap.shape import KINDS, OF_ENCODER, columns, shapes
 
 @pytest.fixture(scope="module")
 def ready(robot_files):
-    return diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("cubic", s, session="a") for s in (0, 1)))
+    return diagnosed.prepared(
+        robot_files["coupled"], *(diagnosed.run("cubic", s, session="a") for s in (0, 1))
+    )
 
 
 def of_hip(base):
@@ -17,7 +19,11 @@ def of_hip(base):
     nothing = Design(base).fit()
     row = next(i for i, r in enumerate(base.samples.rows) if r.name == "hip")
     found = {one.name: columns(base, nothing, one) for one in shapes(base.samples, np.array([row]))}
-    return {name: predict(Design(base, ridge=own)).total for name, own in found.items() if own is not None}
+    return {
+        name: predict(Design(base, ridge=own)).total
+        for name, own in found.items()
+        if own is not None
+    }
 
 
 def test_a_shape_of_position_tells_a_hardening_spring(ready):
@@ -25,7 +31,11 @@ def test_a_shape_of_position_tells_a_hardening_spring(ready):
     gains = of_hip(base)
     nothing_held = predict(Design(base)).total
     assert gains["position"] > nothing_held + 10
-    assert max(gains, key=gains.__getitem__) in ("position", "load_over_position", "encoder_over_position")
+    assert max(gains, key=gains.__getitem__) in (
+        "position",
+        "load_over_position",
+        "encoder_over_position",
+    )
     assert gains["rhythm"] < nothing_held + 5
     assert set(gains) <= set(KINDS)
 
@@ -34,8 +44,17 @@ def test_friction_that_fades_away_is_told_from_friction_that_stays(robot_files):
     logs = []
     for seed in (0, 1):
         log = diagnosed.run("healthy", seed, session="a")
-        fading = 0.2 * np.exp(-(log.time - log.time[0]) / 4) * np.tanh(log.column("velocity/hip") / 0.02)
-        logs.append(log.changed(signals={c: v + fading if c.startswith("motor_torque/") else v for c, v in log.signals.items()}))
+        fading = (
+            0.2 * np.exp(-(log.time - log.time[0]) / 4) * np.tanh(log.column("velocity/hip") / 0.02)
+        )
+        logs.append(
+            log.changed(
+                signals={
+                    c: v + fading if c.startswith("motor_torque/") else v
+                    for c, v in log.signals.items()
+                }
+            )
+        )
     base = diagnosed.prepared(robot_files["coupled"], *logs).base
     gains = of_hip(base)
     best, second = sorted(gains, key=gains.__getitem__)[:-3:-1]

@@ -19,7 +19,13 @@ def rules():
 
 @pytest.fixture(scope="module")
 def cubic(robot_files, rules):
-    return Judge(diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("cubic", s, session="a") for s in (0, 1))).base, rules, 1)
+    return Judge(
+        diagnosed.prepared(
+            robot_files["coupled"], *(diagnosed.run("cubic", s, session="a") for s in (0, 1))
+        ).base,
+        rules,
+        1,
+    )
 
 
 def everywhere(judge):
@@ -43,9 +49,13 @@ def test_a_shape_that_predicts_more_replaces_a_cause_that_stood_for_it(cubic):
 
 
 def test_no_shape_replaces_the_true_cause(robot_files, rules):
-    ready = diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1)))
+    ready = diagnosed.prepared(
+        robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1))
+    )
     subject = ready.base.samples.sieves[0].signals.subject
-    judge, found = decide(ready.base, rules, places(subject, ("viscous_friction", "coulomb_friction")))
+    judge, found = decide(
+        ready.base, rules, places(subject, ("viscous_friction", "coulomb_friction"))
+    )
     assert found.model.names == (("viscous_friction", "knee"),)
     assert shaping.instead(judge, found.model, found.rows, found.model.gain) == ()
     assert not shaping.tells(rules, found.model, shaping.beside(judge, found.model, found.rows))

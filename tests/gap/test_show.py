@@ -11,10 +11,27 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.show import effects_table, show
 
 TOLD_APART = {
-    "coulomb_friction", "viscous_friction", "load_dependent_friction", "torque_constant", "thermal_derating", "command_delay", "rotor_inertia",
-    "transmission_elasticity", "controller_gain", "payload", "link_mass", "link_com", "cogging", "joint_spring", "torque_saturation",
-    "ground_friction", "ground_compliance", "imu_bias", "voltage_sag", "encoder_offset",
-}  # fmt: skip
+    "coulomb_friction",
+    "viscous_friction",
+    "load_dependent_friction",
+    "torque_constant",
+    "thermal_derating",
+    "command_delay",
+    "rotor_inertia",
+    "transmission_elasticity",
+    "controller_gain",
+    "payload",
+    "link_mass",
+    "link_com",
+    "cogging",
+    "joint_spring",
+    "torque_saturation",
+    "ground_friction",
+    "ground_compliance",
+    "imu_bias",
+    "voltage_sag",
+    "encoder_offset",
+}
 """Whose trace explains most of a residual even unfiltered."""
 
 
@@ -42,11 +59,15 @@ def test_every_effect_leaves_a_trace_and_moves_the_loop(name):
 
 
 def test_settings_and_places_are_taken_and_checked(robot_files):
-    shown = show("viscous_friction", str(robot_files["arm"]), location="elbow", settings=["damping=3.5"])
+    shown = show(
+        "viscous_friction", str(robot_files["arm"]), location="elbow", settings=["damping=3.5"]
+    )
     assert shown.parameters == {"damping": 3.5}
     assert shown.row == shown.joint == "elbow"
     speed = np.abs(shown.velocity) > 0.1
-    np.testing.assert_allclose((shown.trace / shown.velocity)[speed & np.isfinite(shown.trace)], 3.5, rtol=0.02)
+    np.testing.assert_allclose(
+        (shown.trace / shown.velocity)[speed & np.isfinite(shown.trace)], 3.5, rtol=0.02
+    )
     for wrong, message in (
         ("damping", "PARAMETER=VALUE"),
         ("mass=1", "with one of damping"),

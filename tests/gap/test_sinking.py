@@ -1,4 +1,6 @@
-"""Feet that sink, on a base whose weight goes round on them: loads and heights are formulas, by nothing of the package."""
+"""Feet that sink, on a base whose weight goes round on them: loads and heights are formulas, by
+nothing of the package.
+"""
 
 import numpy as np
 import pytest
@@ -18,7 +20,9 @@ def subject():
 
 
 def standing(subject, compliance, *, tilt=0.0, steady=False, seed=1):
-    """A log of a base that goes up and down as each of its pads gives, `compliance` [m/N], under loads that change, and leans besides."""
+    """A log of a base that goes up and down as each of its pads gives, `compliance` [m/N], under
+    loads that change, and leans besides.
+    """
     from hyperleg_design.gap.log import Log
     from hyperleg_design.gap.metadata import Metadata
 
@@ -33,17 +37,29 @@ def standing(subject, compliance, *, tilt=0.0, steady=False, seed=1):
     channels = {
         "gyro": (np.stack([zero, np.gradient(pitch, time), zero], -1), "xyz", 2e-3),
         "accelerometer": (np.tile([0, 0, 9.81], (len(time), 1)), "xyz", 0.03),
-        "base_orientation": (np.stack([np.cos(pitch / 2), zero, np.sin(pitch / 2), zero], -1), "wxyz", 1e-5),
+        "base_orientation": (
+            np.stack([np.cos(pitch / 2), zero, np.sin(pitch / 2), zero], -1),
+            "wxyz",
+            1e-5,
+        ),
         "base_velocity": (np.stack([zero, zero, np.gradient(height, time)], -1), "xyz", 2e-3),
         "base_position": (np.stack([zero, zero, height], -1), "xyz", 1e-4),
-    }  # fmt: skip
-    signals = {f"{k}/{a}": v[:, i] + noise * rng.normal(size=len(time)) for k, (v, axes, noise) in channels.items() for i, a in enumerate(axes)}
+    }
+    signals = {
+        f"{k}/{a}": v[:, i] + noise * rng.normal(size=len(time))
+        for k, (v, axes, noise) in channels.items()
+        for i, a in enumerate(axes)
+    }
     for pad, own in zip(subject.pads, compliance, strict=True):
-        force = np.stack([zero, zero, MEAN + CHANGE * stiffest / max(own, 1e-12) * wave], -1) + 0.5 * rng.normal(size=(len(time), 3))
+        force = np.stack(
+            [zero, zero, MEAN + CHANGE * stiffest / max(own, 1e-12) * wave], -1
+        ) + 0.5 * rng.normal(size=(len(time), 3))
         signals |= {f"contact_force/{pad.name}_{a}": force[:, i] for i, a in enumerate("xyz")}
     for joint, rest in zip(subject.joints, subject.default, strict=True):
         signals[f"position/{joint}"] = rest + 1e-4 * rng.normal(size=len(time))
-    signals |= {f"motor_torque/{motor}": 0.1 * rng.normal(size=len(time)) for motor in subject.motors}
+    signals |= {
+        f"motor_torque/{motor}": 0.1 * rng.normal(size=len(time)) for motor in subject.motors
+    }
     return Log("standing", time, signals, Metadata(base="floating"))
 
 
@@ -51,11 +67,15 @@ def standing(subject, compliance, *, tilt=0.0, steady=False, seed=1):
 def nominal(subject):
     """Compliance of the model's own ground under each pad about these loads [m/N]."""
     log = condition(standing(subject, 0.0), subject)
-    return np.array([pad.nominal_slope for foot in range(len(subject.feet)) for pad in bearings(log, foot)])
+    return np.array(
+        [pad.nominal_slope for foot in range(len(subject.feet)) for pad in bearings(log, foot)]
+    )
 
 
 def found(subject, *logs, references=()):
-    return sinks([condition(one, subject) for one in logs], [condition(one, subject) for one in references])
+    return sinks(
+        [condition(one, subject) for one in logs], [condition(one, subject) for one in references]
+    )
 
 
 def test_the_nominal_slope_is_that_of_the_models_law(subject, nominal):
@@ -65,7 +85,9 @@ def test_the_nominal_slope_is_that_of_the_models_law(subject, nominal):
     pressed = foot.law.force(alone, np.zeros_like(alone))
     assert len(nominal) == len(subject.pads)
     assert np.all((nominal > 0) & (nominal < 1e-4))
-    assert nominal[0] == pytest.approx(5e-7 / float(np.diff(pressed)[0]), rel=0.5)  # a law that bends
+    assert nominal[0] == pytest.approx(
+        5e-7 / float(np.diff(pressed)[0]), rel=0.5
+    )  # a law that bends
 
 
 @pytest.mark.parametrize("softer", [2.5, 6.0])
@@ -99,11 +121,21 @@ def test_against_references_less_is_told_and_what_they_show_is_no_news(subject, 
     assert found(subject, *logs) == ()
     told = found(subject, *logs, references=[standing(subject, 0.5 * nominal, seed=3)])
     assert [one.parameters["scale"].value for one in told] == pytest.approx([3.0, 3.0], rel=0.1)
-    assert found(subject, standing(subject, 4 * nominal), references=[standing(subject, 4 * nominal, seed=3)]) == ()
+    assert (
+        found(
+            subject,
+            standing(subject, 4 * nominal),
+            references=[standing(subject, 4 * nominal, seed=3)],
+        )
+        == ()
+    )
 
 
 def test_two_logs_foretell_each_other(subject, nominal):
-    assert all(one.closed > 0.8 for one in found(subject, *(standing(subject, 4 * nominal, seed=s) for s in (1, 2))))
+    assert all(
+        one.closed > 0.8
+        for one in found(subject, *(standing(subject, 4 * nominal, seed=s) for s in (1, 2)))
+    )
 
 
 def test_the_page_shows_heights_over_loads(subject, nominal, tmp_path):

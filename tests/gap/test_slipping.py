@@ -1,4 +1,6 @@
-"""Feet that slide, on a base that is pushed to and fro with its joints still: forces and ways are formulas, by nothing of the package."""
+"""Feet that slide, on a base that is pushed to and fro with its joints still: forces and ways are
+formulas, by nothing of the package.
+"""
 
 import numpy as np
 import pytest
@@ -17,7 +19,9 @@ def subject():
 
 
 def pushed(subject, ratio, name="pushed", *, speed=0.06, by_foot=False, lacking=(), seed=1):
-    """A log of a base that goes round in bursts, its pads pushed back with `ratio(speed, angle)` times their load [-]."""
+    """A log of a base that goes round in bursts, its pads pushed back with `ratio(speed, angle)`
+    times their load [-].
+    """
     from hyperleg_design.gap.log import Log
     from hyperleg_design.gap.metadata import Metadata
 
@@ -28,10 +32,16 @@ def pushed(subject, ratio, name="pushed", *, speed=0.06, by_foot=False, lacking=
     velocity = np.stack([fast * np.cos(angle), fast * np.sin(angle), np.zeros_like(time)], -1)
     place = np.cumsum(velocity, 0) * 0.005
     channels = {
-        "gyro": (np.zeros((len(time), 3)), "xyz", 2e-3), "accelerometer": (np.gradient(velocity, time, axis=0) + np.array([0, 0, 9.81]), "xyz", 0.03),
-        "base_orientation": (np.tile([1.0, 0, 0, 0], (len(time), 1)), "wxyz", 1e-5), "base_velocity": (velocity, "xyz", 2e-3),
+        "gyro": (np.zeros((len(time), 3)), "xyz", 2e-3),
+        "accelerometer": (
+            np.gradient(velocity, time, axis=0) + np.array([0, 0, 9.81]),
+            "xyz",
+            0.03,
+        ),
+        "base_orientation": (np.tile([1.0, 0, 0, 0], (len(time), 1)), "wxyz", 1e-5),
+        "base_velocity": (velocity, "xyz", 2e-3),
         "base_position": (place + np.array([0, 0, 0.8]), "xyz", 2e-4),
-    }  # fmt: skip
+    }
     signals = {
         f"{kind}/{axis}": values[:, i] + noise * rng.normal(size=len(time))
         for kind, (values, axes, noise) in channels.items()
@@ -44,10 +54,15 @@ def pushed(subject, ratio, name="pushed", *, speed=0.06, by_foot=False, lacking=
         own = [p.name for p in subject.pads if p.foot == foot]
         for pad in (name_of_foot,) if by_foot else own:
             force = (len(own) if by_foot else 1) * push
-            signals |= {f"contact_force/{pad}_{a}": force[:, i] + 0.5 * rng.normal(size=len(time)) for i, a in enumerate("xyz")}
+            signals |= {
+                f"contact_force/{pad}_{a}": force[:, i] + 0.5 * rng.normal(size=len(time))
+                for i, a in enumerate("xyz")
+            }
     for joint, rest in zip(subject.joints, subject.default, strict=True):
         signals[f"position/{joint}"] = rest + 1e-4 * rng.normal(size=len(time))
-    signals |= {f"motor_torque/{motor}": 0.1 * rng.normal(size=len(time)) for motor in subject.motors}
+    signals |= {
+        f"motor_torque/{motor}": 0.1 * rng.normal(size=len(time)) for motor in subject.motors
+    }
     return Log(name, time, signals, Metadata(base="floating"))
 
 
@@ -57,7 +72,9 @@ def dry(coefficient):
 
 
 def test_what_moves_at_one_speed_alone_may_creep(subject):
-    """A tangential force that grows with the speed, of a base that is hardly ever faster than its contacts must be: one ratio, and no slip."""
+    """A tangential force that grows with the speed, of a base that is hardly ever faster than its
+    contacts must be: one ratio, and no slip.
+    """
 
     def creeping(speed, angle):
         return 0.23 * speed / 0.018
@@ -69,11 +86,15 @@ def test_what_moves_at_one_speed_alone_may_creep(subject):
 
 def pyramid(coefficient):
     """Friction as in a simulator whose cone is a pyramid with edges along x and y."""
-    return lambda speed, angle: dry(coefficient)(speed, angle) / (np.abs(np.cos(angle)) + np.abs(np.sin(angle)))
+    return lambda speed, angle: (
+        dry(coefficient)(speed, angle) / (np.abs(np.cos(angle)) + np.abs(np.sin(angle)))
+    )
 
 
 def found(subject, *logs, references=()):
-    return slips([condition(one, subject) for one in logs], [condition(one, subject) for one in references])
+    return slips(
+        [condition(one, subject) for one in logs], [condition(one, subject) for one in references]
+    )
 
 
 @pytest.mark.parametrize("by_foot", [False, True])
@@ -117,11 +138,15 @@ def test_two_logs_foretell_each_other(subject):
     told = found(subject, pushed(subject, dry(0.5), seed=1), pushed(subject, dry(0.5), seed=2))
     assert all(one.closed > 0.9 for one in told)
     assert len(told) == len(subject.feet)
-    assert found(subject, pushed(subject, dry(0.3), seed=1), pushed(subject, dry(0.6), seed=2)) == ()
+    assert (
+        found(subject, pushed(subject, dry(0.3), seed=1), pushed(subject, dry(0.6), seed=2)) == ()
+    )
 
 
 def test_without_the_bases_velocity_nothing_is_said(subject):
-    assert found(subject, pushed(subject, dry(0.4), lacking=("base_velocity", "base_position"))) == ()
+    assert (
+        found(subject, pushed(subject, dry(0.4), lacking=("base_velocity", "base_position"))) == ()
+    )
 
 
 def test_the_page_shows_forces_over_speeds(subject, tmp_path):
@@ -130,8 +155,13 @@ def test_the_page_shows_forces_over_speeds(subject, tmp_path):
 
     signals = [condition(pushed(subject, dry(0.45)), subject)]
     told = diagnose_signals(signals, effects=["ground_friction"], threads=1)
-    assert told.rivals[0].effect == "ground_friction"  # a part of a gap that is unknown: these torques do not carry the robot
-    assert (told.verdict, {one["shape"] for one in told.residual_shape[:2]}) == ("unknown", {"slips"})
+    assert (
+        told.rivals[0].effect == "ground_friction"
+    )  # a part of a gap that is unknown: these torques do not carry the robot
+    assert (told.verdict, {one["shape"] for one in told.residual_shape[:2]}) == (
+        "unknown",
+        {"slips"},
+    )
     page = write_gap_page(tmp_path, told.mapping(), signals).read_text()
     assert "figures/slipping-1.png" in page
     assert "times its load" in page

@@ -6,7 +6,11 @@ from hyperleg_design.gap.smoothing import bridged, estimate_noise, lateness, smo
 
 def chirp(time):
     phase, frequency = 2 * np.pi * (0.1 * time + 0.05 * time**2), 2 * np.pi * (0.1 + 0.1 * time)
-    return 0.4 * np.sin(phase), 0.4 * frequency * np.cos(phase), -0.4 * frequency**2 * np.sin(phase) + 0.4 * 0.2 * np.pi * np.cos(phase)
+    return (
+        0.4 * np.sin(phase),
+        0.4 * frequency * np.cos(phase),
+        -0.4 * frequency**2 * np.sin(phase) + 0.4 * 0.2 * np.pi * np.cos(phase),
+    )
 
 
 @pytest.mark.parametrize(("rate", "worst"), [(50, 0.02), (100, 0.015), (200, 0.015)])
@@ -76,15 +80,26 @@ def test_a_constant_channel_has_no_velocity():
 
 
 def test_unknown_ticks_are_bridged_and_ends_held():
-    assert bridged(np.array([np.nan, 1.0, np.nan, 3.0, np.nan])).tolist() == [1.0, 1.0, 2.0, 3.0, 3.0]
+    assert bridged(np.array([np.nan, 1.0, np.nan, 3.0, np.nan])).tolist() == [
+        1.0,
+        1.0,
+        2.0,
+        3.0,
+        3.0,
+    ]
     whole = np.arange(4.0)
     assert bridged(whole) is whole
 
 
 def test_a_late_velocity_is_taken_at_its_time():
-    """As simulators step speeds before places: half a step late, which differs little enough to be believed."""
+    """As simulators step speeds before places: half a step late, which differs little enough to be
+    believed.
+    """
     time = np.arange(2000) * 0.005
-    place, speed = np.sin(3 * time) + 0.2 * np.sin(11 * time), 3 * np.cos(3 * time) + 2.2 * np.cos(11 * time)
+    place, speed = (
+        np.sin(3 * time) + 0.2 * np.sin(11 * time),
+        3 * np.cos(3 * time) + 2.2 * np.cos(11 * time),
+    )
     felt = -9 * np.sin(3 * time) - 24.2 * np.sin(11 * time)
     late = 3 * np.cos(3 * (time - 0.0025)) + 2.2 * np.cos(11 * (time - 0.0025))
     assert lateness(late - speed, felt) == pytest.approx(0.0025, rel=0.02)

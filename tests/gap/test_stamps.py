@@ -1,4 +1,6 @@
-"""Samples off their stamps, on the arm of two links of `test_knocking`: textbook dynamics, motion in bursts that are known to the end."""
+"""Samples off their stamps, on the arm of two links of `test_knocking`: textbook dynamics, motion
+in bursts that are known to the end.
+"""
 
 from functools import cache
 
@@ -18,7 +20,9 @@ OFF = 6e-4
 
 @cache
 def bursts(off, seed=0):
-    """The shoulder swings fast now and then, the elbow little; positions are those some milliseconds off."""
+    """The shoulder swings fast now and then, the elbow little; positions are those some
+    milliseconds off.
+    """
     rng = np.random.default_rng(seed)
     time = np.arange(0, 16, 1 / RATE)
     late = time + off * rng.standard_normal(len(time))
@@ -28,7 +32,11 @@ def bursts(off, seed=0):
         return np.column_stack([-1.2 + 0.5 * burst * np.sin(9 * at), 0.5 + 0.1 * np.sin(2 * at)])
 
     h = 1e-4
-    q, v, a = motion(time), (motion(time + h) - motion(time - h)) / (2 * h), (motion(time + h) - 2 * motion(time) + motion(time - h)) / h**2
+    q, v, a = (
+        motion(time),
+        (motion(time + h) - motion(time - h)) / (2 * h),
+        (motion(time + h) - 2 * motion(time) + motion(time - h)) / h**2,
+    )
     torque = np.empty_like(q)
     for i in range(len(time)):
         mass, bias = mass_and_bias(q[i], v[i])

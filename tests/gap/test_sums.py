@@ -7,7 +7,10 @@ from hyperleg_design.gap.samples import products
 
 @pytest.fixture(scope="module")
 def base(robot_files):
-    return diagnosed.prepared(robot_files["coupled"], *(diagnosed.run("healthy", s, session=name) for s, name in ((0, "a"), (1, "b")))).base
+    return diagnosed.prepared(
+        robot_files["coupled"],
+        *(diagnosed.run("healthy", s, session=name) for s, name in ((0, "a"), (1, "b"))),
+    ).base
 
 
 def dense(base, session):
@@ -24,15 +27,22 @@ def dense(base, session):
 def test_what_is_left_out_is_nothing(base):
     for session in range(2):
         assert np.allclose(base.total[session].whole(), dense(base, session))
-    assert sum(len(one) for one in base.layout.shown) < 0.9 * len(base.stacked) * len(base.samples.rows)
+    assert sum(len(one) for one in base.layout.shown) < 0.9 * len(base.stacked) * len(
+        base.samples.rows
+    )
 
 
 def test_weighed_sums_and_squares_are_those_of_the_whole(base):
     rng = np.random.default_rng(0)
-    weight, combination = rng.uniform(0.1, 2, base.samples.groups), rng.normal(size=len(base.stacked))
+    weight, combination = (
+        rng.uniform(0.1, 2, base.samples.groups),
+        rng.normal(size=len(base.stacked)),
+    )
     whole = dense(base, 0)
     assert np.allclose(base.total[0].weighed(weight), np.tensordot(weight, whole, 1))
-    assert np.allclose(base.total[0].square(combination), np.einsum("p,gpq,q->g", combination, whole, combination))
+    assert np.allclose(
+        base.total[0].square(combination), np.einsum("p,gpq,q->g", combination, whole, combination)
+    )
 
 
 def test_folds_add_up(base):

@@ -25,7 +25,9 @@ def test_a_band_is_the_amplitude_and_phase_of_its_line_and_leaves_others_out():
     values = np.stack([line(60, 0.3, 0.4) + line(8, 2.0), line(60, 0.1, -1.0) + line(90, 1.0)], -1)
     middle = band(values, STEP, 60.0)[200:-200]
     wave = np.exp(2j * np.pi * 60 * TIME)[200:-200, None]
-    assert middle / wave == pytest.approx(np.broadcast_to([0.3 * np.exp(0.4j), 0.1 * np.exp(-1j)], middle.shape), abs=2e-3)
+    assert middle / wave == pytest.approx(
+        np.broadcast_to([0.3 * np.exp(0.4j), 0.1 * np.exp(-1j)], middle.shape), abs=2e-3
+    )
     assert rms(middle) == pytest.approx([0.3, 0.1], rel=1e-2)
 
 
@@ -40,6 +42,12 @@ def test_play_is_told_from_a_spring_by_the_third_harmonic_of_the_motor(robot_fil
     assert not any(sharp(sine, subject, m) for m in motors)
     triangle = replace(sine, third=angle**3 / 9)
     assert all(sharp(triangle, subject, m) for m in motors)
-    assert not any(sharp(replace(sine, third=-(angle**3) / 9), subject, m) for m in motors), "rounded off at its turns, not knocked"
-    assert not any(sharp(replace(sine, third=angle / 9), subject, m) for m in motors), "a line of its own"
-    assert all(sharp(replace(sine, third=np.conj(angle**3) / 9, folded=True), subject, m) for m in motors)
+    assert not any(sharp(replace(sine, third=-(angle**3) / 9), subject, m) for m in motors), (
+        "rounded off at its turns, not knocked"
+    )
+    assert not any(sharp(replace(sine, third=angle / 9), subject, m) for m in motors), (
+        "a line of its own"
+    )
+    assert all(
+        sharp(replace(sine, third=np.conj(angle**3) / 9, folded=True), subject, m) for m in motors
+    )

@@ -16,7 +16,9 @@ def signals(robot_files):
 
 def warmed(signals, *degrees):
     count = len(signals[0].subject.motors)
-    celsius = np.broadcast_to(np.resize(degrees, count).astype(float), (len(signals[0].time), count))
+    celsius = np.broadcast_to(
+        np.resize(degrees, count).astype(float), (len(signals[0].time), count)
+    )
     return [replace(one, temperature=celsius[: len(one.time)]) for one in signals]
 
 

@@ -13,7 +13,16 @@ def test_the_shipped_rules_are_whole():
     assert rules.most_certain < 1
 
 
-@pytest.mark.parametrize(("name", "value"), [("evident", "much"), ("evident", None), ("evident", float("nan")), ("worth", -0.1), ("evident", True)])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("evident", "much"),
+        ("evident", None),
+        ("evident", float("nan")),
+        ("worth", -0.1),
+        ("evident", True),
+    ],
+)
 def test_a_rule_that_is_no_number_is_refused(tmp_path, name, value):
     content = dataclasses.asdict(load_thresholds()) | {name: value}
     path = tmp_path / "rules.yaml"

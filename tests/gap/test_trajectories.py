@@ -10,9 +10,12 @@ RATE = 200.0
 @pytest.fixture(scope="module")
 def room():
     return Room(
-        centre=np.array([0.1, -0.4]), low=np.array([-0.6, -1.1]), high=np.array([0.9, 0.2]), speed=np.array([3.0, 1.5]),
+        centre=np.array([0.1, -0.4]),
+        low=np.array([-0.6, -1.1]),
+        high=np.array([0.9, 0.2]),
+        speed=np.array([3.0, 1.5]),
         acceleration=np.array([60.0, 25.0]),
-    )  # fmt: skip
+    )
 
 
 def shapes(room):
@@ -22,7 +25,9 @@ def shapes(room):
         "sweeps": trajectories.sweeps(RATE, room, (0.5, 2.0), (0.4, 0.9)),
         "ramps": trajectories.ramps(RATE, room, (0.1, 0.4)),
         "holds": trajectories.holds(RATE, room, 3),
-        "reversals": trajectories.reversals(RATE, room, [room.centre, room.centre + 0.1], (0.02, 0.08)),
+        "reversals": trajectories.reversals(
+            RATE, room, [room.centre, room.centre + 0.1], (0.02, 0.08)
+        ),
         "fourier": trajectories.fourier(time, room, 0.1, 6, np.linspace(0, 9, 12).reshape(6, 2)),
     }
 
@@ -42,7 +47,10 @@ def test_starts_and_ends_at_rest_in_the_centre_and_stays_inside(room, name):
 def test_chirp_sweeps_from_slow_to_fast(room):
     time = np.arange(4001) / RATE
     motion = trajectories.chirp(time, room, 0.1, 10.0) - room.centre
-    crossings = [np.count_nonzero(np.diff(np.sign(motion[part, 0]))) for part in (slice(200, 1000), slice(3000, 3800))]
+    crossings = [
+        np.count_nonzero(np.diff(np.sign(motion[part, 0])))
+        for part in (slice(200, 1000), slice(3000, 3800))
+    ]
     assert crossings[0] <= 4
     assert crossings[1] > 20
 
@@ -77,7 +85,9 @@ def test_holds_come_to_each_posture_from_both_sides(room):
 
 
 def test_reversals_turn_round_often_at_each_posture(room):
-    motion = trajectories.reversals(RATE, room, [room.centre, room.centre + 0.2], (0.03,), strokes=6)
+    motion = trajectories.reversals(
+        RATE, room, [room.centre, room.centre + 0.2], (0.03,), strokes=6
+    )
     moved = np.diff(motion[:, 0])
     signs = np.sign(moved[np.abs(moved) > 1e-6])
     assert np.count_nonzero(np.diff(signs)) >= 10

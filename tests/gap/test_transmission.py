@@ -12,12 +12,19 @@ MOTORS = ("m_front", "m_back")
 
 
 def with_rotors(robot, log, noise=0.01, **scales):
-    """A log with speeds of its motors, some of them `scales` times those that its joints give them."""
+    """A log with speeds of its motors, some of them `scales` times those that its joints give
+    them.
+    """
     subject = load_subject(robot, [log])
     spin = condition(log, subject).velocity @ subject.joint_from_motor
-    spin = np.stack([np.interp(log.time, condition(log, subject).time, column) for column in spin.T], -1)
+    spin = np.stack(
+        [np.interp(log.time, condition(log, subject).time, column) for column in spin.T], -1
+    )
     rng = np.random.default_rng(4)
-    found = {f"motor_velocity/{m}": scales.get(m, 1.0) * spin[:, i] + rng.normal(0, noise, len(spin)) for i, m in enumerate(MOTORS)}
+    found = {
+        f"motor_velocity/{m}": scales.get(m, 1.0) * spin[:, i] + rng.normal(0, noise, len(spin))
+        for i, m in enumerate(MOTORS)
+    }
     return log.changed(signals={**log.signals, **found})
 
 
@@ -70,7 +77,9 @@ def test_a_healthy_robot_has_no_gap_in_it(robot_files):
     logs = [with_rotors(robot_files["coupled"], run("healthy", s, session="today")) for s in (0, 1)]
     found = diagnose(robot_files["coupled"], logs, threads=1)
     assert found.verdict == "none"
-    table = measure([condition(log, load_subject(robot_files["coupled"], [log])) for log in logs], predict=False)
+    table = measure(
+        [condition(log, load_subject(robot_files["coupled"], [log])) for log in logs], predict=False
+    )
     mine = [r for r in table.rows if r.signal == "transmission" and r.regime == "all"]
     assert {(r.location, r.unit, r.kind) for r in mine} == {(m, "rad/s", "motor") for m in MOTORS}
     assert all(r.gap < 2 * r.floor for r in mine)
@@ -79,10 +88,21 @@ def test_a_healthy_robot_has_no_gap_in_it(robot_files):
 def test_speeds_tell_a_ratio_from_a_torque_constant(robot_files):
     """A motor whose torque reaches the joints 1.1 times and that turns 1.1 times as fast."""
     plain = [run("healthy", s, session="today") for s in (0, 1)]
-    strong = [log.changed(signals={**log.signals, "motor_torque/m_back": log.column("motor_torque/m_back") / 1.1}) for log in plain]
+    strong = [
+        log.changed(
+            signals={**log.signals, "motor_torque/m_back": log.column("motor_torque/m_back") / 1.1}
+        )
+        for log in plain
+    ]
     blind = diagnose(robot_files["coupled"], strong, threads=1)
     assert blind.causes[0].effect == "torque_constant"
-    seeing = diagnose(robot_files["coupled"], [with_rotors(robot_files["coupled"], log, m_back=1.1) for log in strong], threads=1)
+    seeing = diagnose(
+        robot_files["coupled"],
+        [with_rotors(robot_files["coupled"], log, m_back=1.1) for log in strong],
+        threads=1,
+    )
     assert (seeing.causes[0].effect, seeing.causes[0].location) == ("transmission_ratio", "m_back")
-    assert seeing.causes[0].parameters["scale"].low < 1.1 < seeing.causes[0].parameters["scale"].high
+    assert (
+        seeing.causes[0].parameters["scale"].low < 1.1 < seeing.causes[0].parameters["scale"].high
+    )
     assert not any(c.effect == "torque_constant" for c in seeing.causes)

@@ -1,4 +1,6 @@
-"""What makes loops swing, against a two-link arm that is written here: its equations, a controller at 1 kHz, a belt of two masses."""
+"""What makes loops swing, against a two-link arm that is written here: its equations, a controller
+at 1 kHz, a belt of two masses.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -14,7 +16,13 @@ from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.gap.unstable import swinging, unstable
 from hyperleg_design.report.gap_page import write_gap_page
 
-MASS, CENTRE, SPIN, LENGTH, ROTORS = (1.2, 0.6), (0.15, 0.12), (0.02, 0.006), 0.3, np.array([0.02, 0.01])
+MASS, CENTRE, SPIN, LENGTH, ROTORS = (
+    (1.2, 0.6),
+    (0.15, 0.12),
+    (0.02, 0.006),
+    0.3,
+    np.array([0.02, 0.01]),
+)
 FRICTION, DAMPING, STEP, RATE, LIMIT = 0.05, 0.02, 2e-4, 200, 8.0
 MJCF = f"""<mujoco><option gravity="0 0 0"/><worldbody><body name="upper">
 <joint name="shoulder" type="hinge" axis="0 0 1" armature="{ROTORS[0]}" damping="{DAMPING}" frictionloss="{FRICTION}"/>
@@ -22,7 +30,7 @@ MJCF = f"""<mujoco><option gravity="0 0 0"/><worldbody><body name="upper">
 <joint name="elbow" type="hinge" axis="0 0 1" armature="{ROTORS[1]}" damping="{DAMPING}" frictionloss="{FRICTION}"/>
 <inertial pos="{CENTRE[1]} 0 0" mass="{MASS[1]}" diaginertia="0.0005 {SPIN[1]} {SPIN[1]}"/></body></body></worldbody>
 <actuator><motor name="shoulder" joint="shoulder" ctrlrange="-{LIMIT} {LIMIT}"/>
-<motor name="elbow" joint="elbow" ctrlrange="-{LIMIT} {LIMIT}"/></actuator></mujoco>"""
+<motor name="elbow" joint="elbow" ctrlrange="-{LIMIT} {LIMIT}"/></actuator></mujoco>"""  # noqa: E501
 CALM, TIGHT = ((60.0, 3.0), (25.0, 1.2)), ((60.0, 3.0), (25.0, 8.0))
 """Stiffness and damping of both joints."""
 JOINTS = ("shoulder", "elbow")
@@ -30,7 +38,9 @@ JOINTS = ("shoulder", "elbow")
 
 @cache
 def recorded(gains, late=1, spring=None, seconds=6):
-    """Time, targets, angles, speeds and torques at 200 Hz; `late` milliseconds, the elbow's motor on a belt where a spring is given."""
+    """Time, targets, angles, speeds and torques at 200 Hz; `late` milliseconds, the elbow's motor
+    on a belt where a spring is given.
+    """
     stiffness, damping = np.array(gains).T
     angle, speed, rotor, spin = np.zeros(2), np.zeros(2), 0.0, 0.0
     asked, rows = [np.zeros(2)] * (late + 1), []
@@ -48,12 +58,16 @@ def recorded(gains, late=1, spring=None, seconds=6):
         bent, turned = coupling * np.cos(angle[1]), coupling * np.sin(angle[1])
         mass = np.array([[upper + 2 * bent, lower + bent], [lower + bent, lower]])
         force = torque - FRICTION * np.tanh(speed / 0.02) - DAMPING * speed
-        force = force + turned * np.array([2 * speed[0] * speed[1] + speed[1] ** 2, -(speed[0] ** 2)])
+        force = force + turned * np.array(
+            [2 * speed[0] * speed[1] + speed[1] ** 2, -(speed[0] ** 2)]
+        )
         mass[0, 0] += ROTORS[0]
         if spring is None:
             mass[1, 1] += ROTORS[1]
         else:
-            pull = spring * (rotor - angle[1]) + 0.06 * np.sqrt(spring * ROTORS[1]) * (spin - speed[1])
+            pull = spring * (rotor - angle[1]) + 0.06 * np.sqrt(spring * ROTORS[1]) * (
+                spin - speed[1]
+            )
             force[1] += pull - torque[1]
             spin += STEP * (torque[1] - pull) / ROTORS[1]
             rotor += STEP * spin
@@ -69,10 +83,16 @@ def log(gains, role="test", **options):
     signals = {}
     for i, joint in enumerate(JOINTS):
         signals |= {
-            f"position_target/{joint}": rows[1 + i], f"position/{joint}": rows[3 + i] + 2e-5 * noise[i],
+            f"position_target/{joint}": rows[1 + i],
+            f"position/{joint}": rows[3 + i] + 2e-5 * noise[i],
             f"velocity/{joint}": rows[5 + i] + 5e-3 * noise[2 + i],
-        }  # fmt: skip
-    return Log(role, rows[0], signals, Metadata(gains=dict(zip(JOINTS, gains, strict=True)), role=role, gravity=(0.0, 0.0, 0.0)))
+        }
+    return Log(
+        role,
+        rows[0],
+        signals,
+        Metadata(gains=dict(zip(JOINTS, gains, strict=True)), role=role, gravity=(0.0, 0.0, 0.0)),
+    )
 
 
 @pytest.fixture
@@ -88,9 +108,14 @@ def heard(robot, *logs):
 
 
 @pytest.mark.parametrize("spring", [400.0, 1000.0])
-def test_a_soft_belt_is_known_by_the_joints_that_swing_and_its_stiffness_by_their_frequency(robot, spring):
+def test_a_soft_belt_is_known_by_the_joints_that_swing_and_its_stiffness_by_their_frequency(
+    robot, spring
+):
     found = heard(robot, log(CALM, spring=spring))
-    assert {(c.effect, c.location) for c in found.causes} == {("transmission_elasticity", "elbow"), ("backlash", "elbow")}
+    assert {(c.effect, c.location) for c in found.causes} == {
+        ("transmission_elasticity", "elbow"),
+        ("backlash", "elbow"),
+    }
     assert found.causes[0].effect == "transmission_elasticity"
     compliance = found.causes[0].parameters["compliance"]
     assert compliance.low < 1 / spring < compliance.high
@@ -102,14 +127,20 @@ def test_a_soft_belt_is_known_by_the_joints_that_swing_and_its_stiffness_by_thei
 def test_late_commands_and_a_soft_belt_are_one_set_where_a_single_loop_swings(robot):
     found = heard(robot, log(TIGHT, late=4))
     assert {(c.effect, c.location) for c in found.causes} == {
-        ("command_delay", "robot"), ("transmission_elasticity", "elbow"), ("backlash", "elbow"),
-    }  # fmt: skip
+        ("command_delay", "robot"),
+        ("transmission_elasticity", "elbow"),
+        ("backlash", "elbow"),
+    }
     first = found.causes[0]
     assert (first.effect, first.location) == ("command_delay", "robot")
     delay = first.parameters["delay"]
-    assert delay.low < 0.004 + 0.0005 - 0.0015 < delay.high  # and half a tick of the controller, less what is usual
+    assert (
+        delay.low < 0.004 + 0.0005 - 0.0015 < delay.high
+    )  # and half a tick of the controller, less what is usual
     assert sum(c.probability for c in found.causes) < 1 + 1e-9
-    assert [c.probability for c in found.causes] == sorted((c.probability for c in found.causes), reverse=True)
+    assert [c.probability for c in found.causes] == sorted(
+        (c.probability for c in found.causes), reverse=True
+    )
 
 
 def test_nothing_swings_on_a_healthy_arm(robot):
@@ -125,7 +156,10 @@ def test_nothing_is_said_without_gains_or_of_what_rang_before_or_stands_on_its_f
     gains[0, 0] = np.nan
     assert unstable([replace(signals, subject=replace(signals.subject, gains=gains))]) is None
     assert unstable([replace(signals, subject=replace(signals.subject, base="floating"))]) is None
-    assert unstable([replace(signals, chatter=replace(signals.chatter, joints=np.zeros(2, bool)))]) is None
+    assert (
+        unstable([replace(signals, chatter=replace(signals.chatter, joints=np.zeros(2, bool)))])
+        is None
+    )
 
 
 def test_a_diagnosis_names_what_makes_the_loops_unstable(robot, tmp_path):
@@ -138,7 +172,9 @@ def test_a_diagnosis_names_what_makes_the_loops_unstable(robot, tmp_path):
     shapes = [one["shape"] for one in found.residual_shape]
     assert {"ringing", "unstable"}.intersection(shapes)
     assert "chatter" not in shapes
-    page = write_gap_page(tmp_path, found.mapping(), [condition(test, load_subject(robot, [test]))]).read_text()
+    page = write_gap_page(
+        tmp_path, found.mapping(), [condition(test, load_subject(robot, [test]))]
+    ).read_text()
     assert "elbow rings at" in page  # the torques are those that the controllers ask for
 
 
@@ -149,8 +185,24 @@ def test_the_page_shows_the_joints_that_swing_beside_the_mode(robot, tmp_path):
     assert np.sum((speed - mode) ** 2) < 0.1 * np.sum(speed**2)
     assert swinging(signals, "command_delay", "elbow") is None
     found = diagnose(robot, [test], threads=1).mapping()
-    found["causes"] = [{"effect": "command_delay", "location": "robot", "probability": 0.9, "closed": 0.8, "parameters": {}}]
-    found["residual_shape"] = [{"shape": "unstable", "location": "robot", "says": "has unstable control loops", "closed_beyond": 0.8, "gain": 0.0}]
+    found["causes"] = [
+        {
+            "effect": "command_delay",
+            "location": "robot",
+            "probability": 0.9,
+            "closed": 0.8,
+            "parameters": {},
+        }
+    ]
+    found["residual_shape"] = [
+        {
+            "shape": "unstable",
+            "location": "robot",
+            "says": "has unstable control loops",
+            "closed_beyond": 0.8,
+            "gain": 0.0,
+        }
+    ]
     page = write_gap_page(tmp_path, found, [signals]).read_text()
     assert "robot has unstable control loops." in page
     assert (tmp_path / "figures" / "swinging-1.png").is_file()

@@ -12,7 +12,9 @@ from hyperleg_design.gap.waveform import knocks, sharpness
 @given(st.floats(-3, 3), st.floats(0.01, 5), st.floats(-1, 1), st.floats(-1, 1))
 def test_neither_shifts_in_time_nor_size_change_it(shift, size, real, imaginary):
     wave = np.exp(1j * (np.linspace(0, 40, 300) + shift))
-    assert sharpness(size * wave, size * complex(real, imaginary) * wave**3) == pytest.approx(complex(real, imaginary), rel=1e-6, abs=1e-9)
+    assert sharpness(size * wave, size * complex(real, imaginary) * wave**3) == pytest.approx(
+        complex(real, imaginary), rel=1e-6, abs=1e-9
+    )
 
 
 def test_of_a_triangle_it_is_a_ninth_and_of_unlike_lines_nothing():

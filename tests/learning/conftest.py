@@ -18,7 +18,13 @@ def tiny_mapping() -> dict:
         "network": {"hidden": [16, 8]},
         "tasks": {
             "walk": [
-                {"name": "first", "steps": 96, "assist": 1.0, "assist_gone_by": 0.67, "rewards": {"linear_velocity": {"width": 0.25}}},
+                {
+                    "name": "first",
+                    "steps": 96,
+                    "assist": 1.0,
+                    "assist_gone_by": 0.67,
+                    "rewards": {"linear_velocity": {"width": 0.25}},
+                },
                 {
                     "name": "second",
                     "steps": 96,

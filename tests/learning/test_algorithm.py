@@ -17,7 +17,9 @@ from hyperleg_design.learning.preset import Preset  # noqa: E402
 
 
 def rolled_out(preset: Preset, design: Design):
-    environment = Environment(design, load_task("walk"), simulations=int(preset.simulations), threads=1)
+    environment = Environment(
+        design, load_task("walk"), simulations=int(preset.simulations), threads=1
+    )
     torch.manual_seed(0)
     observations = as_tensors(environment.reset())
     algorithm = make_algorithm(preset, environment, observations)
@@ -26,14 +28,23 @@ def rolled_out(preset: Preset, design: Design):
         for _ in range(int(preset.rollout)):
             step = environment.step(algorithm.act(observations).numpy())
             observations = as_tensors(step.observations)
-            algorithm.process_env_step(observations, torch.from_numpy(step.reward.astype(np.float32)), torch.from_numpy(step.ending != 0), {})
+            algorithm.process_env_step(
+                observations,
+                torch.from_numpy(step.reward.astype(np.float32)),
+                torch.from_numpy(step.ending != 0),
+                {},
+            )
         algorithm.compute_returns(observations)
     return environment, algorithm
 
 
 @pytest.mark.parametrize(("target", "factor"), [(1e-5, 1 / 1.5), (1.0, 1.5)])
-def test_learning_rate_moves_once_an_iteration(tiny: Preset, hyperleg: Design, target: float, factor: float) -> None:
-    preset = replace(tiny, algorithm=replace(tiny.algorithm, kl_target=target, learning_rate=1e-3, epochs=10))
+def test_learning_rate_moves_once_an_iteration(
+    tiny: Preset, hyperleg: Design, target: float, factor: float
+) -> None:
+    preset = replace(
+        tiny, algorithm=replace(tiny.algorithm, kl_target=target, learning_rate=1e-3, epochs=10)
+    )
     _, algorithm = rolled_out(preset, hyperleg)
     assert isinstance(algorithm, IterationPPO)
     algorithm.update()
@@ -44,28 +55,48 @@ def test_learning_rate_moves_once_an_iteration(tiny: Preset, hyperleg: Design, t
 
 
 def test_learning_rate_stays_within_its_bounds(tiny: Preset, hyperleg: Design) -> None:
-    preset = replace(tiny, algorithm=replace(tiny.algorithm, kl_target=1e-5, learning_rate=6e-5, slowest=5e-5, epochs=40))
+    preset = replace(
+        tiny,
+        algorithm=replace(
+            tiny.algorithm, kl_target=1e-5, learning_rate=6e-5, slowest=5e-5, epochs=40
+        ),
+    )
     _, algorithm = rolled_out(preset, hyperleg)
     algorithm.update()
     assert algorithm.learning_rate == 5e-5
 
 
-def test_the_first_policy_stands_in_the_default_posture_and_is_its_own_mirror_image(tiny: Preset, hyperleg: Design) -> None:
+def test_the_first_policy_stands_in_the_default_posture_and_is_its_own_mirror_image(
+    tiny: Preset, hyperleg: Design
+) -> None:
     environment, algorithm = rolled_out(tiny, hyperleg)
     values = environment.reset()["policy"]
     maps = environment.mirror_maps()
     actor = algorithm.get_policy()
     with torch.inference_mode():
-        plain, mirrored = (actor.mlp(torch.from_numpy(v.astype(np.float32))).numpy() for v in (values, maps["policy"](values)))
+        plain, mirrored = (
+            actor.mlp(torch.from_numpy(v.astype(np.float32))).numpy()
+            for v in (values, maps["policy"](values))
+        )
     assert np.abs(plain).max() < 0.02
     assert np.abs(mirrored - maps["action"](plain)).max() < 0.02
 
 
-@pytest.mark.parametrize(("mirror", "adapted"), [("append", "minibatch"), ("never", "iteration"), ("append", "never"), ("never", "minibatch")])
-def test_the_other_ways_learn_too(tiny: Preset, hyperleg: Design, mirror: str, adapted: str) -> None:
-    preset = replace(tiny, algorithm=replace(tiny.algorithm, mirror=mirror, adapted=adapted, mixed_precision=False))
+@pytest.mark.parametrize(
+    ("mirror", "adapted"),
+    [("append", "minibatch"), ("never", "iteration"), ("append", "never"), ("never", "minibatch")],
+)
+def test_the_other_ways_learn_too(
+    tiny: Preset, hyperleg: Design, mirror: str, adapted: str
+) -> None:
+    preset = replace(
+        tiny,
+        algorithm=replace(tiny.algorithm, mirror=mirror, adapted=adapted, mixed_precision=False),
+    )
     _, algorithm = rolled_out(preset, hyperleg)
     before = [p.clone() for p in algorithm.actor.parameters()]
     losses = algorithm.update()
     assert all(np.isfinite(v) for v in losses.values())
-    assert any(not torch.equal(a, b) for a, b in zip(before, algorithm.actor.parameters(), strict=True))
+    assert any(
+        not torch.equal(a, b) for a, b in zip(before, algorithm.actor.parameters(), strict=True)
+    )

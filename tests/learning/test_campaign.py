@@ -11,11 +11,20 @@ import yaml
 
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.learning import campaign as module
-from hyperleg_design.learning.campaign import campaign_status, load_campaign, run_campaign, status_table
+from hyperleg_design.learning.campaign import (
+    campaign_status,
+    load_campaign,
+    run_campaign,
+    status_table,
+)
 
 from .conftest import tiny_mapping
 
-DATA = {"name": "mine", "preset": "laptop", "groups": [{"name": "walk", "task": "walk", "designs": ["toe", "toe_removed"], "seeds": 2}]}
+DATA = {
+    "name": "mine",
+    "preset": "laptop",
+    "groups": [{"name": "walk", "task": "walk", "designs": ["toe", "toe_removed"], "seeds": 2}],
+}
 
 
 @pytest.fixture(autouse=True)
@@ -27,7 +36,9 @@ def test_the_shipped_campaign_holds_what_the_study_compares() -> None:
     runs = load_campaign().runs
     designs = ("toe", "toe_locked", "toe_removed_matched", "toe_removed")
     count = {
-        (group, design): sum((r.group, r.design) == (group, design) for r in runs) for group in ("walk", "walk_paper", "t_test") for design in designs
+        (group, design): sum((r.group, r.design) == (group, design) for r in runs)
+        for group in ("walk", "walk_paper", "t_test")
+        for design in designs
     }
     walk = {design: count["walk", design] for design in designs}
     assert set(walk.values()) == {5}
@@ -48,7 +59,10 @@ def test_the_shipped_campaign_holds_what_the_study_compares() -> None:
         ({"groups": [{"name": "a", "task": "walk", "designs": ["toe"]}]}, "groups.0.seeds"),
         ({"groups": [{"name": "a", "task": "walk", "designs": ["toes"], "seeds": 1}]}, ""),
         ({"groups": [{"name": "a", "task": "swim", "designs": ["toe"], "seeds": 1}]}, ""),
-        ({"groups": [{"name": "a", "task": "goal_paper", "designs": ["toe"], "seeds": 1}]}, "tasks"),
+        (
+            {"groups": [{"name": "a", "task": "goal_paper", "designs": ["toe"], "seeds": 1}]},
+            "tasks",
+        ),
         ({"groups": [DATA["groups"][0], DATA["groups"][0]]}, "groups.1.name"),
     ],
 )
@@ -64,9 +78,15 @@ def test_status_of_each_training(write, tmp_path: Path) -> None:
     assert {s.state for s in campaign_status(campaign, out)} == {"missing"}
     gone = subprocess.Popen([sys.executable, "-c", ""])
     gone.wait()
-    for run, status in zip(campaign.runs, ({"pid": 1, "done": False}, {"pid": gone.pid, "done": False}, {"pid": None, "done": True}), strict=False):
+    for run, status in zip(
+        campaign.runs,
+        ({"pid": 1, "done": False}, {"pid": gone.pid, "done": False}, {"pid": None, "done": True}),
+        strict=False,
+    ):
         (out / run.name).mkdir(parents=True)
-        (out / run.name / "status.json").write_text(json.dumps({"steps": 2e6, "speed": 1.3, "left": 60.0, **status}))
+        (out / run.name / "status.json").write_text(
+            json.dumps({"steps": 2e6, "speed": 1.3, "left": 60.0, **status})
+        )
     (out / campaign.runs[2].name / "policy.onnx").write_bytes(b"x")
     statuses = campaign_status(campaign, out)
     assert [s.state for s in statuses][1:] == ["stopped", "done", "missing"]
@@ -83,7 +103,9 @@ def test_foreign_folders_stay(write, tmp_path: Path) -> None:
         run_campaign(load_campaign(write("c.yaml", yaml.safe_dump(DATA))), tmp_path / "out")
 
 
-def test_trains_what_is_missing_with_processes_of_its_own(write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_trains_what_is_missing_with_processes_of_its_own(
+    write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("torch")
     pytest.importorskip("rsl_rl")
     pytest.importorskip("tensorboard")
@@ -91,7 +113,11 @@ def test_trains_what_is_missing_with_processes_of_its_own(write, tmp_path: Path,
     tiny = tiny_mapping()
     tiny["tasks"]["walk"] = [{"name": "all", "steps": 64}]
     preset = write("tiny.yaml", yaml.safe_dump(tiny))
-    data = {**DATA, "preset": str(preset), "groups": [{**DATA["groups"][0], "designs": ["toe"], "seeds": 1}]}
+    data = {
+        **DATA,
+        "preset": str(preset),
+        "groups": [{**DATA["groups"][0], "designs": ["toe"], "seeds": 1}],
+    }
     campaign = load_campaign(write("c.yaml", yaml.safe_dump(data)))
     shown: list[str] = []
     assert run_campaign(campaign, tmp_path / "out", processes=2, show=shown.append)
@@ -102,9 +128,15 @@ def test_trains_what_is_missing_with_processes_of_its_own(write, tmp_path: Path,
     assert {p: p.stat().st_mtime_ns for p in before} == before
 
 
-def test_a_failed_training_is_reported(write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_training_is_reported(
+    write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(module, "POLL", 0.05)
-    monkeypatch.setattr(module.launch, "command", lambda arguments: [sys.executable, "-c", "raise SystemExit('no such luck')"])
+    monkeypatch.setattr(
+        module.launch,
+        "command",
+        lambda arguments: [sys.executable, "-c", "raise SystemExit('no such luck')"],
+    )
     campaign = load_campaign(write("c.yaml", yaml.safe_dump(DATA)))
     shown: list[str] = []
     assert not run_campaign(campaign, tmp_path / "out", show=shown.append)
@@ -112,7 +144,9 @@ def test_a_failed_training_is_reported(write, tmp_path: Path, monkeypatch: pytes
     assert "no such luck" in (tmp_path / "out" / campaign.runs[0].name / module.LOG).read_text()
 
 
-def test_an_interrupt_stops_the_trainings(write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupt_stops_the_trainings(
+    write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     started: list[subprocess.Popen] = []
 
     def start(arguments: dict, log: Path) -> subprocess.Popen:
@@ -120,12 +154,16 @@ def test_an_interrupt_stops_the_trainings(write, tmp_path: Path, monkeypatch: py
         return started[-1]
 
     monkeypatch.setattr(module.launch, "start", start)
-    monkeypatch.setattr(module.time, "sleep", lambda seconds: (_ for _ in ()).throw(KeyboardInterrupt))
+    monkeypatch.setattr(
+        module.time, "sleep", lambda seconds: (_ for _ in ()).throw(KeyboardInterrupt)
+    )
     assert not run_campaign(load_campaign(write("c.yaml", yaml.safe_dump(DATA))), tmp_path / "out")
     assert [p.poll() for p in started] == [-signal.SIGTERM] * 2
 
 
-def test_a_shipped_policy_counts_as_long_as_nothing_it_rests_on_has_changed(tmp_path: Path, write) -> None:
+def test_a_shipped_policy_counts_as_long_as_nothing_it_rests_on_has_changed(
+    tmp_path: Path, write
+) -> None:
     from hyperleg_design.learning.preset import load_preset
     from hyperleg_design.learning.resolved import preset_mapping, task_mapping
     from hyperleg_design.robot.design import load_design
@@ -136,7 +174,11 @@ def test_a_shipped_policy_counts_as_long_as_nothing_it_rests_on_has_changed(tmp_
     place = tmp_path / "policies" / "walk-toe-1"
     place.mkdir(parents=True)
     (place / "policy.onnx").touch()
-    told = {"task": task_mapping(load_task("walk")), "design": load_design("toe").to_mapping(), "seed": 1}
+    told = {
+        "task": task_mapping(load_task("walk")),
+        "design": load_design("toe").to_mapping(),
+        "seed": 1,
+    }
     told["preset"] = preset_mapping(load_preset("laptop"), "walk")
     (place / "run.json").write_text(json.dumps(told))
     states = {s.run.name: s.state for s in campaign_status(campaign, tmp_path / "out")}

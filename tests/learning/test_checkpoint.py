@@ -17,7 +17,16 @@ def test_everything_comes_back_bit_for_bit(tmp_path: Path) -> None:
     rng.normal(size=5)
     content = {
         "networks": {"weight": torch.randn(3, 2, generator=torch.Generator().manual_seed(1))},
-        "environment": {"chunks": [{"x": rng.normal(size=(4, 3)), "on": np.array([True, False]), "random": rng.bit_generator.state, "goal": None}]},
+        "environment": {
+            "chunks": [
+                {
+                    "x": rng.normal(size=(4, 3)),
+                    "on": np.array([True, False]),
+                    "random": rng.bit_generator.state,
+                    "goal": None,
+                }
+            ]
+        },
         "count": np.int64(3),
         "seconds": 1.25,
     }
@@ -63,7 +72,9 @@ def test_a_file_cannot_run_code(tmp_path: Path) -> None:
     assert not (tmp_path / "touched").exists()
 
 
-def test_a_full_disk_leaves_the_old_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_leaves_the_old_checkpoint(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import os
 
     path = tmp_path / "c.pt"

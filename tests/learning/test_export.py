@@ -18,11 +18,20 @@ from hyperleg_design.learning.algorithm import as_tensors, make_network  # noqa:
 from hyperleg_design.learning.preset import Network  # noqa: E402
 
 
-def actor(activation: str = "elu", normalised: bool = True, hidden: tuple[int, ...] = (512, 256, 128)):
+def actor(
+    activation: str = "elu", normalised: bool = True, hidden: tuple[int, ...] = (512, 256, 128)
+):
     torch.manual_seed(0)
     rng = np.random.default_rng(0)
-    values = (rng.normal(size=(500, 67)) * rng.uniform(0.01, 30, 67) + rng.normal(size=67)).astype(np.float32)
-    made = make_network(Network(hidden=hidden, activation=activation, normalised=normalised), as_tensors({"policy": values}), "actor", 14)
+    values = (rng.normal(size=(500, 67)) * rng.uniform(0.01, 30, 67) + rng.normal(size=67)).astype(
+        np.float32
+    )
+    made = make_network(
+        Network(hidden=hidden, activation=activation, normalised=normalised),
+        as_tensors({"policy": values}),
+        "actor",
+        14,
+    )
     with torch.no_grad():
         made.mlp[-1].weight.mul_(100.0)
     made.train()
@@ -30,10 +39,16 @@ def actor(activation: str = "elu", normalised: bool = True, hidden: tuple[int, .
     return made, values
 
 
-@pytest.mark.parametrize(("activation", "normalised"), [("elu", True), ("relu", False), ("tanh", True)])
-def test_onnx_runtime_gives_what_rsl_rl_gives(tmp_path: Path, activation: str, normalised: bool) -> None:
+@pytest.mark.parametrize(
+    ("activation", "normalised"), [("elu", True), ("relu", False), ("tanh", True)]
+)
+def test_onnx_runtime_gives_what_rsl_rl_gives(
+    tmp_path: Path, activation: str, normalised: bool
+) -> None:
     made, values = actor(activation, normalised)
-    path = export.export_policy(tmp_path / "policy.onnx", made, {"seed": "3", "columns": ["a", "b"]})
+    path = export.export_policy(
+        tmp_path / "policy.onnx", made, {"seed": "3", "columns": ["a", "b"]}
+    )
     session = onnxruntime.InferenceSession(str(path))
     for count in (1, 37):
         with torch.inference_mode():
@@ -51,7 +66,9 @@ def test_the_paper_s_network_takes_under_two_megabytes(tmp_path: Path) -> None:
     assert 0.5e6 < export.export_policy(tmp_path / "policy.onnx", made, {}).stat().st_size < 2e6
 
 
-def test_a_policy_that_differs_is_not_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_policy_that_differs_is_not_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     made, _ = actor(hidden=(8,))
     original = export._as_onnx
 

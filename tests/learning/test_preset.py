@@ -19,8 +19,17 @@ def test_paper_preset_is_table_two() -> None:
     assert (paper.simulations, paper.rollout) == (8192, 24)
     assert paper.total_iterations("walk_paper") == paper.total_iterations("goal_paper") == 3000
     algorithm = paper.algorithm
-    assert (algorithm.discount, algorithm.trace, algorithm.clip, algorithm.entropy) == (0.99, 0.95, 0.2, 0.01)
-    assert (algorithm.learning_rate, algorithm.kl_target, algorithm.adapted) == (1e-4, 0.01, "minibatch")
+    assert (algorithm.discount, algorithm.trace, algorithm.clip, algorithm.entropy) == (
+        0.99,
+        0.95,
+        0.2,
+        0.01,
+    )
+    assert (algorithm.learning_rate, algorithm.kl_target, algorithm.adapted) == (
+        1e-4,
+        0.01,
+        "minibatch",
+    )
     assert paper.network.hidden == (512, 256, 128)
     assert paper.network.activation == "elu"
     assert all(stage.assist is None for stage in paper.stages("walk_paper"))

@@ -18,7 +18,9 @@ def test_a_task_comes_back_from_json(name: str) -> None:
     assert again.commands.__dict__ == load_task(name).commands.__dict__
 
 
-@pytest.mark.parametrize(("name", "task"), [("laptop", "walk"), ("laptop", "goal"), ("paper", "walk_paper")])
+@pytest.mark.parametrize(
+    ("name", "task"), [("laptop", "walk"), ("laptop", "goal"), ("paper", "walk_paper")]
+)
 def test_a_preset_comes_back_from_json(name: str, task: str) -> None:
     mapping = json.loads(json.dumps(preset_mapping(load_preset(name), task)))
     again = preset_from_mapping(mapping, "json")

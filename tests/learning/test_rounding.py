@@ -22,7 +22,9 @@ def gradients(network, values, mixed: bool):
 @pytest.fixture
 def networks():
     torch.manual_seed(0)
-    plain = nn.Sequential(nn.Linear(65, 128), nn.ELU(), nn.Linear(128, 64), nn.ELU(), nn.Linear(64, 14))
+    plain = nn.Sequential(
+        nn.Linear(65, 128), nn.ELU(), nn.Linear(128, 64), nn.ELU(), nn.Linear(64, 14)
+    )
     rounded = copy.deepcopy(plain)
     round_layers(rounded)
     return plain, rounded, torch.randn(256, 65)
@@ -49,5 +51,8 @@ def test_outputs_are_bfloat16_under_autocast_and_the_plain_layer_s_without(netwo
 def test_a_rounded_network_keeps_its_weights_and_their_names(networks) -> None:
     plain, rounded, _ = networks
     assert list(plain.state_dict()) == list(rounded.state_dict())
-    assert all(torch.equal(a, b) for a, b in zip(plain.state_dict().values(), rounded.state_dict().values(), strict=True))
+    assert all(
+        torch.equal(a, b)
+        for a, b in zip(plain.state_dict().values(), rounded.state_dict().values(), strict=True)
+    )
     assert sum(isinstance(layer, RoundedLinear) for layer in rounded.modules()) == 3

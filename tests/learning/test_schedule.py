@@ -23,7 +23,15 @@ def test_stages_ramps_and_assist(tiny: Preset, environment: Environment) -> None
         schedule.apply(environment)
         rewards, commands = environment.chunks[0].rewards, environment.chunks[0].commander.settings
         gain = 0.0 if environment.assist is None else environment.assist.gain
-        seen.append((schedule.place, gain, rewards["power"].weight, commands.turning, rewards["linear_velocity"].parameters["width"]))
+        seen.append(
+            (
+                schedule.place,
+                gain,
+                rewards["power"].weight,
+                commands.turning,
+                rewards["linear_velocity"].parameters["width"],
+            )
+        )
         schedule.advance(mean_episode=0.0, share=0.0)
     assert [s[0] for s in seen] == [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)]
     assert [s[1] for s in seen] == [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]
@@ -45,7 +53,9 @@ def test_assist_is_off_at_its_deadline_however_badly_it_goes(tiny: Preset) -> No
     assert schedule.gone == [5]
 
 
-def test_assist_decays_every_fifth_iteration_where_it_goes_well_and_never_grows(tiny: Preset) -> None:
+def test_assist_decays_every_fifth_iteration_where_it_goes_well_and_never_grows(
+    tiny: Preset,
+) -> None:
     from dataclasses import replace
 
     stage = replace(tiny.tasks["walk"][0], assist_gone_by=1.0, steps=32 * 1000)

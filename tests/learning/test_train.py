@@ -33,7 +33,11 @@ def short_trials(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def networks(folder: Path) -> dict[str, np.ndarray]:
     saved = load_checkpoint(folder / CHECKPOINT)["networks"]
-    return {f"{kind}.{name}": value.numpy() for kind in ("actor_state_dict", "critic_state_dict") for name, value in saved[kind].items()}
+    return {
+        f"{kind}.{name}": value.numpy()
+        for kind in ("actor_state_dict", "critic_state_dict")
+        for name, value in saved[kind].items()
+    }
 
 
 def test_resuming_changes_not_a_bit(tiny: Preset, tmp_path: Path) -> None:
@@ -46,8 +50,13 @@ def test_resuming_changes_not_a_bit(tiny: Preset, tmp_path: Path) -> None:
     assert straight.keys() == parts.keys()
     for name, value in straight.items():
         np.testing.assert_array_equal(parts[name], value, err_msg=name)
-    assert (tmp_path / "straight" / POLICY).read_bytes() == (tmp_path / "parts" / POLICY).read_bytes()
-    lines = [[json.loads(x) for x in (tmp_path / n / PROGRESS).read_text().splitlines()] for n in ("straight", "parts")]
+    assert (tmp_path / "straight" / POLICY).read_bytes() == (
+        tmp_path / "parts" / POLICY
+    ).read_bytes()
+    lines = [
+        [json.loads(x) for x in (tmp_path / n / PROGRESS).read_text().splitlines()]
+        for n in ("straight", "parts")
+    ]
     assert [x["iteration"] for x in lines[1]] == [1, 2, 3, 4, 5, 6]
     for one, other in zip(*lines, strict=True):
         one.pop("rate"), other.pop("rate")
@@ -81,7 +90,10 @@ def test_a_policy_says_what_it_is(tiny: Preset, tmp_path: Path) -> None:
     assert "goal_speed" in json.loads(said["deviations"])
     assert json.loads(said["design"])["variant"] == "toe_removed_matched"
     assert json.loads(said["preset"])["tasks"].keys() == {"goal"}
-    assert said["command"] == "hyperleg train --task goal --design toe_removed_matched --seed 2 --preset tiny"
+    assert (
+        said["command"]
+        == "hyperleg train --task goal --design toe_removed_matched --seed 2 --preset tiny"
+    )
     assert {"commit", "versions"} <= said.keys()
 
 
@@ -93,9 +105,18 @@ def test_a_finished_training_is_left_alone(tiny: Preset, tmp_path: Path) -> None
     assert after == before
 
 
-def test_a_signal_stops_with_a_checkpoint(tiny: Preset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_signal_stops_with_a_checkpoint(
+    tiny: Preset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(module, "SHOW_EVERY", 0.0)
-    assert not train("walk", "toe", 0, tiny, tmp_path / "run", show=lambda line: os.kill(os.getpid(), signal.SIGTERM))
+    assert not train(
+        "walk",
+        "toe",
+        0,
+        tiny,
+        tmp_path / "run",
+        show=lambda line: os.kill(os.getpid(), signal.SIGTERM),
+    )
     assert load_checkpoint(tmp_path / "run" / CHECKPOINT)["schedule"]["iteration"] == 1
     assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
     assert train("walk", "toe", 0, tiny, tmp_path / "run")
@@ -123,7 +144,9 @@ def test_two_at_once_in_one_folder(tiny: Preset, tmp_path: Path) -> None:
         train("walk", "toe", 0, tiny, tmp_path / "run")
 
 
-def test_a_truncated_checkpoint_is_named_and_a_full_disk_costs_nothing(tiny: Preset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_truncated_checkpoint_is_named_and_a_full_disk_costs_nothing(
+    tiny: Preset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = tmp_path / "run"
     train("walk", "toe", 0, tiny, folder, iterations=2)
     content = (folder / CHECKPOINT).read_bytes()
@@ -147,8 +170,23 @@ def test_a_truncated_checkpoint_is_named_and_a_full_disk_costs_nothing(tiny: Pre
 def test_an_overlay_is_trained_with_written_down_and_compared(tiny: Preset, tmp_path: Path) -> None:
     from hyperleg_design.simulation.two_mass import Belt
 
-    loose, overlay = (Belt("left_hip_pitch", compliance=5.0, play=0.5),), {"schema": 1, "effects": []}
-    assert train("walk", "toe", 7, tiny, tmp_path / "altered", alterations=loose, overlay=overlay, iterations=2) is False
+    loose, overlay = (
+        (Belt("left_hip_pitch", compliance=5.0, play=0.5),),
+        {"schema": 1, "effects": []},
+    )
+    assert (
+        train(
+            "walk",
+            "toe",
+            7,
+            tiny,
+            tmp_path / "altered",
+            alterations=loose,
+            overlay=overlay,
+            iterations=2,
+        )
+        is False
+    )
     assert not train("walk", "toe", 7, tiny, tmp_path / "plain", iterations=2)
     altered, plain = networks(tmp_path / "altered"), networks(tmp_path / "plain")
     assert any(not np.array_equal(altered[name], plain[name]) for name in plain)
@@ -161,5 +199,7 @@ def test_an_overlay_is_trained_with_written_down_and_compared(tiny: Preset, tmp_
     assert train("walk", "toe", 7, tiny, straight, alterations=loose, overlay=overlay)
     for name, value in networks(straight).items():
         np.testing.assert_array_equal(networks(tmp_path / "altered")[name], value, err_msg=name)
-    session = onnxruntime.InferenceSession((straight / POLICY).read_bytes(), providers=["CPUExecutionProvider"])
+    session = onnxruntime.InferenceSession(
+        (straight / POLICY).read_bytes(), providers=["CPUExecutionProvider"]
+    )
     assert json.loads(session.get_modelmeta().custom_metadata_map["overlay"]) == overlay

@@ -32,7 +32,9 @@ def walker(tiny: Preset, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def begun(tiny: Preset, walker: Path, folder: Path, design: str = "toe") -> Training:
     task, robot = load_task("goal"), load_design(design)
-    return Training(task, robot, 0, tiny, folder, 1, describe(task, robot, 0, tiny), read_start(walker))
+    return Training(
+        task, robot, 0, tiny, folder, 1, describe(task, robot, 0, tiny), read_start(walker)
+    )
 
 
 def test_it_begins_by_doing_what_the_walk_did(tiny: Preset, walker: Path, tmp_path: Path) -> None:
@@ -43,9 +45,15 @@ def test_it_begins_by_doing_what_the_walk_did(tiny: Preset, walker: Path, tmp_pa
     observation = np.random.default_rng(0).normal(0.0, 1.0, (20, len(columns))).astype(np.float32)
     before = np.zeros((20, len(old)), np.float32)
     for i, name in enumerate(old):
-        before[:, i] = float(tiny.warm_start.forward) * (name == "command.0") if name.startswith("command") else observation[:, columns.index(name)]
+        before[:, i] = (
+            float(tiny.warm_start.forward) * (name == "command.0")
+            if name.startswith("command")
+            else observation[:, columns.index(name)]
+        )
     (expected,) = session.run(["action"], {"observation": before})
-    np.testing.assert_allclose(training.policy(observation), expected, atol=2e-4 * (1 + np.abs(expected).max()))
+    np.testing.assert_allclose(
+        training.policy(observation), expected, atol=2e-4 * (1 + np.abs(expected).max())
+    )
     training.environment.close()
 
 
@@ -56,12 +64,18 @@ def test_the_critic_learns_alone_at_first(tiny: Preset, walker: Path, tmp_path: 
     critic = {k: v.clone() for k, v in training.algorithm.critic.mlp.state_dict().items()}
     rate = training.algorithm.learning_rate
     training._iterate()
-    assert all(torch.equal(before[k], v) for k, v in training.algorithm.actor.mlp.state_dict().items())
-    assert any(not torch.equal(critic[k], v) for k, v in training.algorithm.critic.mlp.state_dict().items())
+    assert all(
+        torch.equal(before[k], v) for k, v in training.algorithm.actor.mlp.state_dict().items()
+    )
+    assert any(
+        not torch.equal(critic[k], v) for k, v in training.algorithm.critic.mlp.state_dict().items()
+    )
     assert training.algorithm.learning_rate == rate
     training._critic_only = 0
     training._iterate()
-    assert any(not torch.equal(before[k], v) for k, v in training.algorithm.actor.mlp.state_dict().items())
+    assert any(
+        not torch.equal(before[k], v) for k, v in training.algorithm.actor.mlp.state_dict().items()
+    )
     training.environment.close()
 
 

@@ -1,4 +1,6 @@
-"""Shared: evaluations of planned walks whose numbers are known, T-test runs along the course, and a folder of small trainings."""
+"""Shared: evaluations of planned walks whose numbers are known, T-test runs along the course, and a
+folder of small trainings.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ DESIGNS = ("toe", "toe_removed_matched")
 
 
 def planned_walk(design, turn=0.0):
-    """`STRIDES` strides of the planned walk as if they had been simulated, into a direction [rad]."""
+    """`STRIDES` strides of the planned walk as if they had been simulated, into a direction
+    [rad].
+    """
     planned = demand(design, walk(design, samples=SAMPLES))
     motion = planned.motion
 
@@ -79,42 +83,88 @@ def evaluation(trial, protocol, name, seed, change=0.0, fallen=0):
         for key in ("power", "time"):
             row[key] *= 1 + change + 0.001 * i
     cycles = [row[2] for row in rows] if len(rows[0]) > 2 else []
-    found = evaluation_of(lambda observation: observation, trial.design, protocol, trials, measures, [row[1] for row in rows], cycles)
-    return dataclasses.replace(found, policy=name, seed=seed, origin={"deviations": {"clock": "gait clock"}})
+    found = evaluation_of(
+        lambda observation: observation,
+        trial.design,
+        protocol,
+        trials,
+        measures,
+        [row[1] for row in rows],
+        cycles,
+    )
+    return dataclasses.replace(
+        found, policy=name, seed=seed, origin={"deviations": {"clock": "gait clock"}}
+    )
 
 
 @pytest.fixture(scope="session")
 def course_run(walks):
-    """A run along the T-test's course at 2 m/s: a planned walk whose pelvis is carried over the course."""
+    """A run along the T-test's course at 2 m/s: a planned walk whose pelvis is carried over the
+    course.
+    """
     trial, course = walks["toe"], TTestProtocol().course
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(course, axis=0), axis=-1))])
     way = np.minimum(2.0 * trial.time_step * np.arange(trial.samples), length[-1])
     place = np.stack([np.interp(way, length, course[:, k]) for k in (0, 1)], -1)
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (trial.samples, 1))
     height = trial.base_position[:, 2:]
-    return dataclasses.replace(trial, base_position=np.concatenate([place, height], -1), base_orientation=upright)
+    return dataclasses.replace(
+        trial, base_position=np.concatenate([place, height], -1), base_orientation=upright
+    )
 
 
 @pytest.fixture(scope="session")
 def found(walks, course_run, tmp_path_factory):
-    """Three seeds of walks of both designs, 10 % less power with the toe, one fall; one T-test training with the toe."""
+    """Three seeds of walks of both designs, 10 % less power with the toe, one fall; one T-test
+    training with the toe.
+    """
     place = tmp_path_factory.mktemp("found")
     policies, evaluations = [], []
     for design, trial in walks.items():
         for seed in range(3):
-            policies.append(Shipped("walk", design, seed, 0, place / f"walk-{design}-{seed}" / "policy.onnx"))
+            policies.append(
+                Shipped("walk", design, seed, 0, place / f"walk-{design}-{seed}" / "policy.onnx")
+            )
             policies[-1].path.parent.mkdir()
-            rows = [{"steps": 1000 * k, "speed": 0.1 * k, "falls": 10.0 - k, "assist": 1 - 0.1 * k, "reward": k} for k in range(11)]
-            (policies[-1].path.parent / "progress.jsonl").write_text("".join(json.dumps(r) + "\n" for r in rows))
+            rows = [
+                {
+                    "steps": 1000 * k,
+                    "speed": 0.1 * k,
+                    "falls": 10.0 - k,
+                    "assist": 1 - 0.1 * k,
+                    "reward": k,
+                }
+                for k in range(11)
+            ]
+            (policies[-1].path.parent / "progress.jsonl").write_text(
+                "".join(json.dumps(r) + "\n" for r in rows)
+            )
             change = (-0.1 if design == "toe" else 0.0) + 0.01 * seed
-            one = evaluation(trial, WalkProtocol(), policies[-1].name, seed, change, fallen=int(design == "toe" and seed == 2))
+            one = evaluation(
+                trial,
+                WalkProtocol(),
+                policies[-1].name,
+                seed,
+                change,
+                fallen=int(design == "toe" and seed == 2),
+            )
             evaluations.append(one if seed == 0 else one.light(0))
     policies.append(Shipped("t_test", "toe", 0, 0, place / "t_test-toe-0" / "policy.onnx"))
     evaluations.append(evaluation(course_run, TTestProtocol(), policies[-1].name, 0))
     band = {
-        d: {c: [e for p, e in zip(policies, evaluations, strict=True) if p.design == d and p.group == "walk"] for c in (0.01, 0.02)} for d in DESIGNS
+        d: {
+            c: [
+                e
+                for p, e in zip(policies, evaluations, strict=True)
+                if p.design == d and p.group == "walk"
+            ]
+            for c in (0.01, 0.02)
+        }
+        for d in DESIGNS
     }
-    return Evaluated(policies, evaluations, ["walk-toe-3", "walk-toe-4", "t_test-toe_removed_matched-0"], band)
+    return Evaluated(
+        policies, evaluations, ["walk-toe-3", "walk-toe-4", "t_test-toe_removed_matched-0"], band
+    )
 
 
 @pytest.fixture(scope="session")
@@ -124,29 +174,48 @@ def trainings(tmp_path_factory):
     from hyperleg_design.learning.resolved import task_mapping
 
     place = tmp_path_factory.mktemp("trainings")
-    for name, kind in (("walk-toe-0", "walk"), ("walk-toe-1", "walk"), ("walk-toe_removed_matched-0", "walk"), ("t_test-toe-0", "goal")):
+    for name, kind in (
+        ("walk-toe-0", "walk"),
+        ("walk-toe-1", "walk"),
+        ("walk-toe_removed_matched-0", "walk"),
+        ("t_test-toe-0", "goal"),
+    ):
         design, task = load_design(name.split("-")[1]), load_task(kind)
         environment = Environment(design, task, simulations=1)
         columns, joints = environment.observation_columns["policy"], list(environment.layout.joints)
         environment.close()
         metadata = {
-            "format": "hyperleg-policy-1", "columns": columns, "joints": joints, "task": task_mapping(task), "design": design.to_mapping(),
-            "seed": name[-1], "steps": "1000", "deviations": task.deviations,
-        }  # fmt: skip
+            "format": "hyperleg-policy-1",
+            "columns": columns,
+            "joints": joints,
+            "task": task_mapping(task),
+            "design": design.to_mapping(),
+            "seed": name[-1],
+            "steps": "1000",
+            "deviations": task.deviations,
+        }
         helper = onnx.helper
         graph = helper.make_graph(
             [helper.make_node("Gemm", ["observation", "w", "b"], ["action"])],
             "policy",
-            [helper.make_tensor_value_info("observation", onnx.TensorProto.FLOAT, ["n", len(columns)])],
+            [
+                helper.make_tensor_value_info(
+                    "observation", onnx.TensorProto.FLOAT, ["n", len(columns)]
+                )
+            ],
             [helper.make_tensor_value_info("action", onnx.TensorProto.FLOAT, ["n", len(joints)])],
             [
-                onnx.numpy_helper.from_array(np.zeros((len(columns), len(joints)), np.float32), "w"),
+                onnx.numpy_helper.from_array(
+                    np.zeros((len(columns), len(joints)), np.float32), "w"
+                ),
                 onnx.numpy_helper.from_array(np.zeros(len(joints), np.float32), "b"),
             ],
         )
         model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 18)])
         model.ir_version = 10
-        helper.set_model_props(model, {k: v if isinstance(v, str) else json.dumps(v) for k, v in metadata.items()})
+        helper.set_model_props(
+            model, {k: v if isinstance(v, str) else json.dumps(v) for k, v in metadata.items()}
+        )
         folder = place / name
         folder.mkdir()
         (folder / "policy.onnx").write_bytes(model.SerializeToString())

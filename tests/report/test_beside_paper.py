@@ -29,7 +29,9 @@ def test_ten_percent_less_power_is_told(rows):
     power = by_name(rows["Table III, walk"])["total power"]
     assert power.difference.relative < -0.05
     assert power.toe.seeds == power.ablation.seeds == 3
-    assert power.toe_verdict == statistics.DIFFERS  # a planned walk draws less than the paper's robot
+    assert (
+        power.toe_verdict == statistics.DIFFERS
+    )  # a planned walk draws less than the paper's robot
 
 
 def test_a_row_as_plain_numbers(rows):
@@ -37,9 +39,14 @@ def test_a_row_as_plain_numbers(rows):
     json.dumps(facts, allow_nan=False)
     power = facts[0]
     assert (power["toe"]["paper"], power["ablation"]["paper"]) == (260.2, 313.0)
-    assert power["change"]["mean"] == pytest.approx(by_name(rows["Table III, walk"])["total power"].difference.relative)
+    assert power["change"]["mean"] == pytest.approx(
+        by_name(rows["Table III, walk"])["total power"].difference.relative
+    )
     time = next(f for f in facts if f["quantity"] == "time to goal")
-    assert (time["toe"]["missing"], time["ablation"]["missing"]) == (1, 0)  # a fallen walk has no time of arrival
+    assert (time["toe"]["missing"], time["ablation"]["missing"]) == (
+        1,
+        0,
+    )  # a fallen walk has no time of arrival
     assert time["toe"]["trials"] == 8
 
 
@@ -55,15 +62,21 @@ def test_every_row_has_a_verdict_and_falls_are_not_dropped(rows):
 
 
 def test_what_is_told_about_the_toe(rows):
-    text = beside_paper.toe_sentence([r for r in rows["Table III, walk"] if r.printed.quantity == "total power"])
-    assert text.startswith(("With the toe total power changes by -", "Cannot be told apart: total power"))
+    text = beside_paper.toe_sentence(
+        [r for r in rows["Table III, walk"] if r.printed.quantity == "total power"]
+    )
+    assert text.startswith(
+        ("With the toe total power changes by -", "Cannot be told apart: total power")
+    )
 
 
 def test_few_seeds_say_nothing(rows):
     import dataclasses
 
     row = rows["Table III, walk"][0]
-    few = dataclasses.replace(row, difference=dataclasses.replace(row.difference, verdict=statistics.TOO_FEW_SEEDS))
+    few = dataclasses.replace(
+        row, difference=dataclasses.replace(row.difference, verdict=statistics.TOO_FEW_SEEDS)
+    )
     assert "tells nothing about the toe" in beside_paper.toe_sentence([few])
 
 

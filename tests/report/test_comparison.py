@@ -34,7 +34,10 @@ def test_power_constants_differ_by_the_vendors_torque_constant():
 def test_compare_puts_designs_beside_each_other(design):
     found = comparison.compare([design, load_design("toe_removed")])
     assert list(found) == ["hyperleg", "toe_removed"]
-    assert found["toe_removed"]["max_joint_torque"]["knee"] < found["hyperleg"]["max_joint_torque"]["knee"]
+    assert (
+        found["toe_removed"]["max_joint_torque"]["knee"]
+        < found["hyperleg"]["max_joint_torque"]["knee"]
+    )
     text = comparison.compare_text(found)
     assert "max_joint_torque.toe" in text
     assert "toe_removed" in text.splitlines()[0]

@@ -2,7 +2,13 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.report.demand_figures import capability_figure, cycle_figure, margin_figure, operating_points_figure, stick_figure_strip
+from hyperleg_design.report.demand_figures import (
+    capability_figure,
+    cycle_figure,
+    margin_figure,
+    operating_points_figure,
+    stick_figure_strip,
+)
 from hyperleg_design.report.style import save
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import load_design
@@ -36,7 +42,9 @@ def test_strip_draws_the_robot_where_the_motion_has_it(walks):
     assert len(legs) == 8
     for line, n in zip(legs[::2], (0, 15, 30, 46), strict=True):
         hip = walk.motion.model.frame_position(walk.motion.q[n], "left_thigh")
-        np.testing.assert_allclose([line.get_xdata()[0], line.get_ydata()[0]], hip[[0, 2]], atol=1e-12)
+        np.testing.assert_allclose(
+            [line.get_xdata()[0], line.get_ydata()[0]], hip[[0, 2]], atol=1e-12
+        )
         assert 0.3 < hip[2] < 0.8
     assert "planned" in axes.get_title(loc="left")
 
@@ -48,7 +56,9 @@ def test_cycle_shows_angles_and_torques_of_every_robot(walks):
     knee = figure.axes[2]
     curves = [line for line in knee.lines if len(line.get_xdata()) == 61]
     assert len(curves) == 2
-    np.testing.assert_allclose(curves[0].get_ydata(), np.rad2deg(walks["toe"].motion.joint_position[:, 0, 3]))
+    np.testing.assert_allclose(
+        curves[0].get_ydata(), np.rad2deg(walks["toe"].motion.joint_position[:, 0, 3])
+    )
     assert len([line for line in figure.axes[5].lines if len(line.get_xdata()) == 61]) == 1
 
 
@@ -72,14 +82,26 @@ def test_margin_bars_are_the_table(walks):
 
 def test_capability_bars_are_the_rows():
     rows = capability_table({"toe": load_design()}, ("standing", "mid_squat"))
-    rows.append({"design": "toe", "posture": "straight", "direction": "vertical", "force": None, "reason": "none"})
+    rows.append(
+        {
+            "design": "toe",
+            "posture": "straight",
+            "direction": "vertical",
+            "force": None,
+            "reason": "none",
+        }
+    )
     figure = capability_figure(rows)
     heights = [p.get_height() for a in figure.axes for p in a.patches]
-    np.testing.assert_allclose(sorted(heights), sorted(r["body_weights"] for r in rows if r["force"]))
+    np.testing.assert_allclose(
+        sorted(heights), sorted(r["body_weights"] for r in rows if r["force"])
+    )
 
 
 def test_pictures_are_written(walks, tmp_path):
-    assert save(operating_points_figure(walks), tmp_path / "points.png", dpi=50).stat().st_size > 5000
+    assert (
+        save(operating_points_figure(walks), tmp_path / "points.png", dpi=50).stat().st_size > 5000
+    )
 
 
 def test_nothing_to_draw(walks):

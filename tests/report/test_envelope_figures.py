@@ -26,14 +26,23 @@ def design():
 
 def longest(axis):
     """The two curves of the envelope, upper and lower."""
-    return sorted((line.get_xydata() for line in axis.lines if len(line.get_xdata()) > 100), key=lambda d: -d[:, 1].mean())
+    return sorted(
+        (line.get_xydata() for line in axis.lines if len(line.get_xdata()) > 100),
+        key=lambda d: -d[:, 1].mean(),
+    )
 
 
 def test_envelopes_drawn_are_the_motors_and_their_sums(design):
     figure = figures.torque_speed_figure(design, posture="walking")
     one = motor_envelope(design).select([4])
-    for axis, torque_scale, speed_scale in zip(figure.axes, (1, 1, 2 * 26.69, 2 * 16.51), (1, 1, 26.69, 16.51), strict=True):
-        for curve, limit in zip(longest(axis), torque_limits(one, longest(axis)[0][:, :1] * speed_scale)[::-1], strict=True):
+    for axis, torque_scale, speed_scale in zip(
+        figure.axes, (1, 1, 2 * 26.69, 2 * 16.51), (1, 1, 26.69, 16.51), strict=True
+    ):
+        for curve, limit in zip(
+            longest(axis),
+            torque_limits(one, longest(axis)[0][:, :1] * speed_scale)[::-1],
+            strict=True,
+        ):
             np.testing.assert_allclose(curve[:, 1], torque_scale * limit[:, 0], atol=1e-9)
         assert "[" in axis.get_xlabel()
         assert "Nm" in axis.get_ylabel()
@@ -46,7 +55,11 @@ def test_operating_points_are_projected_and_coloured_by_power(design):
     matrix = transmission.joint_from_motor(design)
     power = []
     for axis in figure.axes:
-        shown = {to_hex(line.get_color()): line.get_xydata() for line in axis.lines if line.get_marker() == "."}
+        shown = {
+            to_hex(line.get_color()): line.get_xydata()
+            for line in axis.lines
+            if line.get_marker() == "."
+        }
         assert sum(map(len, shown.values())) == 60
         assert np.all(shown[figures.MOTORING].prod(1) >= 0)
         assert np.all(shown[figures.REGENERATIVE].prod(1) < 0)
@@ -65,7 +78,10 @@ def test_cuts_are_drawn_where_the_joint_exists(design):
     assert len(figure.axes) == 6
     with_toe, without = figure.axes[1], figure.axes[4]
     assert [t.get_text() for t in without.texts] == ["no toe joint"]
-    matrix, peak = transmission.joint_from_motor(design, "walking")[3:, 3:], motor_envelope(design).peak_torque[3:]
+    matrix, peak = (
+        transmission.joint_from_motor(design, "walking")[3:, 3:],
+        motor_envelope(design).peak_torque[3:],
+    )
     drawn = [p.get_xy()[:-1] for p in with_toe.patches if isinstance(p, Polygon)]
     expected = slices.slice_polygon(matrix, -peak, peak, (3, 1))
     assert any(len(d) == len(expected) and np.allclose(d, expected) for d in drawn)
@@ -74,16 +90,26 @@ def test_cuts_are_drawn_where_the_joint_exists(design):
 
 def test_body_says_how_much_of_its_box_it_fills(design):
     figure = figures.polyhedron_figure(design, (0.0,), posture="walking")
-    matrix, peak = transmission.joint_from_motor(design, "walking")[3:, 3:], motor_envelope(design).peak_torque[3:]
+    matrix, peak = (
+        transmission.joint_from_motor(design, "walking")[3:, 3:],
+        motor_envelope(design).peak_torque[3:],
+    )
     low, high = zonotope.box(matrix, -peak, peak)
-    share = slices.slice_polyhedron(matrix, -peak, peak, (0, 3, 1)).volume / (high - low)[[0, 1, 3]].prod()
+    share = (
+        slices.slice_polyhedron(matrix, -peak, peak, (0, 3, 1)).volume
+        / (high - low)[[0, 1, 3]].prod()
+    )
     assert f"{100 * share:.1f} %" in figure.axes[0].get_title()
 
 
 @pytest.mark.parametrize("variant", ["toe", "toe_locked", "toe_removed_matched", "toe_removed"])
 def test_every_variant_can_be_drawn_and_saved(variant, tmp_path):
     robot = load_design("hyperleg", variant=variant)
-    for name, draw in (("speed", figures.torque_speed_figure), ("cuts", figures.slice_figure), ("body", figures.polyhedron_figure)):
+    for name, draw in (
+        ("speed", figures.torque_speed_figure),
+        ("cuts", figures.slice_figure),
+        ("body", figures.polyhedron_figure),
+    ):
         for ending in ("png", "svg"):
             assert save(draw(robot), tmp_path / f"{name}.{ending}", dpi=40).stat().st_size > 4000
 
@@ -93,7 +119,11 @@ def test_bad_input_is_refused(design):
     for draw in (figures.torque_speed_figure, figures.slice_figure, figures.polyhedron_figure):
         with pytest.raises(InputError, match="batch"):
             draw(batch)
-    for points in ((np.zeros((3, 7)), None), (np.zeros((3, 7)), np.zeros((4, 7))), (np.zeros((3, 6)), np.zeros((3, 6)))):
+    for points in (
+        (np.zeros((3, 7)), None),
+        (np.zeros((3, 7)), np.zeros((4, 7))),
+        (np.zeros((3, 6)), np.zeros((3, 6))),
+    ):
         with pytest.raises(InputError, match="expects both"):
             figures.torque_speed_figure(design, *points)
     with pytest.raises(InputError, match="speeds"):

@@ -6,8 +6,24 @@ from hyperleg_design.report.evaluation_text import evaluation_text
 def test_what_could_not_be_measured_stays_empty():
     common = {"variant": "toe", "protocol": "walk", "low": None, "high": None}
     rows = [
-        {**common, "measure": "power", "unit": "W", "mean": 250.5, "seeds": 1, "trials": 10, "missing": 2},
-        {**common, "measure": "cadence", "unit": "Hz", "mean": None, "seeds": 0, "trials": 0, "missing": 10},
+        {
+            **common,
+            "measure": "power",
+            "unit": "W",
+            "mean": 250.5,
+            "seeds": 1,
+            "trials": 10,
+            "missing": 2,
+        },
+        {
+            **common,
+            "measure": "cadence",
+            "unit": "Hz",
+            "mean": None,
+            "seeds": 0,
+            "trials": 0,
+            "missing": 10,
+        },
     ]
     lines = evaluation_text(rows).splitlines()
     assert "250.5" in lines[2]

@@ -3,7 +3,12 @@ import pytest
 
 from hyperleg_design.gap.excite import design_experiment
 from hyperleg_design.gap.subject import load_subject
-from hyperleg_design.report.gap_excite import motions_figure, plan_text, separation_figure, write_report
+from hyperleg_design.report.gap_excite import (
+    motions_figure,
+    plan_text,
+    separation_figure,
+    write_report,
+)
 
 PENDULUM = """
 <mujoco model="pendulum">
@@ -42,7 +47,10 @@ def test_figures_show_every_motion_and_pair(plan):
     table = separation_figure(plan)
     labels = [label.get_text() for label in table.axes[1].get_yticklabels()]
     assert "coulomb_friction\nagainst backlash" in labels
-    assert np.all([label.get_text() for label in table.axes[0].get_xticklabels()][:-1] == np.array([m.name for m in plan.motions]))
+    assert np.all(
+        [label.get_text() for label in table.axes[0].get_xticklabels()][:-1]
+        == np.array([m.name for m in plan.motions])
+    )
 
 
 def test_report_is_written(plan, tmp_path):

@@ -38,7 +38,9 @@ def test_joints_are_drawn_where_mujoco_has_them(tmp_path: Path) -> None:
 
 def test_the_waterfall_ends_where_the_gap_does() -> None:
     gap = {"before": 5.0, "after": 1.0, "floor": 0.5, "unit": "Nm"}
-    figure = gap_figures.waterfall_figure(gap, [CAUSE, {**CAUSE, "effect": "backlash", "closed": 0.2}])
+    figure = gap_figures.waterfall_figure(
+        gap, [CAUSE, {**CAUSE, "effect": "backlash", "closed": 0.2}]
+    )
     bars = figure.axes[0].patches
     assert [b.get_height() for b in bars] == pytest.approx([5.0, -3.2, -0.8, 1.0])
     assert bars[2].get_y() + bars[2].get_height() == pytest.approx(1.0)
@@ -47,7 +49,9 @@ def test_the_waterfall_ends_where_the_gap_does() -> None:
 def test_traces_show_the_row_with_the_largest_gap() -> None:
     time = np.arange(2000) * 0.005
     before = np.column_stack([0.1 * np.sin(time), 2.0 * np.sin(3 * time)])
-    shown = Evidence("run", "motion", ("small", "large"), time, before, 0.5 * before, np.cos(before))
+    shown = Evidence(
+        "run", "motion", ("small", "large"), time, before, 0.5 * before, np.cos(before)
+    )
     figure = gap_figures.trace_figure(shown)
     assert figure.axes[0].get_title() == "large, run"
     measured, predicted, left = (line.get_ydata() for line in figure.axes[0].lines)

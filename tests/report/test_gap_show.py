@@ -33,7 +33,9 @@ def test_summary_is_what_was_shown(shown):
     assert summary["parameters"]["damping"] == {"value": shown.values[0], "unit": "Nms/rad"}
     assert summary["unit"] == "Nm"
     known = np.isfinite(shown.trace)
-    assert summary["trace_rms"] == pytest.approx(np.sqrt(np.mean(shown.trace[known] ** 2)), rel=0.02)
+    assert summary["trace_rms"] == pytest.approx(
+        np.sqrt(np.mean(shown.trace[known] ** 2)), rel=0.02
+    )
     assert summary["closed_loop_rms"] > 0
     text = show_text({**summary, "figure": "a.png"})
     assert "viscous_friction at joint of servo_rig" in text

@@ -48,7 +48,9 @@ def test_bars_have_the_length_of_their_values(designs):
         np.testing.assert_allclose([b.get_width() for b in bars], np.nan_to_num(values))
         assert [to_hex(b.get_facecolor()) for b in bars] == [row.colour for row in rows]
         assert "[" in axis.get_xlabel()
-    assert sum("unknown" in text.get_text() for text in figure.axes[2].texts) == sum(not s.whole for s in SOURCES)
+    assert sum("unknown" in text.get_text() for text in figure.axes[2].texts) == sum(
+        not s.whole for s in SOURCES
+    )
     assert [line.get_xdata()[0] for line in figure.axes[1].lines] == [ROD]
 
 
@@ -58,12 +60,26 @@ def test_one_design_can_stand_beside_chosen_robots(tmp_path):
     assert {row.label for row in rows} == {"hyperleg: toe", "Talos", "Human"}
     assert next(r for r in rows if r.own).leg.swing_inertia == leg_inertia(design).swing_inertia
     for ending in ("png", "svg"):
-        assert save(leg_comparison_figure([design], compare(["Talos"])), tmp_path / f"bars.{ending}", dpi=40).stat().st_size > 4000
-    assert save(leg_comparison_figure([design], ()), tmp_path / "own.png", dpi=40).stat().st_size > 2000
+        assert (
+            save(
+                leg_comparison_figure([design], compare(["Talos"])),
+                tmp_path / f"bars.{ending}",
+                dpi=40,
+            )
+            .stat()
+            .st_size
+            > 4000
+        )
+    assert (
+        save(leg_comparison_figure([design], ()), tmp_path / "own.png", dpi=40).stat().st_size
+        > 2000
+    )
 
 
 def test_bad_input_is_refused():
     with pytest.raises(InputError, match="at least one design"):
         leg_comparison_figure([])
     with pytest.raises(InputError, match="batch"):
-        leg_comparison_figure([load_design("hyperleg").with_values({"toe.mass": np.array([0.2, 0.3])})])
+        leg_comparison_figure(
+            [load_design("hyperleg").with_values({"toe.mass": np.array([0.2, 0.3])})]
+        )

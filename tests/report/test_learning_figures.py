@@ -13,5 +13,7 @@ def test_a_line_a_training_a_row_a_group(found):
     assert len(speed.get_lines()) == 6
     assert speed.get_lines()[0].get_ydata() == pytest.approx([0.1 * k for k in range(11)])
     assert speed.get_lines()[0].get_xdata() == pytest.approx([0.001 * k for k in range(11)])
-    assert len(figure.axes[2].get_lines()[0].get_ydata()) == 0  # nothing on cost of transport was recorded
+    assert (
+        len(figure.axes[2].get_lines()[0].get_ydata()) == 0
+    )  # nothing on cost of transport was recorded
     plt.close("all")

@@ -9,7 +9,9 @@ from hyperleg_design.robot.design import load_design
 def test_printed_postures_lie_on_the_curves():
     figure = linkage_figure(load_design("hyperleg"))
     printed = {(26.0, 26.69), (24.14, 19.23), (31.93, 21.27)}
-    for axis, (standing, walking) in zip(figure.axes, sorted(printed, key=lambda p: [26.0, 24.14, 31.93].index(p[0])), strict=True):
+    for axis, (standing, walking) in zip(
+        figure.axes, sorted(printed, key=lambda p: [26.0, 24.14, 31.93].index(p[0])), strict=True
+    ):
         curves = [line for line in axis.lines if len(line.get_xdata()) > 2]
         points = [line for line in axis.lines if len(line.get_xdata()) == 1]
         assert [float(p.get_ydata()[0]) for p in points] == [standing, walking]

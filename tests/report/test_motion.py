@@ -25,7 +25,9 @@ def test_a_walk_moves_as_it_was_recorded(walk):
     speed = np.diff(pelvis[[0, -1], 0])[0] / 1.9
     assert speed == pytest.approx(walk.base_velocity[:, 0].mean(), rel=0.05)
     samples = (np.arange(2.0, 4.0, 0.1) / walk.time_step).round().astype(int)
-    assert made.focus[:, 0] == pytest.approx(walk.base_position[samples, 0] - walk.base_position[0, 0], abs=0.2)
+    assert made.focus[:, 0] == pytest.approx(
+        walk.base_position[samples, 0] - walk.base_position[0, 0], abs=0.2
+    )
 
 
 def test_pads_stand_on_the_floor(walk):
@@ -37,7 +39,9 @@ def test_pads_stand_on_the_floor(walk):
 
 def test_the_direction_of_a_walk_does_not_matter(walk):
     angle = 2.0
-    level = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+    level = np.array(
+        [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]]
+    )
     w, x, y, z = walk.base_orientation.T
     c, s = np.cos(angle / 2), np.sin(angle / 2)
     turned = dataclasses.replace(
@@ -52,7 +56,9 @@ def test_the_direction_of_a_walk_does_not_matter(walk):
 
 def test_a_strip_has_a_row_a_walk_and_forces_that_carry_the_weight(walks):
     events = WalkProtocol().events
-    scene = motion.strip_scene({name: (trial, events) for name, trial in walks.items()}, snapshots=5)
+    scene = motion.strip_scene(
+        {name: (trial, events) for name, trial in walks.items()}, snapshots=5
+    )
     labels = [text for _, text, _ in scene.labels]
     assert labels.count("0 %") == labels.count("50 %") == 2
     assert set(walks) <= set(labels)
@@ -65,7 +71,13 @@ def test_a_strip_has_a_row_a_walk_and_forces_that_carry_the_weight(walks):
 
 
 def test_a_strip_needs_strides(walk):
-    short = dataclasses.replace(walk, **{f: getattr(walk, f)[:60] for f in ("base_position", "base_orientation", "joint_position", "pad_force")})
+    short = dataclasses.replace(
+        walk,
+        **{
+            f: getattr(walk, f)[:60]
+            for f in ("base_position", "base_orientation", "joint_position", "pad_force")
+        },
+    )
     with pytest.raises(InputError, match="too few strides"):
         motion.strip_scene({"toe": (short, Events())})
 

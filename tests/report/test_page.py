@@ -4,7 +4,17 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 
-from hyperleg_design.report.page import Cell, Details, Missing, Page, Picture, Section, Table, number, render
+from hyperleg_design.report.page import (
+    Cell,
+    Details,
+    Missing,
+    Page,
+    Picture,
+    Section,
+    Table,
+    number,
+    render,
+)
 
 
 def test_numbers_are_short_and_keep_their_size():
@@ -26,7 +36,9 @@ def test_page_holds_its_content_and_escapes_texts():
         Missing("figure", "no screen"),
         Details("more", [Table(["z"], [[1]])]),
     ]
-    html = render(Page("Title <1>", "lead", [Section("Part", content)], [("3 kg", "mass")], {"numpy": "2"}))
+    html = render(
+        Page("Title <1>", "lead", [Section("Part", content)], [("3 kg", "mass")], {"numpy": "2"})
+    )
     assert "a &lt; b &amp; c" in html
     assert "Title &lt;1&gt;" in html
     assert 'src="f/a.png"' in html

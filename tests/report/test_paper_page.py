@@ -20,13 +20,25 @@ def page(trainings, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:  # animations are drawn in test_motion
         patch.setattr(motion, "render_gif", lambda made, path: write_bytes(path, b"GIF89a"))
         return paper_page.run_paper(
-            trainings, out, walk=short, t_test=TTestProtocol(trials=2, time_limit=15.0), band=(0.02,), workers=1, progress=False
+            trainings,
+            out,
+            walk=short,
+            t_test=TTestProtocol(trials=2, time_limit=15.0),
+            band=(0.02,),
+            workers=1,
+            progress=False,
         )
 
 
 def test_policies_that_only_fall_give_a_page_that_says_so(page):
     html = page.read_text()
-    for word in ("4 policies of 4 trainings", "nothing was measured", "cannot be reproduced", "too few strides", "gait clock"):
+    for word in (
+        "4 policies of 4 trainings",
+        "nothing was measured",
+        "cannot be reproduced",
+        "too few strides",
+        "gait clock",
+    ):
         assert word in html, word
     tables = paper_page.read_tables(page.parent)
     assert list(tables) == ["Table III, walk"]
@@ -45,7 +57,19 @@ def test_the_tables_read_in_a_terminal(page):
 
 def test_without_policies_the_page_is_one_sentence(tmp_path, capsys):
     (tmp_path / "none").mkdir()
-    assert main(["paper", "--policies", str(tmp_path / "none"), "--out", str(tmp_path / "out"), "--json"]) == 0
+    assert (
+        main(
+            [
+                "paper",
+                "--policies",
+                str(tmp_path / "none"),
+                "--out",
+                str(tmp_path / "out"),
+                "--json",
+            ]
+        )
+        == 0
+    )
     assert json.loads(capsys.readouterr().out)["tables"] == {}
     assert "No trained policy is shipped" in (tmp_path / "out" / "index.html").read_text()
 

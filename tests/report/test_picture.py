@@ -22,7 +22,10 @@ def test_robot_stands_on_the_floor(design):
 
 def test_yaw_turns_the_robot_as_a_whole(design):
     plain, turned = picture.robot_solids(design), picture.robot_solids(design, yaw=0.7)
-    steps = [np.linalg.norm(np.diff([s.position for s in solids], axis=0), axis=1) for solids in (plain, turned)]
+    steps = [
+        np.linalg.norm(np.diff([s.position for s in solids], axis=0), axis=1)
+        for solids in (plain, turned)
+    ]
     assert np.allclose(steps[0], steps[1], atol=1e-12)
     assert not np.allclose([s.position for s in plain], [s.position for s in turned])
 

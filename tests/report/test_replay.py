@@ -27,7 +27,9 @@ def test_a_replay_is_a_trial_of_the_evaluation(hyperleg):
 
 
 def test_the_task_chooses_what_is_replayed(trainings):
-    assert isinstance(replay.replay(trainings / "t_test-toe-0" / "policy.onnx").protocol, TTestProtocol)
+    assert isinstance(
+        replay.replay(trainings / "t_test-toe-0" / "policy.onnx").protocol, TTestProtocol
+    )
     found = replay.replay(trainings / "walk-toe-0" / "policy.onnx")
     assert isinstance(found.protocol, WalkProtocol)
     assert len(replay.motion_of(found, duration=0.5).focus) == 10

@@ -1,4 +1,6 @@
-"""The study as a whole: every part is there, every figure it names exists, nothing is left undrawn."""
+"""The study as a whole: every part is there, every figure it names exists, nothing is left
+undrawn.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,16 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_part_is_on_the_page(page):
     html = page.read_text()
     assert html.count("<h2 ") == len(study.STEPS)
-    for word in ("32.00 kg", "13.0 %", "212 → 166 Nm", "75.9 Nm", "Cassie", "RI70", "toe_removed_matched", "No trained policy is shipped"):
+    for word in (
+        "32.00 kg",
+        "13.0 %",
+        "212 → 166 Nm",
+        "75.9 Nm",
+        "Cassie",
+        "RI70",
+        "toe_removed_matched",
+        "No trained policy is shipped",
+    ):
         assert word in html
 
 

@@ -1,4 +1,6 @@
-"""What the study says of pushing and moving follows the numbers, also where they turn out otherwise."""
+"""What the study says of pushing and moving follows the numbers, also where they turn out
+otherwise.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,11 @@ def context_of(design, folder):
 def test_the_weak_toe_is_told_from_its_numbers(tmp_path):
     made = study_motion.capability(context_of(load_design("hyperleg"), tmp_path))
     rows = json.loads((tmp_path / "capability.json").read_text())
-    forces = {r["design"]: r["force"] for r in rows if r["posture"] == "toe_off" and r["direction"] == "vertical"}
+    forces = {
+        r["design"]: r["force"]
+        for r in rows
+        if r["posture"] == "toe_off" and r["direction"] == "vertical"
+    }
     assert forces["toe"] < forces["toe_locked"]
     texts = [t for t in made.section.content if isinstance(t, str)]
     assert any("weak link" in t and f"{forces['toe']:.0f} N" in t for t in texts)
@@ -60,4 +66,7 @@ def test_the_table_holds_every_variant_in_every_motion(demand):
 def test_the_headline_is_the_walks_cost(demand):
     made, folder = demand
     walk = json.loads((folder / "demand.json").read_text())["walk"]
-    assert made.facts[0][0] == f"{walk['toe']['cost_of_transport']:.3f} / {walk['toe_removed_matched']['cost_of_transport']:.3f}"
+    assert (
+        made.facts[0][0] == f"{walk['toe']['cost_of_transport']:.3f} / "
+        f"{walk['toe_removed_matched']['cost_of_transport']:.3f}"
+    )

@@ -18,7 +18,9 @@ def parts(found, tmp_path_factory):
     (folder / FIGURES).mkdir()
     with pytest.MonkeyPatch.context() as patch:  # animations are drawn in test_motion
         patch.setattr(motion, "render_gif", lambda made, path: write_bytes(path, b"GIF89a"))
-        patch.setattr("hyperleg_design.report.picture.render", lambda scene, path: write_bytes(path, b"PNG"))
+        patch.setattr(
+            "hyperleg_design.report.picture.render", lambda scene, path: write_bytes(path, b"PNG")
+        )
         made = study_policies.parts(found, Drawer(folder))
     return folder, {part.title: list(part.content) for part in made}
 
@@ -34,10 +36,14 @@ def flat(content):
 def test_every_part_is_there_and_every_figure_drawn(parts):
     folder, content = parts
     assert len(content) == 9
-    pictures = [item for some in content.values() for item in flat(some) if isinstance(item, Picture)]
+    pictures = [
+        item for some in content.values() for item in flat(some) if isinstance(item, Picture)
+    ]
     assert len(pictures) >= 12
     assert all((folder / picture.file).stat().st_size for picture in pictures)
-    assert not [item for some in content.values() for item in flat(some) if isinstance(item, Missing)]
+    assert not [
+        item for some in content.values() for item in flat(some) if isinstance(item, Missing)
+    ]
 
 
 def test_seeds_falls_and_missing_trainings_are_stated(parts):
@@ -52,13 +58,19 @@ def test_seeds_falls_and_missing_trainings_are_stated(parts):
 
 
 def test_demands_that_are_not_met_are_marked(parts):
-    (table,) = (item for item in parts[1]["Walks that a person would believe"] if isinstance(item, Table))
+    (table,) = (
+        item for item in parts[1]["Walks that a person would believe"] if isinstance(item, Table)
+    )
     falls = next(row for row in table.rows if row[0] == "no fall")
     assert falls[2:] == [Cell(pytest.approx(1 / 9), "bad"), Cell(0.0, "good")]
 
 
 def test_a_table_that_lacks_a_robot_is_not_reproduced_and_says_so(parts):
-    assert any("cannot be reproduced yet" in item for item in parts[1]["Table IV: the T-test, beside the paper"] if isinstance(item, str))
+    assert any(
+        "cannot be reproduced yet" in item
+        for item in parts[1]["Table IV: the T-test, beside the paper"]
+        if isinstance(item, str)
+    )
 
 
 def test_the_pad_behind_the_contact_is_stated(parts):
@@ -71,7 +83,11 @@ def test_the_pad_behind_the_contact_is_stated(parts):
 
 def test_one_policy_is_enough_for_a_page(found, tmp_path):
     (tmp_path / FIGURES).mkdir()
-    alone = dataclasses.replace(found, policies=found.policies[-1:], evaluations=[found.evaluations[-1].light(0)], band={})
-    made = {part.title: list(part.content) for part in study_policies.parts(alone, Drawer(tmp_path))}
+    alone = dataclasses.replace(
+        found, policies=found.policies[-1:], evaluations=[found.evaluations[-1].light(0)], band={}
+    )
+    made = {
+        part.title: list(part.content) for part in study_policies.parts(alone, Drawer(tmp_path))
+    }
     assert "Table III: walking, beside the paper" not in made
     assert made["What was evaluated"][0].startswith("1 policies of 1 trainings")

@@ -25,7 +25,9 @@ def test_table_one_counts_what_agrees(context):
 
 
 def test_a_changed_robot_agrees_less(context):
-    changed = Context(context.design.with_values({"toe.mass": 0.4}), context.variants, context.folder)
+    changed = Context(
+        context.design.with_values({"toe.mass": 0.4}), context.variants, context.folder
+    )
     assert study_sections.table_i(changed).facts[0][0] == "16 / 25"
 
 

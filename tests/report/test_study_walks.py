@@ -22,11 +22,19 @@ def test_steps_that_need_missing_ablations_are_named(found, draw):
     content = study_walks.confound(found, draw).content
     (table,) = (item for item in content if isinstance(item, Table))
     assert {row[1] for row in table.rows} == {WHOLE}
-    assert any("toe_locked, toe_removed cannot be told" in item for item in content if isinstance(item, str))
+    assert any(
+        "toe_locked, toe_removed cannot be told" in item
+        for item in content
+        if isinstance(item, str)
+    )
 
 
 def test_the_whole_ladder_is_split(found, draw):
-    matched = [e for p, e in zip(found.policies, found.evaluations, strict=True) if p.group == "walk" and p.design == "toe_removed_matched"]
+    matched = [
+        e
+        for p, e in zip(found.policies, found.evaluations, strict=True)
+        if p.group == "walk" and p.design == "toe_removed_matched"
+    ]
     policies, evaluations = list(found.policies), list(found.evaluations)
     for design in ("toe_locked", "toe_removed"):
         for seed, one in enumerate(matched):
@@ -44,7 +52,11 @@ def test_the_whole_ladder_is_split(found, draw):
 
 
 def test_without_two_ablations_nothing_is_split(found, draw):
-    toe = [(p, e) for p, e in zip(found.policies, found.evaluations, strict=True) if p.design == "toe"]
-    alone = dataclasses.replace(found, policies=[p for p, _ in toe], evaluations=[e for _, e in toe])
+    toe = [
+        (p, e) for p, e in zip(found.policies, found.evaluations, strict=True) if p.design == "toe"
+    ]
+    alone = dataclasses.replace(
+        found, policies=[p for p, _ in toe], evaluations=[e for _, e in toe]
+    )
     assert study_walks.confound(alone, draw).content[-1].startswith("Cannot be told yet")
     assert study_walks.table_three(alone, draw).content[-1].startswith("Cannot be reproduced yet")

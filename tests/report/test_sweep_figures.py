@@ -19,25 +19,41 @@ DEFINITION = {
     "variants": ["toe", "toe_removed_matched"],
     "axes": AXES,
     "objectives": ["swing_inertia", "squat_heat", "push_off_power"],
-    "maps": [{"x": "toe.mass", "y": "knee", "measure": "squat_heat"}, {"x": "knee", "measure": "max_joint_torque.toe"}],
+    "maps": [
+        {"x": "toe.mass", "y": "knee", "measure": "squat_heat"},
+        {"x": "knee", "measure": "max_joint_torque.toe"},
+    ],
 }
 
 
 @pytest.fixture(scope="module")
 def grid(tmp_path_factory):
-    return run_sweep(sweep_from_mapping(DEFINITION), tmp_path_factory.mktemp("grid") / "out", progress=False)
+    return run_sweep(
+        sweep_from_mapping(DEFINITION), tmp_path_factory.mktemp("grid") / "out", progress=False
+    )
 
 
 @pytest.fixture(scope="module")
 def sampled(tmp_path_factory):
-    definition = DEFINITION | {"sampling": "sobol", "count": 64, "objectives": ["swing_inertia", "squat_heat"]}
+    definition = DEFINITION | {
+        "sampling": "sobol",
+        "count": 64,
+        "objectives": ["swing_inertia", "squat_heat"],
+    }
     definition["axes"] = AXES | {"toe.mass": {"low": 0.1, "high": 0.5, "log": True}}
-    return run_sweep(sweep_from_mapping(definition), tmp_path_factory.mktemp("sampled") / "out", progress=False)
+    return run_sweep(
+        sweep_from_mapping(definition), tmp_path_factory.mktemp("sampled") / "out", progress=False
+    )
 
 
 def test_all_that_the_definition_asks_for_is_drawn_the_same_each_time(grid, tmp_path):
     first = sweep_figures.draw_sweep(grid, tmp_path / "a")
-    assert list(first) == ["figures-map-1.png", "figures-map-2.png", "figures-pareto.png", "figures-parallel.png"]
+    assert list(first) == [
+        "figures-map-1.png",
+        "figures-map-2.png",
+        "figures-pareto.png",
+        "figures-parallel.png",
+    ]
     again = sweep_figures.draw_sweep(grid, tmp_path / "b")
     for name in first:
         content = (tmp_path / "a" / name).read_bytes()
@@ -74,13 +90,28 @@ def test_a_curve_has_a_line_for_each_variant_that_has_the_measure(grid):
 
 def test_pareto_panels_are_the_pairs_of_objectives(grid):
     figure = sweep_figures.pareto_figure(grid)
-    labels = [(a.get_xlabel().split(" [")[0], a.get_ylabel().split(" [")[0]) for a in figure.axes if a.get_visible()]
-    assert labels == [("swing inertia", "squat heat"), ("swing inertia", "push off power"), ("squat heat", "push off power")]
+    labels = [
+        (a.get_xlabel().split(" [")[0], a.get_ylabel().split(" [")[0])
+        for a in figure.axes
+        if a.get_visible()
+    ]
+    assert labels == [
+        ("swing inertia", "squat heat"),
+        ("swing inertia", "push off power"),
+        ("squat heat", "push off power"),
+    ]
     assert "higher is better" in figure.axes[1].get_ylabel()
 
 
 def test_a_measure_that_no_variant_has_is_refused(tmp_path):
-    sweep = sweep_from_mapping(DEFINITION | {"variants": ["toe_removed"], "maps": [], "objectives": ["max_joint_torque.toe", "leg_mass"]})
+    sweep = sweep_from_mapping(
+        DEFINITION
+        | {
+            "variants": ["toe_removed"],
+            "maps": [],
+            "objectives": ["max_joint_torque.toe", "leg_mass"],
+        }
+    )
     result = run_sweep(sweep, tmp_path / "out", progress=False)
     with pytest.raises(InputError, match=r"max_joint_torque\.toe"):
         sweep_figures.map_figure(result, Map("toe.mass", "knee", "max_joint_torque.toe"))
@@ -90,7 +121,11 @@ def test_a_measure_that_no_variant_has_is_refused(tmp_path):
 
 def test_levels_nearest_to_the_unchanged_design(grid):
     levels = {axis.name: base_level(axis, grid.sweep) for axis in grid.sweep.axes}
-    assert levels == {"toe.mass": pytest.approx(0.2), "knee": pytest.approx(1.0), "actuators.knee.motor": "RI70"}
+    assert levels == {
+        "toe.mass": pytest.approx(0.2),
+        "knee": pytest.approx(1.0),
+        "actuators.knee.motor": "RI70",
+    }
 
 
 def test_thinning_keeps_both_ends():

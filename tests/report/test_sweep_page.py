@@ -10,7 +10,10 @@ def test_the_page_stands_beside_the_table_and_shows_every_figure(tmp_path):
         "description": "small",
         "design": "hyperleg",
         "sampling": "grid",
-        "axes": {"toe.mass": {"low": 0.1, "high": 0.3, "steps": 3}, "actuators.knee.gear": {"low": 6, "high": 8, "steps": 3}},
+        "axes": {
+            "toe.mass": {"low": 0.1, "high": 0.3, "steps": 3},
+            "actuators.knee.gear": {"low": 6, "high": 8, "steps": 3},
+        },
         "objectives": ["total_mass", "push_off_heat"],
     }
     result = run_sweep(sweep_from_mapping(definition), tmp_path / "out", progress=False)

@@ -20,7 +20,9 @@ def test_smoothing_keeps_the_mean():
     rng = np.random.default_rng(0)
     way = np.cumsum(1.0 + 0.3 * rng.random(2000)) * 0.02
     path = np.stack([way, 0 * way], -1)
-    assert t_test_figures.speeds(path, 0.02).mean() == pytest.approx((way[-1] - way[0]) / (0.02 * 1999), rel=0.01)
+    assert t_test_figures.speeds(path, 0.02).mean() == pytest.approx(
+        (way[-1] - way[0]) / (0.02 * 1999), rel=0.01
+    )
 
 
 def test_ways_speed_and_falls_are_drawn(found):

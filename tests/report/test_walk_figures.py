@@ -28,8 +28,12 @@ def test_power_over_the_cycle_is_the_mean_of_the_strides_and_adds_up(found):
     assert curve(upper, "toe") == pytest.approx(cycle.of_group("toe").mean(0), abs=1e-6)
     work = sum(curve(upper, group) for group in GROUPS)
     assert curve(lower, "mechanical") == pytest.approx(work, abs=1e-6)
-    assert curve(lower, "total") == pytest.approx(curve(lower, "mechanical") + curve(lower, "Joule heat"), abs=1e-6)
-    assert "toe" not in [line.get_label() for line in figure.axes[1].get_lines()]  # the removed toe has no power
+    assert curve(lower, "total") == pytest.approx(
+        curve(lower, "mechanical") + curve(lower, "Joule heat"), abs=1e-6
+    )
+    assert "toe" not in [
+        line.get_label() for line in figure.axes[1].get_lines()
+    ]  # the removed toe has no power
 
 
 def test_walks_without_a_steady_stride_leave_a_panel_that_says_so(found):
@@ -59,4 +63,6 @@ def test_operating_points_lie_in_their_envelopes(found):
     knee = figure.axes[titles.index("knee")].collections[0].get_offsets()
     index = trial.layout.motors.index("left_knee")
     assert np.abs(np.asarray(knee)[:, 1]).max() <= np.abs(trial.motor_torque).max() + 1e-9
-    assert np.asarray(knee)[0] == pytest.approx([trial.motor_velocity[0, index], trial.motor_torque[0, index]])
+    assert np.asarray(knee)[0] == pytest.approx(
+        [trial.motor_velocity[0, index], trial.motor_torque[0, index]]
+    )

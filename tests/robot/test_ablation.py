@@ -15,7 +15,12 @@ from hyperleg_design.robot.names import VARIANTS
 
 def test_masses_of_the_papers_ablations(hyperleg):
     motor = actuator_mass("RI60", 7.0, 0.01)
-    expected = {"toe": 32.0, "toe_locked": 32.0, "toe_removed_matched": 32.0, "toe_removed": 32.0 - 2 * (0.22 + motor)}
+    expected = {
+        "toe": 32.0,
+        "toe_locked": 32.0,
+        "toe_removed_matched": 32.0,
+        "toe_removed": 32.0 - 2 * (0.22 + motor),
+    }
     for name, variant in variants(hyperleg).items():
         assert mass_table(variant).total == pytest.approx(expected[name], abs=1e-12)
         assert variant.variant == name
@@ -35,9 +40,17 @@ def test_the_sole_keeps_its_length(hyperleg):
 @settings(max_examples=30)
 def test_the_matched_ablation_keeps_the_mass_of_any_design(hyperleg, motor, law, place, ballast):
     design = hyperleg.with_values(
-        {"actuators.toe.motor": motor, "masses.law": law, "actuators.toe.housed_in": place, "masses.thigh_ballast": ballast}
+        {
+            "actuators.toe.motor": motor,
+            "masses.law": law,
+            "actuators.toe.housed_in": place,
+            "masses.thigh_ballast": ballast,
+        }
     )
-    matched, removed = mass_table(ablate(design, "toe_removed_matched")), mass_table(ablate(design, "toe_removed"))
+    matched, removed = (
+        mass_table(ablate(design, "toe_removed_matched")),
+        mass_table(ablate(design, "toe_removed")),
+    )
     assert matched.total == pytest.approx(mass_table(design).total, abs=1e-12)
     assert removed.total < matched.total - 2 * 0.22
 
@@ -58,12 +71,16 @@ def test_the_papers_confound(hyperleg):
 
 
 def test_a_batch_is_ablated_as_a_whole(hyperleg):
-    batch = hyperleg.with_values({"toe.mass": np.array([0.2, 0.3]), "actuators.toe.motor": np.array(["RI60", "RI70"])})
+    batch = hyperleg.with_values(
+        {"toe.mass": np.array([0.2, 0.3]), "actuators.toe.motor": np.array(["RI60", "RI70"])}
+    )
     matched = ablate(batch, "toe_removed_matched")
     np.testing.assert_allclose(mass_table(matched).total, mass_table(batch).total, atol=1e-12)
     assert transmission.joint_from_motor(matched).shape == (6, 6)
     for index in range(2):
-        assert mass_table(matched.take(index)).thigh == pytest.approx(mass_table(ablate(batch.take(index), "toe_removed_matched")).thigh, abs=1e-12)
+        assert mass_table(matched.take(index)).thigh == pytest.approx(
+            mass_table(ablate(batch.take(index), "toe_removed_matched")).thigh, abs=1e-12
+        )
 
 
 def test_an_ablation_says_so(hyperleg):

@@ -37,18 +37,33 @@ def built(heavy_toe, tmp_path_factory) -> Path:
 
 def test_the_files(built):
     assert set(everything(built)) == {
-        "hyperleg.urdf", "hyperleg.xml", "design.yaml", "tree.yaml", "biped.urdf.xacro", "masses.csv", "masses.md", "manifest.json", ".hyperleg",
-    }  # fmt: skip
+        "hyperleg.urdf",
+        "hyperleg.xml",
+        "design.yaml",
+        "tree.yaml",
+        "biped.urdf.xacro",
+        "masses.csv",
+        "masses.md",
+        "manifest.json",
+        ".hyperleg",
+    }
 
 
 def test_32_16_kg_in_other_programs(built):
     """Loaded by programs that know nothing of this package."""
     code = (
         "import sys, pinocchio, mujoco; u, x = sys.argv[1:];"
-        "print(pinocchio.computeTotalMass(pinocchio.buildModelFromUrdf(u, pinocchio.JointModelFreeFlyer())));"
-        "print(mujoco.MjModel.from_xml_path(x).body_mass.sum()); print('hyperleg_design' in sys.modules)"
+        "print(pinocchio.computeTotalMass(pinocchio.buildModelFromUrdf(u, "
+        "pinocchio.JointModelFreeFlyer())));"
+        "print(mujoco.MjModel.from_xml_path(x).body_mass.sum()); print('hyperleg_design' in "
+        "sys.modules)"
     )
-    done = subprocess.run([sys.executable, "-c", code, built / "hyperleg.urdf", built / "hyperleg.xml"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code, built / "hyperleg.urdf", built / "hyperleg.xml"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     first, second, loaded = done.stdout.split()
     assert float(first) == pytest.approx(32.16, abs=1e-9)
     assert float(second) == pytest.approx(32.16, abs=1e-9)
@@ -80,7 +95,9 @@ def test_the_resolved_design_builds_the_same_robot(heavy_toe, variant, tmp_path)
     assert again.origins["foot.mass"] == parameters.Origin("paper", "Table I")
     second = build(again, tmp_path / "second")
     a, b = everything(first), everything(second)
-    assert {n for n in a if a[n] != b[n]} <= {"manifest.json"}  # which says where the design was read from
+    assert {n for n in a if a[n] != b[n]} <= {
+        "manifest.json"
+    }  # which says where the design was read from
 
 
 def test_the_same_bytes_twice(heavy_toe, built, tmp_path):
@@ -89,7 +106,13 @@ def test_the_same_bytes_twice(heavy_toe, built, tmp_path):
 
 def test_xacro_makes_the_urdf_without_this_package(built):
     xacro = Path(sys.executable).with_name("xacro")
-    done = subprocess.run([xacro, "biped.urdf.xacro", "tree:=tree.yaml"], cwd=built, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [xacro, "biped.urdf.xacro", "tree:=tree.yaml"],
+        cwd=built,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     body = done.stdout[done.stdout.index("<robot") :]
     written = (built / "hyperleg.urdf").read_text()
     assert body.split() == written[written.index("<robot") :].split()
@@ -109,7 +132,9 @@ def test_the_manifest_tells_the_truth(built, heavy_toe):
 def test_the_mass_table(built):
     with (built / "masses.csv").open() as stream:
         rows = list(csv.DictReader(stream))
-    assert sum(int(r["count"]) * float(r["mass_kg"]) for r in rows if r["kind"] == "link") == pytest.approx(32.16, abs=1e-12)
+    assert sum(
+        int(r["count"]) * float(r["mass_kg"]) for r in rows if r["kind"] == "link"
+    ) == pytest.approx(32.16, abs=1e-12)
     text = (built / "masses.md").read_text()
     lines = [line for line in text.splitlines() if line.startswith("|")]
     assert len(lines) == len(rows) + 2

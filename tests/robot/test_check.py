@@ -52,7 +52,12 @@ def test_kinds_go_by_content(write, hyperleg):
         ("a.yaml", "x: 1\nx: 2", "line 2"),
         ("a.yaml", b"\xff", "UTF-8"),
         ("a.yaml", "base: hyperleg\ntoe: {mass: -1}", "toe.mass: is -1"),
-        ("a.yaml", "base: hyperleg\nthigh: {gyration_fraction: [0.03, 0.03, 0.03]}\nactuators: {hip_pitch: {motor: U8}}", "thigh.gyration_fraction"),
+        (
+            "a.yaml",
+            "base: hyperleg\nthigh: {gyration_fraction: [0.03, 0.03, 0.03]}\nactuators: "
+            "{hip_pitch: {motor: U8}}",
+            "thigh.gyration_fraction",
+        ),
         ("a.yaml", "pelvis: {}", "missing"),
         ("a.yaml", "constants: {}\nconvention: {}", "missing"),
     ],
@@ -70,7 +75,9 @@ def test_a_design_whose_linkage_cannot_be_is_a_warning(write):
     assert [(f.severity, "four-bar" in str(f)) for f in check_file(path)] == [("warning", True)]
 
 
-@pytest.mark.parametrize("name", ["gone.urdf", "gone.xml", "gone.yaml", "gone", "no/such/file.urdf"])
+@pytest.mark.parametrize(
+    "name", ["gone.urdf", "gone.xml", "gone.yaml", "gone", "no/such/file.urdf"]
+)
 def test_a_missing_file(name):
     with pytest.raises(InputError, match=r"gone|no/such"):
         check_file(name)
@@ -80,7 +87,8 @@ def test_findings_of_errors():
     found = finding_of(InputError("a.yaml", "toe.mass", -1, "expects kg"))
     assert str(found) == "error: a.yaml: toe.mass: is -1; expects kg"
     assert (
-        str(finding_of(InputError("a.yaml", "toe.mass", None, "is missing"), "warning")) == "warning: a.yaml: toe.mass: is missing; correct it there"
+        str(finding_of(InputError("a.yaml", "toe.mass", None, "is missing"), "warning"))
+        == "warning: a.yaml: toe.mass: is missing; correct it there"
     )
 
 

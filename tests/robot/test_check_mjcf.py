@@ -52,14 +52,23 @@ def test_a_fault_is_found(old, new, severity, words):
 
 def test_what_is_no_mjcf(tmp_path):
     assert "<robot>" in str(check_mjcf("<robot name='x'/>")[0])
-    assert "nothing moves" in str(check_mjcf("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")[0])
+    assert "nothing moves" in str(
+        check_mjcf("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")[0]
+    )
     with pytest.raises(InputError, match="cannot be read"):
         check_mjcf(tmp_path / "no.xml")
 
 
 def test_included_files_are_found_beside_the_file(write):
-    write("part.xml", "<mujoco><worldbody><body name='b'><joint name='j' range='-1 1'/><geom size='0.1'/></body></worldbody></mujoco>")
-    main = write("main.xml", "<mujoco><include file='part.xml'/><actuator><motor joint='j'/></actuator></mujoco>")
+    write(
+        "part.xml",
+        "<mujoco><worldbody><body name='b'><joint name='j' range='-1 1'/><geom "
+        "size='0.1'/></body></worldbody></mujoco>",
+    )
+    main = write(
+        "main.xml",
+        "<mujoco><include file='part.xml'/><actuator><motor joint='j'/></actuator></mujoco>",
+    )
     assert check_mjcf(main) == []
     missing = write("other.xml", "<mujoco><include file='gone.xml'/></mujoco>")
     assert "gone.xml" in str(check_mjcf(missing)[0])

@@ -33,20 +33,32 @@ GOOD = """<robot name="arm">
   </joint>
   <joint name="tip_joint" type="fixed"><parent link="lower"/><child link="tip"/></joint>
 </robot>
-"""
+"""  # noqa: E501
 
 FAULTS = {
     "syntax": ('</link>\n  <link name="tip"/>', '\n  <link name="tip"/>', "is not XML"),
     "no name": ('name="arm"', "", "no name"),
     "loose link": ('<link name="tip"/>', '<link name="tip"/><link name="spare"/>', "is loose"),
     "loose tree": ('<parent link="upper"/>', '<parent link="tip"/>', "loop"),
-    "two links of a name": ('<link name="tip"/>', '<link name="tip"/><link name="tip"/>', "stands twice"),
+    "two links of a name": (
+        '<link name="tip"/>',
+        '<link name="tip"/><link name="tip"/>',
+        "stands twice",
+    ),
     "two joints of a name": ('name="tip_joint"', 'name="elbow"', "stands twice"),
     "nameless link": ('<link name="tip"/>', '<link name="tip"/><link/>', "no name"),
     "missing child": ('<child link="lower"/>', '<child link="lowr"/>', "'lowr', is no link"),
     "missing parent": ('<parent link="base"/>', "", "no <parent link=...>"),
-    "two parents": ("</robot>", '<joint name="x" type="fixed"><parent link="base"/><child link="tip"/></joint></robot>', "hangs on joint"),
-    "own parent": ('<parent link="lower"/><child link="tip"/>', '<parent link="tip"/><child link="tip"/>', "loop"),
+    "two parents": (
+        "</robot>",
+        '<joint name="x" type="fixed"><parent link="base"/><child link="tip"/></joint></robot>',
+        "hangs on joint",
+    ),
+    "own parent": (
+        '<parent link="lower"/><child link="tip"/>',
+        '<parent link="tip"/><child link="tip"/>',
+        "loop",
+    ),
     "no mass": ('<mass value="1"/>', "", "mass is None"),
     "negative mass": ('<mass value="1"/>', '<mass value="-1"/>', "mass is -1 kg"),
     "text mass": ('<mass value="1"/>', '<mass value="1kg"/>', "mass is '1kg'"),
@@ -63,24 +75,52 @@ FAULTS = {
     "no limit": ('<limit lower="-1" upper="2" effort="10" velocity="5"/>', "", "no <limit>"),
     "no effort": ('upper="2" effort="10"', 'upper="2"', "effort is None"),
     "zero effort": ('upper="2" effort="10"', 'upper="2" effort="0"', "effort is '0'"),
-    "negative velocity": ('upper="2" effort="10" velocity="5"', 'upper="2" effort="10" velocity="-5"', "velocity is '-5'"),
-    "zero axis": ('<axis xyz="0 1 0"/>\n    <limit lower="-1" upper="2"', '<axis xyz="0 0 0"/>\n    <limit lower="-1" upper="2"', "axis is zero"),
-    "short axis": ('<axis xyz="0 1 0"/>\n    <limit lower="-1" upper="2"', '<axis xyz="0 1"/>\n    <limit lower="-1" upper="2"', "axis is '0 1'"),
+    "negative velocity": (
+        'upper="2" effort="10" velocity="5"',
+        'upper="2" effort="10" velocity="-5"',
+        "velocity is '-5'",
+    ),
+    "zero axis": (
+        '<axis xyz="0 1 0"/>\n    <limit lower="-1" upper="2"',
+        '<axis xyz="0 0 0"/>\n    <limit lower="-1" upper="2"',
+        "axis is zero",
+    ),
+    "short axis": (
+        '<axis xyz="0 1 0"/>\n    <limit lower="-1" upper="2"',
+        '<axis xyz="0 1"/>\n    <limit lower="-1" upper="2"',
+        "axis is '0 1'",
+    ),
     "joint type": ('name="elbow" type="revolute"', 'name="elbow" type="hinge"', "type is 'hinge'"),
     "bad origin": ('<origin xyz="0 0 0.2"/>', '<origin xyz="0 0"/>', "xyz='0 0'"),
     "bad box": ('size="0.1 0.1 0.2"', 'size="0.1 -0.1 0.2"', "box has size"),
     "no geometry": ('<geometry><sphere radius="0.02"/></geometry>', "", "no geometry"),
     "friction": ('friction="0"', 'friction="-1"', "friction is '-1'"),
-    "mimic": ('<dynamics damping="0.1" friction="0"/>', '<mimic joint="wrist"/>', "'wrist', which is no joint"),
-    "xacro": ('<link name="tip"/>', '<link name="tip"/><xacro:x xmlns:xacro="http://www.ros.org/wiki/xacro"/>', "xacro"),
-}  # fmt: skip
+    "mimic": (
+        '<dynamics damping="0.1" friction="0"/>',
+        '<mimic joint="wrist"/>',
+        "'wrist', which is no joint",
+    ),
+    "xacro": (
+        '<link name="tip"/>',
+        '<link name="tip"/><xacro:x xmlns:xacro="http://www.ros.org/wiki/xacro"/>',
+        "xacro",
+    ),
+}
 
 DOUBTS = {
     "degrees": ('lower="-1" upper="2"', 'lower="-90" upper="120"', "radians"),
     "zero posture": ('lower="-1" upper="2"', 'lower="0.5" upper="2"', "zero posture"),
-    "long axis": ('<axis xyz="0 1 0"/>\n    <limit lower="-1" upper="2"', '<axis xyz="0 2 0"/>\n    <limit lower="-1" upper="2"', "unit vector"),
-    "units of inertia": ('ixx="0.01" iyy="0.01" izz="0.002"', 'ixx="100" iyy="100" izz="20"', "units"),
-}  # fmt: skip
+    "long axis": (
+        '<axis xyz="0 1 0"/>\n    <limit lower="-1" upper="2"',
+        '<axis xyz="0 2 0"/>\n    <limit lower="-1" upper="2"',
+        "unit vector",
+    ),
+    "units of inertia": (
+        'ixx="0.01" iyy="0.01" izz="0.002"',
+        'ixx="100" iyy="100" izz="20"',
+        "units",
+    ),
+}
 
 
 def test_nothing_is_wrong_with_a_good_one():
@@ -121,7 +161,10 @@ def test_all_faults_are_told_at_once():
 
 def test_a_point_fixed_to_a_link_is_only_a_doubt():
     point = '<inertial><mass value="0.1"/><inertia ixx="0" iyy="0" izz="0"/></inertial>'
-    assert [f.severity for f in check_urdf(GOOD.replace('<link name="tip"/>', f'<link name="tip">{point}</link>'))] == ["warning"]
+    assert [
+        f.severity
+        for f in check_urdf(GOOD.replace('<link name="tip"/>', f'<link name="tip">{point}</link>'))
+    ] == ["warning"]
 
 
 def test_weight_on_a_fixed_link_counts_for_the_moving_one():
@@ -143,7 +186,11 @@ def test_files_that_cannot_be_read(tmp_path: Path):
 
 
 def test_an_entity_bomb_does_not_go_off():
-    bomb = '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa">' + "".join(f'<!ENTITY {chr(98 + i)} "{f"&{chr(97 + i)};" * 10}">' for i in range(12)) + "]>"
+    bomb = (
+        '<!DOCTYPE r [<!ENTITY a "aaaaaaaaaa">'
+        + "".join(f'<!ENTITY {chr(98 + i)} "{f"&{chr(97 + i)};" * 10}">' for i in range(12))
+        + "]>"
+    )
     assert check_urdf(bomb + GOOD.replace('name="arm"', 'name="&m;"'))
     assert check_urdf(bomb + '<robot name="x">&m;</robot>')
 
@@ -157,10 +204,32 @@ def test_any_attribute_replaced_by_anything(hyperleg_urdf, data):
     element = elements[data.draw(st.integers(0, len(elements) - 1))]
     key = data.draw(st.sampled_from(sorted(element.attrib)))
     if data.draw(st.booleans()):
-        element.set(key, data.draw(st.sampled_from(["", "nan", "1e999", "x", "0 0 0", "-1", "1 2 3 4", "pelvis", "left_knee", "fixed", "0"])))
+        element.set(
+            key,
+            data.draw(
+                st.sampled_from(
+                    [
+                        "",
+                        "nan",
+                        "1e999",
+                        "x",
+                        "0 0 0",
+                        "-1",
+                        "1 2 3 4",
+                        "pelvis",
+                        "left_knee",
+                        "fixed",
+                        "0",
+                    ]
+                )
+            ),
+        )
     else:
         element.getparent().remove(element) if element is not root else None
-    assert all(f.severity in ("error", "warning") and f.message and f.remedy for f in check_urdf(etree.tostring(root, encoding="unicode")))
+    assert all(
+        f.severity in ("error", "warning") and f.message and f.remedy
+        for f in check_urdf(etree.tostring(root, encoding="unicode"))
+    )
 
 
 @pytest.fixture(scope="module")

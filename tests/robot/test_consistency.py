@@ -17,14 +17,22 @@ def test_the_papers_lengths(hyperleg):
 @pytest.mark.parametrize(
     ("values", "field", "word"),
     [
-        ({"joints.knee.lower_deg": 150, "joints.knee.upper_deg": 0}, "joints.knee.lower_deg", "reversed"),
+        (
+            {"joints.knee.lower_deg": 150, "joints.knee.upper_deg": 0},
+            "joints.knee.lower_deg",
+            "reversed",
+        ),
         ({"joints.toe.lower_deg": 10}, "joints.toe.lower_deg", "empty"),
         ({"joints.knee.default_deg": -20}, "joints.knee.default_deg", "within"),
         ({"foot.ball_length": 0.6, "toe.length": 0.3}, "foot.ball_length", "longer than the leg"),
         ({"foot.ankle_height": 0.35}, "foot.ankle_height", "shank"),
         ({"toe.axis_height": 0.08}, "toe.axis_height", "ankle"),
         ({"foot.width": 0.5}, "foot.width", "overlap"),
-        ({"toe.axis_height": 0.005, "foot.width": 0.02, "contact.pad_radius": 0.09}, "contact.pad_radius", "larger"),
+        (
+            {"toe.axis_height": 0.005, "foot.width": 0.02, "contact.pad_radius": 0.09},
+            "contact.pad_radius",
+            "larger",
+        ),
         ({"thigh.mass": 0.5}, "thigh.mass", "carriers"),
         ({"foot.mass": 0.05}, "foot.cross_mass", "foot.mass"),
         ({"toe.mass": 0.0}, "toe.mass", "locked"),
@@ -34,10 +42,18 @@ def test_the_papers_lengths(hyperleg):
         ({"toe.gyration": [0.001, 0.2, 0.01]}, "toe.gyration", "no body"),
         ({"pelvis.mass": 3.0}, "pelvis.mass", "actuators"),
         ({"thigh.mass": 2.5}, "thigh.mass", "actuators"),
-        ({"transmission.walking.knee": 1000, "transmission.scale.knee": 20, "transmission.scale.toe": 0.05, "transmission.walking.toe": 0.1},
-         "transmission.walking", "singular"),
+        (
+            {
+                "transmission.walking.knee": 1000,
+                "transmission.scale.knee": 20,
+                "transmission.scale.toe": 0.05,
+                "transmission.walking.toe": 0.1,
+            },
+            "transmission.walking",
+            "singular",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_does_not_fit_together(hyperleg, values, field, word):
     with pytest.raises(InputError) as caught:
         hyperleg.with_values(values)

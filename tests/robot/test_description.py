@@ -32,19 +32,27 @@ def test_urdf_holds_the_tree_bit_for_bit(random_designs, data):
             assert float(inertial.find("mass").get("value")) == link.mass
             assert numbers(inertial.find("origin"), "xyz") == link.com.tolist()
             i = inertial.find("inertia")
-            assert [float(i.get(k)) for k in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")] == link.inertia[
-                [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]
-            ].tolist()
+            assert [
+                float(i.get(k)) for k in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+            ] == link.inertia[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]].tolist()
         assert len(element.findall("collision")) == len(link.pads)
         assert len(element.findall("visual")) == len(link.visuals)
     for joint in tree.joints:
         element = root.find(f"joint[@name='{joint.name}']")
         assert element.get("type") == ("fixed" if joint.fixed else "revolute")
-        assert (element.find("parent").get("link"), element.find("child").get("link")) == (joint.parent, joint.child)
+        assert (element.find("parent").get("link"), element.find("child").get("link")) == (
+            joint.parent,
+            joint.child,
+        )
         if not joint.fixed:
             assert tuple(numbers(element.find("axis"), "xyz")) == joint.axis
             limit = element.find("limit")
-            assert [float(limit.get(k)) for k in ("lower", "upper", "effort", "velocity")] == [joint.lower, joint.upper, joint.effort, joint.velocity]
+            assert [float(limit.get(k)) for k in ("lower", "upper", "effort", "velocity")] == [
+                joint.lower,
+                joint.upper,
+                joint.effort,
+                joint.velocity,
+            ]
 
 
 def test_the_name_is_the_designs(hyperleg):
@@ -52,7 +60,9 @@ def test_the_name_is_the_designs(hyperleg):
 
 
 def test_tree_yaml_keeps_every_bit(hyperleg):
-    tree = build_tree(hyperleg.with_values({"toe.gyration": [1e-3, 1.1e-3, 1.2e-3], "toe.mass": 1 / 3}))  # numbers like 3.3e-07
+    tree = build_tree(
+        hyperleg.with_values({"toe.gyration": [1e-3, 1.1e-3, 1.2e-3], "toe.mass": 1 / 3})
+    )  # numbers like 3.3e-07
     assert yaml.safe_load(tree_yaml(tree)) == tree_mapping(tree)
 
 

@@ -16,20 +16,26 @@ from hyperleg_design.robot.parameters import Origin
 
 def same(a: Design, b: Design) -> bool:
     one, two = parameters.leaves(a), parameters.leaves(b)
-    return a.variant == b.variant and all(np.array_equal(one[p], two[p]) and np.shape(one[p]) == np.shape(two[p]) for p in one)
+    return a.variant == b.variant and all(
+        np.array_equal(one[p], two[p]) and np.shape(one[p]) == np.shape(two[p]) for p in one
+    )
 
 
 def test_an_override_reaches_the_design(hyperleg):
     made = load_design("hyperleg", overrides=["toe.mass=0.3", "actuators.knee.motor=RI80"])
     assert (made["toe.mass"], made["actuators.knee.motor"]) == (0.3, "RI80")
-    assert mass_table(load_design(overrides={"toe.mass": 0.3})).total == pytest.approx(32.16, abs=1e-12)
+    assert mass_table(load_design(overrides={"toe.mass": 0.3})).total == pytest.approx(
+        32.16, abs=1e-12
+    )
     assert made.origins["toe.mass"] == Origin("user", "--set")
     assert made.origins["foot.mass"].label == "paper"
     assert hyperleg["toe.mass"] == 0.22
 
 
 def test_overlays_go_before_overrides_and_keep_labels(write):
-    first = write("first.yaml", "toe: {mass: {value: 0.4, label: vendor, source: scale}}\nfoot: {mass: 0.7}\n")
+    first = write(
+        "first.yaml", "toe: {mass: {value: 0.4, label: vendor, source: scale}}\nfoot: {mass: 0.7}\n"
+    )
     second = write("second.yaml", "foot: {mass: 0.8}\n")
     made = load_design(overlays=[first, second], overrides={"toe.mass": 0.3})
     assert (made["toe.mass"], made["foot.mass"]) == (0.3, 0.8)
@@ -38,7 +44,9 @@ def test_overlays_go_before_overrides_and_keep_labels(write):
 
 def test_an_override_beside_what_the_variant_changes_is_kept():
     assert load_design(overrides={"toe.length": 0.07}, variant="toe_locked")["toe.length"] == 0.07
-    assert load_design(overrides={"toe.mass": 0.3}, variant="toe_removed_matched")["toe.mass"] == 0.3
+    assert (
+        load_design(overrides={"toe.mass": 0.3}, variant="toe_removed_matched")["toe.mass"] == 0.3
+    )
 
 
 def test_an_override_that_the_variant_undoes_is_refused():
@@ -75,7 +83,12 @@ def test_bases_chain(write):
     write("one.yaml", "base: hyperleg\ntoe: {mass: 0.3}\n")
     two = write("two.yaml", "base: one\nvariant: toe_locked\nfoot: {mass: 0.7}\n")
     design = load_design(two)
-    assert (design.name, design.variant, design["toe.mass"], design["foot.mass"]) == ("two", "toe_locked", 0.3, 0.7)
+    assert (design.name, design.variant, design["toe.mass"], design["foot.mass"]) == (
+        "two",
+        "toe_locked",
+        0.3,
+        0.7,
+    )
 
 
 def test_a_batch_takes_its_size_from_its_leaves(hyperleg):
@@ -90,7 +103,11 @@ def test_a_batch_takes_its_size_from_its_leaves(hyperleg):
     assert batch.batch_shape == (5,)
     one = batch.take(3)
     assert one.batch_shape == ()
-    assert (one["toe.mass"], one["actuators.knee.motor"], one["foot.com"].tolist()) == (batch["toe.mass"][3], "RI80", [0, 0, 0])
+    assert (one["toe.mass"], one["actuators.knee.motor"], one["foot.com"].tolist()) == (
+        batch["toe.mass"][3],
+        "RI80",
+        [0, 0, 0],
+    )
     assert type(one["actuators.knee.motor"]) is str
     assert one.origins == batch.origins
     with pytest.raises(IndexError):
@@ -138,14 +155,30 @@ def test_getitem_names_the_nearest_path(hyperleg):
         hyperleg["toe.mas"]
 
 
-@pytest.mark.parametrize("item", ["toe.mass", "=3", "", "toe.mass=[1", "toe.mass={a: b", "toe.mass=2020-99-01", "toe.mass=" + "[" * 10_000])
+@pytest.mark.parametrize(
+    "item",
+    [
+        "toe.mass",
+        "=3",
+        "",
+        "toe.mass=[1",
+        "toe.mass={a: b",
+        "toe.mass=2020-99-01",
+        "toe.mass=" + "[" * 10_000,
+    ],
+)
 def test_overrides_that_cannot_be_read(item):
     with pytest.raises(InputError, match="--set"):
         parse_overrides([item])
 
 
 def test_overrides_are_yaml():
-    assert parse_overrides(["a.b=1e3", "c=[1, 2]", "d=true", " e = x=y "]) == {"a.b": "1e3", "c": [1, 2], "d": True, "e": "x=y"}
+    assert parse_overrides(["a.b=1e3", "c=[1, 2]", "d=true", " e = x=y "]) == {
+        "a.b": "1e3",
+        "c": [1, 2],
+        "d": True,
+        "e": "x=y",
+    }
 
 
 WHOLE = (resources.content_folder("descriptions") / "hyperleg.yaml").read_text()
@@ -158,14 +191,26 @@ WHOLE = (resources.content_folder("descriptions") / "hyperleg.yaml").read_text()
         ("name: hyperleg", "name: 'a ${1} b'", ["name", "letter"]),
         ("name: hyperleg", "name: [1]", ["name", "letter"]),
         ("name: hyperleg", "name: hyperleg\nvariant: no_toe", ["variant", "no_toe", "toe_removed"]),
-        ("name: hyperleg", "name: hyperleg\nvariant: toe_removed", ["variant", "toe_removed", "toe.joint"]),
+        (
+            "name: hyperleg",
+            "name: hyperleg\nvariant: toe_removed",
+            ["variant", "toe_removed", "toe.joint"],
+        ),
         ("name: hyperleg", "name: hyperleg\nextra: 1", ["extra", "no such field"]),
         ("pelvis:\n", "pelviss:\n", ["pelviss", "did you mean pelvis"]),
-        ("toe_installed: {value: true", "toe_installed: {value: false", ["actuators.toe_installed", "toe.joint"]),
+        (
+            "toe_installed: {value: true",
+            "toe_installed: {value: false",
+            ["actuators.toe_installed", "toe.joint"],
+        ),
         ("mass: {value: 15.46", "mass: {value: 16.46", ["masses.expected_total", "32.0", "33"]),
         ("mass: {value: 5.71", "mass: {value: 5.81", ["masses.expected_leg", "8.27", "8.37"]),
         ("mass: {value: 15.46", "mass: {value: 15460", ["pelvis.mass", "15460", "kg"]),
-        ("spacing: {value: 0.20, label", "spacing: {value: 0.20, lable", ["hip.spacing", "value, label, source"]),
+        (
+            "spacing: {value: 0.20, label",
+            "spacing: {value: 0.20, lable",
+            ["hip.spacing", "value, label, source"],
+        ),
         ("motor: {value: RI70", "motor: {value: RI71", ["motor", "RI71", "RI70"]),
     ],
 )
@@ -213,7 +258,9 @@ def test_a_variant_of_a_variant_is_refused(write):
 
 
 def test_a_name_comes_from_the_file(write):
-    assert load_design(write("my robot (2).yaml", WHOLE.replace("name: hyperleg\n", ""))).name == "my_robot_2_.yaml".removesuffix(".yaml")
+    assert load_design(
+        write("my robot (2).yaml", WHOLE.replace("name: hyperleg\n", ""))
+    ).name == "my_robot_2_.yaml".removesuffix(".yaml")
 
 
 def test_a_missing_file(tmp_path: Path):
@@ -231,7 +278,11 @@ def test_a_mapping_carries_a_whole_design(variant):
     again = design_from_mapping(json.loads(json.dumps(design.to_mapping())), "carried")
     assert again.to_mapping() == design.to_mapping()
     assert again.variant == variant
-    for broken, field in (("text", ""), ({**design.to_mapping(), "variant": "no_toes"}, "variant"), ({"name": "x"}, "pelvis")):
+    for broken, field in (
+        ("text", ""),
+        ({**design.to_mapping(), "variant": "no_toes"}, "variant"),
+        ({"name": "x"}, "pelvis"),
+    ):
         with pytest.raises(InputError) as caught:
             design_from_mapping(broken, "carried")
         assert caught.value.field == field

@@ -36,10 +36,39 @@ def _places(data: dict, prefix: tuple = ()) -> list[tuple]:
 PLACES = _places(DATA)
 JUNK = st.one_of(
     st.sampled_from(
-        [None, True, "", "x", "1 m", "nan", ".inf", [], {}, [1, 2, 3], {"value": 3}, {"value": None}, {"a": {"b": 1}}, [[0, 0, 0]], 10**400, 0, -1]
+        [
+            None,
+            True,
+            "",
+            "x",
+            "1 m",
+            "nan",
+            ".inf",
+            [],
+            {},
+            [1, 2, 3],
+            {"value": 3},
+            {"value": None},
+            {"a": {"b": 1}},
+            [[0, 0, 0]],
+            10**400,
+            0,
+            -1,
+        ]
     ),
     st.sampled_from(
-        [1e-12, 1e12, datetime.date(2020, 1, 1), b"\x00\xff", [None, None, None], [float("nan")] * 3, "RI70", "walking", "locked", "shank"]
+        [
+            1e-12,
+            1e12,
+            datetime.date(2020, 1, 1),
+            b"\x00\xff",
+            [None, None, None],
+            [float("nan")] * 3,
+            "RI70",
+            "walking",
+            "locked",
+            "shank",
+        ]
     ),
     st.floats(),
     st.floats(-2, 50),
@@ -100,14 +129,19 @@ def test_any_bytes_changed(file, seed, count):
         elif action == 1:
             del content[index : index + dice.randrange(1, 40)]
         else:
-            content[index:index] = bytes(dice.choices(b"\n\t :{}[],'\"-#&*!|>%@`0.", k=dice.randrange(1, 5)))
+            content[index:index] = bytes(
+                dice.choices(b"\n\t :{}[],'\"-#&*!|>%@`0.", k=dice.randrange(1, 5))
+            )
     file.write_bytes(bytes(content))
     used(file, linkage=False)
 
 
 @given(
     st.dictionaries(
-        st.sampled_from([".".join(p) for p in PLACES if p[-1] not in ("value", "label", "source")]) | st.text(max_size=5), JUNK, max_size=3
+        st.sampled_from([".".join(p) for p in PLACES if p[-1] not in ("value", "label", "source")])
+        | st.text(max_size=5),
+        JUNK,
+        max_size=3,
     )
 )
 @settings(max_examples=80)

@@ -13,5 +13,8 @@ def test_sizing_and_simulation_share_the_width() -> None:
     design = load_design("toe")
     knee = 3
     at_width = joint_friction(design, np.full(7, FRICTION_SPEED))[knee]
-    expected = float(design.joints.knee.coulomb) * np.tanh(1.0) + float(design.joints.knee.viscous) * FRICTION_SPEED
+    expected = (
+        float(design.joints.knee.coulomb) * np.tanh(1.0)
+        + float(design.joints.knee.viscous) * FRICTION_SPEED
+    )
     np.testing.assert_allclose(at_width, expected)

@@ -56,35 +56,53 @@ def test_the_right_leg_mirrors_the_left(random_designs, data):
     mirror = np.diag([1.0, -1.0, 1.0])
     for name in LEG_LINKS:
         np.testing.assert_array_equal(right[name].com, mirror @ left[name].com)
-        np.testing.assert_allclose(right[name].inertia, mirror @ left[name].inertia @ mirror, atol=1e-17)
+        np.testing.assert_allclose(
+            right[name].inertia, mirror @ left[name].inertia @ mirror, atol=1e-17
+        )
 
 
 def test_declared_values_stand_in_the_reference_build(hyperleg):
     thigh = inertials(hyperleg)["thigh"]
     np.testing.assert_allclose(thigh.com, [0, 0.010, -0.36 * 0.37], atol=1e-15)
-    np.testing.assert_allclose(np.diag(thigh.inertia), 4.91 * (np.array([0.28, 0.285, 0.14]) * 0.37) ** 2, rtol=1e-12)
+    np.testing.assert_allclose(
+        np.diag(thigh.inertia), 4.91 * (np.array([0.28, 0.285, 0.14]) * 0.37) ** 2, rtol=1e-12
+    )
 
 
 def test_another_motor_is_a_point_at_its_place(hyperleg):
-    """The new thigh is the old one and a point of the difference in mass: first and second moments add."""
-    old, new = (inertials(d)["thigh"] for d in (hyperleg, hyperleg.with_values({"actuators.knee.motor": "RI80"})))
+    """The new thigh is the old one and a point of the difference in mass: first and second moments
+    add.
+    """
+    old, new = (
+        inertials(d)["thigh"]
+        for d in (hyperleg, hyperleg.with_values({"actuators.knee.motor": "RI80"}))
+    )
     extra, place = new.mass - old.mass, np.array([0, 0, -0.30 * 0.37])
     assert extra > 0.05
     np.testing.assert_allclose(new.mass * new.com, old.mass * old.com + extra * place, atol=1e-14)
     zero = np.zeros(3)
-    np.testing.assert_allclose(about(new, zero), about(old, zero) - extra * cross(place) @ cross(place), atol=1e-14)
+    np.testing.assert_allclose(
+        about(new, zero), about(old, zero) - extra * cross(place) @ cross(place), atol=1e-14
+    )
 
 
 @pytest.mark.parametrize("fraction", [0.0, 0.9])
 def test_a_motor_moved_within_the_thigh_moves_the_centre_of_mass(hyperleg, fraction):
-    old, new = (inertials(d)["thigh"] for d in (hyperleg, hyperleg.with_values({"actuators.ankle.position_fraction": fraction})))
+    old, new = (
+        inertials(d)["thigh"]
+        for d in (hyperleg, hyperleg.with_values({"actuators.ankle.position_fraction": fraction}))
+    )
     both = 2 * (0.1559 + 0.01 * 7 * 1.63)
     assert new.mass == pytest.approx(old.mass, rel=1e-14)
-    assert new.mass * new.com[2] == pytest.approx(old.mass * old.com[2] - both * (fraction - 0.5) * 0.37, abs=1e-12)
+    assert new.mass * new.com[2] == pytest.approx(
+        old.mass * old.com[2] - both * (fraction - 0.5) * 0.37, abs=1e-12
+    )
 
 
 def test_a_motor_moved_to_the_shank_makes_the_leg_harder_to_swing(hyperleg):
-    moved = hyperleg.with_values({"actuators.ankle.housed_in": "shank", "actuators.ankle.position_fraction": 0.5})
+    moved = hyperleg.with_values(
+        {"actuators.ankle.housed_in": "shank", "actuators.ankle.position_fraction": 0.5}
+    )
     old, new = inertials(hyperleg)["shank"], inertials(moved)["shank"]
     assert new.mass == pytest.approx(old.mass + 2 * (0.1559 + 0.01 * 7 * 1.63), rel=1e-12)
     assert about(new, np.zeros(3))[1, 1] > about(old, np.zeros(3))[1, 1]
@@ -117,6 +135,8 @@ def test_a_batch_is_its_designs(hyperleg):
 
 
 def test_an_inertia_that_no_body_has_is_refused(hyperleg):
-    slim = hyperleg.with_values({"thigh.gyration_fraction": [0.03, 0.03, 0.03], "actuators.hip_pitch.motor": "U8"})
+    slim = hyperleg.with_values(
+        {"thigh.gyration_fraction": [0.03, 0.03, 0.03], "actuators.hip_pitch.motor": "U8"}
+    )
     with pytest.raises(InputError, match=r"thigh\.gyration_fraction.*too small"):
         inertials(slim)

@@ -33,9 +33,15 @@ def within(limits: np.ndarray, fraction: np.ndarray) -> np.ndarray:
 
 
 def test_both_printed_postures_hold(hyperleg, linkage):
-    np.testing.assert_allclose(linkage.joint_from_motor(np.zeros(7)), transmission.joint_from_motor(hyperleg, "standing"), atol=1e-7)
+    np.testing.assert_allclose(
+        linkage.joint_from_motor(np.zeros(7)),
+        transmission.joint_from_motor(hyperleg, "standing"),
+        atol=1e-7,
+    )
     walking = linkage.joint_from_motor(linkage.walking_posture(hyperleg))
-    np.testing.assert_allclose(walking, transmission.joint_from_motor(hyperleg, "walking"), atol=1e-7)
+    np.testing.assert_allclose(
+        walking, transmission.joint_from_motor(hyperleg, "walking"), atol=1e-7
+    )
 
 
 @given(fraction=fractions)
@@ -44,26 +50,33 @@ def test_m_is_the_gradient_of_the_motor_positions(linkage, limits, fraction):
     q = within(limits, fraction)
     step = 1e-6
     steps = step * np.eye(7)
-    difference = (linkage.motor_position(q + steps) - linkage.motor_position(q - steps)) / (2 * step)
+    difference = (linkage.motor_position(q + steps) - linkage.motor_position(q - steps)) / (
+        2 * step
+    )
     np.testing.assert_allclose(linkage.joint_from_motor(q), difference, atol=2e-5)
 
 
 @given(corners=st.lists(fractions, min_size=2, max_size=4))
 @settings(max_examples=20)
 def test_motors_come_back_after_a_closed_path(linkage, limits, corners):
-    """Integral of M^T dq around a polygon in joint space is zero, and along a side it is the change of motor position."""
+    """Integral of M^T dq around a polygon in joint space is zero, and along a side it is the change
+    of motor position.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(60)
     points = [within(limits, c) for c in corners]
     total = np.zeros(7)
     for start, end in zip(points, points[1:] + points[:1], strict=True):
-        # pieces end where a linkage's ratio is held constant, so that each is smooth enough for the quadrature
+        # pieces end where a linkage's ratio is held constant, so that each is smooth enough for the
+        # quadrature
         pieces = np.linspace(0, 1, 41)
         part = np.zeros(7)
         for low, high in itertools.pairwise(pieces):
             t = low + (high - low) * (nodes + 1) / 2
             matrices = linkage.joint_from_motor(start + t[:, None] * (end - start))
             part += (high - low) / 2 * np.einsum("i,ijm,j->m", weights, matrices, end - start)
-        np.testing.assert_allclose(part, linkage.motor_position(end) - linkage.motor_position(start), atol=1e-4)
+        np.testing.assert_allclose(
+            part, linkage.motor_position(end) - linkage.motor_position(start), atol=1e-4
+        )
         total += part
     np.testing.assert_allclose(total, 0, atol=2e-4)
 
@@ -85,7 +98,9 @@ def test_m_is_invertible_at_every_corner(linkage, limits):
 def test_batches_of_postures(linkage, limits, rng):
     q = within(limits, rng.random((4, 3, 7)))
     assert linkage.joint_from_motor(q).shape == (4, 3, 7, 7)
-    np.testing.assert_array_equal(linkage.joint_from_motor(q)[1, 2], linkage.joint_from_motor(q[1, 2]))
+    np.testing.assert_array_equal(
+        linkage.joint_from_motor(q)[1, 2], linkage.joint_from_motor(q[1, 2])
+    )
     np.testing.assert_array_equal(linkage.motor_position(q)[1, 2], linkage.motor_position(q[1, 2]))
     np.testing.assert_allclose(linkage.motor_position(np.zeros(7)), 0, atol=1e-12)
     with pytest.raises(ValueError, match="last axis"):

@@ -42,10 +42,16 @@ def test_the_whole_is_pinocchios(hyperleg, rows):
 
 def test_a_leg_is_the_sum_of_its_segments_in_place(rows):
     places = {"thigh": 0.0, "shank": -0.37, "foot": -0.715, "toe": -0.715 - (0.071 - 0.024)}
-    moment = sum(rows["segment", n].mass * (rows["segment", n].com[2] + z) for n, z in places.items())
+    moment = sum(
+        rows["segment", n].mass * (rows["segment", n].com[2] + z) for n, z in places.items()
+    )
     assert rows["leg", "leg"].com[2] == pytest.approx(moment / 8.27, abs=1e-12)
 
 
 def test_a_removed_toe_weighs_nothing(hyperleg):
-    row = next(r for r in mass_rows(ablate(hyperleg, "toe_removed")) if (r.kind, r.name) == ("segment", "toe"))
+    row = next(
+        r
+        for r in mass_rows(ablate(hyperleg, "toe_removed"))
+        if (r.kind, r.name) == ("segment", "toe")
+    )
     assert (row.mass, row.principal.tolist()) == (0.0, [0, 0, 0])

@@ -48,7 +48,9 @@ def test_names(model):
 
 def test_masses(hyperleg, model):
     assert model.body_mass.sum() == pytest.approx(32.0, abs=1e-12)
-    assert mujoco_model(hyperleg.with_values({"toe.mass": 0.3})).body_mass.sum() == pytest.approx(32.16, abs=1e-12)
+    assert mujoco_model(hyperleg.with_values({"toe.mass": 0.3})).body_mass.sum() == pytest.approx(
+        32.16, abs=1e-12
+    )
 
 
 @pytest.mark.parametrize("variant", ["toe", "toe_locked", "toe_removed_matched", "toe_removed"])
@@ -59,9 +61,13 @@ def test_standing_pads_touch_the_floor(hyperleg, variant):
     assert len(pads) == 12
     heights = np.array([data.geom_xpos[i, 2] - model.geom_size[i, 0] for i in pads])
     assert heights.min() == pytest.approx(0, abs=1e-12)
-    np.testing.assert_allclose(heights, 0, atol=1e-6)  # knee and ankle angles cancel: the sole is flat
+    np.testing.assert_allclose(
+        heights, 0, atol=1e-6
+    )  # knee and ankle angles cancel: the sole is flat
     for joint in JOINTS if variant == "toe" else JOINTS[:-1]:
-        assert data.joint(f"left_{joint}").qpos == pytest.approx(np.deg2rad(getattr(hyperleg.joints, joint).default_deg), abs=1e-12)
+        assert data.joint(f"left_{joint}").qpos == pytest.approx(
+            np.deg2rad(getattr(hyperleg.joints, joint).default_deg), abs=1e-12
+        )
 
 
 def test_tendons_are_the_columns_of_m(hyperleg, model, rng):
@@ -73,7 +79,9 @@ def test_tendons_are_the_columns_of_m(hyperleg, model, rng):
         joint_velocity = data.qvel[6 + 7 * leg : 13 + 7 * leg]
         expected = transmission.motor_velocity(matrix, joint_velocity)
         np.testing.assert_allclose(data.ten_velocity[7 * leg : 7 * leg + 7], expected, rtol=1e-13)
-        measured = [data.sensor(f"{('left', 'right')[leg]}_{m}_motor_velocity").data[0] for m in MOTORS]
+        measured = [
+            data.sensor(f"{('left', 'right')[leg]}_{m}_motor_velocity").data[0] for m in MOTORS
+        ]
         np.testing.assert_allclose(measured, expected, rtol=1e-13)
 
 
@@ -88,7 +96,9 @@ def test_motor_torques_reach_the_joints(hyperleg, variant, rng):
     data.ctrl[:] = torque
     mujoco.mj_forward(model, data)
     expected = np.concatenate([matrix @ torque[:motors], matrix @ torque[motors:]])
-    np.testing.assert_allclose(data.qfrc_actuator[6 : 6 + 2 * joints], expected, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(
+        data.qfrc_actuator[6 : 6 + 2 * joints], expected, rtol=1e-12, atol=1e-12
+    )
     np.testing.assert_allclose(data.qfrc_actuator[:6], 0, atol=1e-12)
     np.testing.assert_array_equal(model.actuator_ctrlrange[:motors, 1], peak[:motors])
 
@@ -109,8 +119,12 @@ def test_rotors_are_seen_through_tendons_only(hyperleg, model):
 @pytest.mark.parametrize("motor", MOTORS[3:])
 @pytest.mark.parametrize("posture", ["walking", "standing"])
 def test_every_motor_below_the_knee_pushes_the_foot_away(hyperleg, motor, posture):
-    """At every joint a positive motor torque acts towards a greater distance from the hip: knee on ankle, ankle on ball, toe on tip."""
-    design = hyperleg.with_values({"transmission.posture": posture, "joints.toe.default_deg": -20.0})  # toe bent up, as at push-off
+    """At every joint a positive motor torque acts towards a greater distance from the hip: knee on
+    ankle, ankle on ball, toe on tip.
+    """
+    design = hyperleg.with_values(
+        {"transmission.posture": posture, "joints.toe.default_deg": -20.0}
+    )  # toe bent up, as at push-off
     model = mujoco_model(design)
     data = standing(model)
     toe = data.body("left_toe_plate")
@@ -137,7 +151,12 @@ def test_all_of_them_together_make_the_robot_push_off(hyperleg):
     lengths = []
     for _ in range(4):
         mujoco.mj_kinematics(model, data)
-        lengths.append([np.linalg.norm(data.body(f"{s}_ankle_cross").xpos - data.body(f"{s}_thigh").xpos) for s in ("left", "right")])
+        lengths.append(
+            [
+                np.linalg.norm(data.body(f"{s}_ankle_cross").xpos - data.body(f"{s}_thigh").xpos)
+                for s in ("left", "right")
+            ]
+        )
         for side in ("left", "right"):
             for motor in MOTORS[3:]:
                 data.actuator(f"{side}_{motor}").ctrl = 0.2
@@ -146,7 +165,9 @@ def test_all_of_them_together_make_the_robot_push_off(hyperleg):
 
 
 def test_friction_is_the_designs_or_none(hyperleg, model):
-    np.testing.assert_allclose(model.dof_frictionloss[6:13], [3.30, 3.30, 3.30, 5.59, 2.09, 2.20, 0.88])
+    np.testing.assert_allclose(
+        model.dof_frictionloss[6:13], [3.30, 3.30, 3.30, 5.59, 2.09, 2.20, 0.88]
+    )
     np.testing.assert_allclose(model.dof_damping[6:13], [0.08, 0.08, 0.08, 0.10, 0.10, 0.10, 0.10])
     free = mujoco_model(hyperleg, friction=False)
     assert not free.dof_frictionloss.any()
@@ -163,7 +184,11 @@ def test_only_pads_touch_the_floor(hyperleg, model):
         mujoco.mj_step(model, data)
     assert 4 <= data.ncon <= 12
     assert np.all(np.isfinite(data.qpos))
-    weight = sum(float(data.sensor(f"{s}_{link}_load").data[0]) for s in ("left", "right") for link in ("foot", "toe_plate"))
+    weight = sum(
+        float(data.sensor(f"{s}_{link}_load").data[0])
+        for s in ("left", "right")
+        for link in ("foot", "toe_plate")
+    )
     assert 0.3 * 32 * 9.81 < weight < 3 * 32 * 9.81
 
 
@@ -173,7 +198,9 @@ def test_without_a_floor(hyperleg):
 
 
 def test_text_compiles_to_the_same_model(hyperleg):
-    design = ablate(hyperleg.with_values({"thigh.length": 1 / 3, "actuators.knee.motor": "RI80"}), "toe_locked")
+    design = ablate(
+        hyperleg.with_values({"thigh.length": 1 / 3, "actuators.knee.motor": "RI80"}), "toe_locked"
+    )
     model, again = mujoco_model(design), mujoco.MjModel.from_xml_string(mjcf(design))
     for field in (
         "body_mass",
@@ -187,8 +214,12 @@ def test_text_compiles_to_the_same_model(hyperleg):
         "actuator_ctrlrange",
         "key_qpos",
     ):
-        np.testing.assert_allclose(getattr(again, field), getattr(model, field), rtol=1e-14, atol=1e-15, err_msg=field)
-    assert [again.sensor(i).name for i in range(again.nsensor)] == [model.sensor(i).name for i in range(model.nsensor)]
+        np.testing.assert_allclose(
+            getattr(again, field), getattr(model, field), rtol=1e-14, atol=1e-15, err_msg=field
+        )
+    assert [again.sensor(i).name for i in range(again.nsensor)] == [
+        model.sensor(i).name for i in range(model.nsensor)
+    ]
 
 
 def test_writing_leaves_mujocos_precision_alone(hyperleg):

@@ -8,6 +8,16 @@ from hyperleg_design.robot.sections import Actuators, Joints, Places, Transmissi
 
 def test_names_are_those_of_the_sections():
     assert tuple(section_types(Joints)) == names.JOINTS
-    assert tuple(section_types(Actuators)) == tuple(dict.fromkeys(names.ACTUATOR_OF_MOTOR)) == tuple(section_types(Places))
+    assert (
+        tuple(section_types(Actuators))
+        == tuple(dict.fromkeys(names.ACTUATOR_OF_MOTOR))
+        == tuple(section_types(Places))
+    )
     assert set(names.POSTURES) <= set(section_types(Transmission))
-    assert len(names.JOINTS) == len(names.MOTORS) == len(names.ACTUATOR_OF_MOTOR) == len(LEG_LINKS) == 7
+    assert (
+        len(names.JOINTS)
+        == len(names.MOTORS)
+        == len(names.ACTUATOR_OF_MOTOR)
+        == len(LEG_LINKS)
+        == 7
+    )

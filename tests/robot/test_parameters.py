@@ -37,7 +37,15 @@ VECTOR = Rule("number", "m", -1, 1, 3)
 
 
 @pytest.mark.parametrize(
-    ("value", "result"), [(1, 1.0), (0.5, 0.5), ("1e-3", 1e-3), (np.float32(0.5), 0.5), (np.int64(2), 2.0), (np.array(1.5), 1.5)]
+    ("value", "result"),
+    [
+        (1, 1.0),
+        (0.5, 0.5),
+        ("1e-3", 1e-3),
+        (np.float32(0.5), 0.5),
+        (np.int64(2), 2.0),
+        (np.array(1.5), 1.5),
+    ],
 )
 def test_numbers_become_floats(value, result):
     found = checked(value, LENGTH, "f", "x")
@@ -48,10 +56,33 @@ def test_numbers_become_floats(value, result):
 @pytest.mark.parametrize(
     "value",
     [
-        None, True, "long", "1 m", "", [1.0], {}, {"value": 1}, (), float("nan"), float("inf"), "nan", "-inf", 10**400, -1, 3, 1j, b"x", object(),
-        np.array([True, False]).tolist(), np.array([[1.0]]), np.array([]), np.array(["a"]), np.array([1.0, np.nan]), np.array([1.0, 5.0]),
+        None,
+        True,
+        "long",
+        "1 m",
+        "",
+        [1.0],
+        {},
+        {"value": 1},
+        (),
+        float("nan"),
+        float("inf"),
+        "nan",
+        "-inf",
+        10**400,
+        -1,
+        3,
+        1j,
+        b"x",
+        object(),
+        np.array([True, False]).tolist(),
+        np.array([[1.0]]),
+        np.array([]),
+        np.array(["a"]),
+        np.array([1.0, np.nan]),
+        np.array([1.0, 5.0]),
     ],
-)  # fmt: skip
+)
 def test_what_is_no_length_is_refused(value):
     with pytest.raises(InputError) as caught:
         checked(value, LENGTH, "file.yaml", "part.length")
@@ -60,7 +91,19 @@ def test_what_is_no_length_is_refused(value):
 
 
 @pytest.mark.parametrize(
-    "value", [1.0, [1, 2], [0, 0, 0, 0], [0, 0, 5], [0, None, 0], [0, True, 0], "0 0 0", [[0, 0], [0, 0]], np.zeros((2, 2, 3)), np.zeros((0, 3))]
+    "value",
+    [
+        1.0,
+        [1, 2],
+        [0, 0, 0, 0],
+        [0, 0, 5],
+        [0, None, 0],
+        [0, True, 0],
+        "0 0 0",
+        [[0, 0], [0, 0]],
+        np.zeros((2, 2, 3)),
+        np.zeros((0, 3)),
+    ],
 )
 def test_what_is_no_vector_is_refused(value):
     with pytest.raises(InputError, match=r"part\.com"):
@@ -91,8 +134,19 @@ def test_batches_are_copied_and_read_only():
 def test_texts():
     rule = Rule("text", choices=("long", "short"))
     assert checked("long", rule, "f", "x") == "long"
-    assert checked(np.array(["long", "short"], dtype=object), rule, "f", "x").tolist() == ["long", "short"]
-    for value in ("longer", 1, None, ["long"], np.array(["long", "x"]), np.array([["long"]]), np.array([], dtype=str)):
+    assert checked(np.array(["long", "short"], dtype=object), rule, "f", "x").tolist() == [
+        "long",
+        "short",
+    ]
+    for value in (
+        "longer",
+        1,
+        None,
+        ["long"],
+        np.array(["long", "x"]),
+        np.array([["long"]]),
+        np.array([], dtype=str),
+    ):
         with pytest.raises(InputError, match="long, short"):
             checked(value, rule, "f", "x")
 
@@ -104,7 +158,9 @@ def test_flags():
             checked(value, Rule("flag"), "f", "x")
 
 
-@pytest.mark.parametrize(("field", "value"), [("kind", np.array(["long", "short"])), ("there", np.array([True, False]))])
+@pytest.mark.parametrize(
+    ("field", "value"), [("kind", np.array(["long", "short"])), ("there", np.array([True, False]))]
+)
 def test_what_cannot_differ_within_a_batch_is_refused(field, value):
     with pytest.raises(InputError, match="cannot differ within a batch"):
         Part(length=1, **{field: value})
@@ -113,7 +169,10 @@ def test_what_cannot_differ_within_a_batch_is_refused(field, value):
 
 def test_from_mapping_keeps_origins():
     origins: dict[str, Origin] = {}
-    data = {"mass": 3, "part": {"length": {"value": 1, "label": "paper", "source": "Table I"}, "com": [0, 0, 0.2]}}
+    data = {
+        "mass": 3,
+        "part": {"length": {"value": 1, "label": "paper", "source": "Table I"}, "com": [0, 0, 0.2]},
+    }
     whole = parameters.from_mapping(Whole, data, "f", "", origins)
     assert whole.mass == 3.0
     assert whole.part.com.tolist() == [0, 0, 0.2]
@@ -133,9 +192,18 @@ def test_from_mapping_keeps_origins():
         ({"mass": 1, "part": 3}, ["part", "mapping"]),
         ({"mass": 1, "part": {"lenght": 1}}, ["part.lenght", "did you mean length"]),
         ({"mass": 1, "part": {"length": 1}, 5: 1}, ["5", "no such field"]),
-        ({"mass": 1, "part": {"length": {"value": 1, "lable": "paper"}}}, ["part.length", "value, label, source"]),
-        ({"mass": 1, "part": {"length": {"label": "paper"}}}, ["part.length", "value, label, source"]),
-        ({"mass": 1, "part": {"length": {"value": 1, "label": "guess"}}}, ["part.length.label", "guess", "paper"]),
+        (
+            {"mass": 1, "part": {"length": {"value": 1, "lable": "paper"}}},
+            ["part.length", "value, label, source"],
+        ),
+        (
+            {"mass": 1, "part": {"length": {"label": "paper"}}},
+            ["part.length", "value, label, source"],
+        ),
+        (
+            {"mass": 1, "part": {"length": {"value": 1, "label": "guess"}}},
+            ["part.length.label", "guess", "paper"],
+        ),
         ({"mass": 1, "part": {"length": {"value": 1, "label": []}}}, ["part.length.label"]),
     ],
 )
@@ -148,7 +216,9 @@ def test_from_mapping_names_the_field(data, words):
 
 def test_with_values_replaces_by_path():
     whole = Whole(part=Part(length=1), mass=1)
-    made = parameters.with_values(whole, {"part.length": 0.5, "mass": np.array([1.0, 2.0])}, "override")
+    made = parameters.with_values(
+        whole, {"part.length": 0.5, "mass": np.array([1.0, 2.0])}, "override"
+    )
     assert (made.part.length, made.mass.tolist()) == (0.5, [1.0, 2.0])
     assert (whole.part.length, whole.mass) == (1.0, 1.0)
     with pytest.raises(dataclasses.FrozenInstanceError):
@@ -156,7 +226,15 @@ def test_with_values_replaces_by_path():
 
 
 @pytest.mark.parametrize(
-    ("path", "word"), [("part", "section"), ("part.lenght", "part.length"), ("mas", "mass"), ("", "no such"), ("mass.x", "no such"), (3, "no such")]
+    ("path", "word"),
+    [
+        ("part", "section"),
+        ("part.lenght", "part.length"),
+        ("mas", "mass"),
+        ("", "no such"),
+        ("mass.x", "no such"),
+        (3, "no such"),
+    ],
 )
 def test_with_values_names_a_path_that_is_no_leaf(path, word):
     with pytest.raises(InputError, match=word):

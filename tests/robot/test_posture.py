@@ -10,12 +10,19 @@ from hyperleg_design.robot.posture import axis_rotation, default_angles, link_po
 from hyperleg_design.robot.tree import build_tree
 
 
-@given(axis=st.lists(st.floats(-1, 1), min_size=3, max_size=3).filter(lambda a: np.linalg.norm(a) > 0.1), angle=st.floats(-4, 4))
+@given(
+    axis=st.lists(st.floats(-1, 1), min_size=3, max_size=3).filter(
+        lambda a: np.linalg.norm(a) > 0.1
+    ),
+    angle=st.floats(-4, 4),
+)
 def test_axis_rotation_is_the_exponential(axis, angle):
     from scipy.spatial.transform import Rotation
 
     unit = np.array(axis) / np.linalg.norm(axis)
-    np.testing.assert_allclose(axis_rotation(unit, angle), Rotation.from_rotvec(unit * angle).as_matrix(), atol=1e-14)
+    np.testing.assert_allclose(
+        axis_rotation(unit, angle), Rotation.from_rotvec(unit * angle).as_matrix(), atol=1e-14
+    )
 
 
 @pytest.fixture(scope="module")
@@ -29,9 +36,13 @@ def test_poses_are_pinocchios(body, angles):
     q = body.neutral()
     q[:7] = 0, 0, 0, 0, 0, 0, 1
     q[7:] = angles
-    poses = link_poses(body.tree, dict(zip([j.name for j in body.tree.moving], angles, strict=True)))
+    poses = link_poses(
+        body.tree, dict(zip([j.name for j in body.tree.moving], angles, strict=True))
+    )
     for link in body.tree.links:
-        np.testing.assert_allclose(poses[link.name][1], body.frame_position(q, link.name), atol=1e-12)
+        np.testing.assert_allclose(
+            poses[link.name][1], body.frame_position(q, link.name), atol=1e-12
+        )
 
 
 def test_default_posture(hyperleg):

@@ -27,12 +27,17 @@ vectors = st.lists(st.floats(-100, 100), min_size=7, max_size=7).map(np.array)
 
 @pytest.mark.parametrize("posture", PRINTED)
 def test_the_printed_matrices_entry_by_entry(hyperleg, posture):
-    np.testing.assert_array_equal(transmission.joint_from_motor(hyperleg, posture), PRINTED[posture])
+    np.testing.assert_array_equal(
+        transmission.joint_from_motor(hyperleg, posture), PRINTED[posture]
+    )
 
 
 def test_the_designs_own_posture_is_the_default(hyperleg):
     np.testing.assert_array_equal(transmission.joint_from_motor(hyperleg), WALKING)
-    np.testing.assert_array_equal(transmission.joint_from_motor(hyperleg.with_values({"transmission.posture": "standing"})), STANDING)
+    np.testing.assert_array_equal(
+        transmission.joint_from_motor(hyperleg.with_values({"transmission.posture": "standing"})),
+        STANDING,
+    )
     with pytest.raises(InputError, match=r"running.*walking, standing"):
         transmission.joint_from_motor(hyperleg, "running")
 
@@ -43,7 +48,9 @@ def test_the_maxima_of_table_one(hyperleg):
 
 
 def test_single_joint_speeds(hyperleg):
-    np.testing.assert_allclose(transmission.single_joint_speed(hyperleg)[3:], [10.5, 13.7, 22.2, 17.2], atol=0.05)
+    np.testing.assert_allclose(
+        transmission.single_joint_speed(hyperleg)[3:], [10.5, 13.7, 22.2, 17.2], atol=0.05
+    )
     np.testing.assert_allclose(transmission.single_joint_speed(hyperleg)[:3], 12.0, rtol=1e-12)
 
 
@@ -54,8 +61,15 @@ def test_without_the_toe_motor(hyperleg):
 
 
 def test_shapes_of_the_variants(hyperleg):
-    shapes = {name: transmission.joint_from_motor(v).shape for name, v in variants(hyperleg).items()}
-    assert shapes == {"toe": (7, 7), "toe_locked": (6, 7), "toe_removed_matched": (6, 6), "toe_removed": (6, 6)}
+    shapes = {
+        name: transmission.joint_from_motor(v).shape for name, v in variants(hyperleg).items()
+    }
+    assert shapes == {
+        "toe": (7, 7),
+        "toe_locked": (6, 7),
+        "toe_removed_matched": (6, 6),
+        "toe_removed": (6, 6),
+    }
 
 
 @given(torque=vectors, velocity=vectors)
@@ -82,7 +96,9 @@ def test_motor_torques_give_back_the_joint_torques(hyperleg, torque):
 @given(torque=vectors)
 @settings(max_examples=20)
 def test_least_heat_against_least_squares(hyperleg, torque):
-    """Minimum of sum C tau^2 at M tau = t: the minimum-norm solution in the variables sqrt(C) tau."""
+    """Minimum of sum C tau^2 at M tau = t: the minimum-norm solution in the variables sqrt(C)
+    tau.
+    """
     locked = ablate(hyperleg, "toe_locked")
     matrix, heat = transmission.joint_from_motor(locked), motor_arrays(locked).power_constant
     ours = transmission.motor_torque(matrix, torque[:6], heat)
@@ -96,30 +112,40 @@ def test_least_heat_against_cvxpy(hyperleg, rng):
     for _ in range(3):
         wanted = rng.normal(size=6) * 30
         tau = cp.Variable(7)
-        problem = cp.Problem(cp.Minimize(cp.sum(cp.multiply(heat, cp.square(tau)))), [matrix @ tau == wanted])
+        problem = cp.Problem(
+            cp.Minimize(cp.sum(cp.multiply(heat, cp.square(tau)))), [matrix @ tau == wanted]
+        )
         problem.solve(solver=cp.CLARABEL)
         ours = transmission.motor_torque(matrix, wanted, heat)
         np.testing.assert_allclose(ours, tau.value, atol=1e-5)
         assert np.sum(heat * ours**2) <= problem.value * (1 + 1e-7)
 
 
-@given(rotor=st.lists(st.floats(1e-7, 1e-3), min_size=7, max_size=7).map(np.array), velocity=vectors)
+@given(
+    rotor=st.lists(st.floats(1e-7, 1e-3), min_size=7, max_size=7).map(np.array), velocity=vectors
+)
 def test_reflected_inertia_keeps_the_kinetic_energy(hyperleg, rotor, velocity):
     matrix = transmission.joint_from_motor(hyperleg)
     reflected = transmission.reflected_inertia(matrix, rotor)
-    assert velocity @ reflected @ velocity == pytest.approx(rotor @ transmission.motor_velocity(matrix, velocity) ** 2, rel=1e-12, abs=1e-12)
+    assert velocity @ reflected @ velocity == pytest.approx(
+        rotor @ transmission.motor_velocity(matrix, velocity) ** 2, rel=1e-12, abs=1e-12
+    )
     np.testing.assert_allclose(reflected, reflected.T, atol=1e-14 * np.abs(reflected).max())
     assert np.linalg.eigvalsh(reflected)[0] > 0
 
 
 def test_knee_and_ankle_share_rotors(hyperleg):
-    reflected = transmission.reflected_inertia(transmission.joint_from_motor(hyperleg), motor_arrays(hyperleg).rotor_inertia)
+    reflected = transmission.reflected_inertia(
+        transmission.joint_from_motor(hyperleg), motor_arrays(hyperleg).rotor_inertia
+    )
     assert reflected[3, 4] == pytest.approx(-31.11 * 33.05e-7 * (26.69 * 2 + 19.23), rel=1e-12)
     assert reflected[3, 5] == pytest.approx(0, abs=1e-15)
 
 
 def test_gears_scale_columns_and_levers_scale_rows(hyperleg):
-    made = hyperleg.with_values({"actuators.ankle.gear": 14, "transmission.scale.knee": 0.5, "actuators.hip_yaw.gear": 10})
+    made = hyperleg.with_values(
+        {"actuators.ankle.gear": 14, "transmission.scale.knee": 0.5, "actuators.hip_yaw.gear": 10}
+    )
     expected = WALKING.copy()
     expected[3] *= 0.5
     expected[:, 4:6] *= 2
@@ -128,7 +154,9 @@ def test_gears_scale_columns_and_levers_scale_rows(hyperleg):
 
 
 def test_the_toe_decouples_from_the_ankle_at_scale_zero(hyperleg):
-    matrix = transmission.joint_from_motor(hyperleg.with_values({"transmission.scale.toe_ankle_pitch": 0}))
+    matrix = transmission.joint_from_motor(
+        hyperleg.with_values({"transmission.scale.toe_ankle_pitch": 0})
+    )
     assert matrix[4, 6] == 0
     assert np.linalg.matrix_rank(matrix) == 7
 
@@ -154,6 +182,8 @@ def test_a_batch_is_its_designs(hyperleg):
             np.testing.assert_array_equal(function(batch)[index], function(batch.take(index)))
         many, one = (
             transmission.motor_torque(transmission.joint_from_motor(batch), torque),
-            transmission.motor_torque(transmission.joint_from_motor(batch.take(index)), torque[index]),
+            transmission.motor_torque(
+                transmission.joint_from_motor(batch.take(index)), torque[index]
+            ),
         )
         np.testing.assert_allclose(many[index], one, rtol=1e-13, atol=1e-14)

@@ -31,13 +31,19 @@ def test_leg_length_and_height(hyperleg, tree):
 
 def test_every_pad_touches_the_ground_that_a_straight_robot_stands_on(tree):
     poses = link_poses(tree)
-    pads = [(poses[link.name][1] + pad.position)[2] - pad.size[0] for link in tree.links for pad in link.pads]
+    pads = [
+        (poses[link.name][1] + pad.position)[2] - pad.size[0]
+        for link in tree.links
+        for pad in link.pads
+    ]
     assert len(pads) == 12
     np.testing.assert_allclose(pads, -0.786, atol=1e-12)
 
 
 def test_order_and_names(tree):
-    assert [j.name for j in tree.moving] == [f"{side}_{name}" for side in ("left", "right") for name in JOINTS]
+    assert [j.name for j in tree.moving] == [
+        f"{side}_{name}" for side in ("left", "right") for name in JOINTS
+    ]
     assert tree.links[0].name == "pelvis"
     known = {"pelvis"}
     for joint in tree.joints:  # parents come first
@@ -50,8 +56,15 @@ def test_order_and_names(tree):
 @settings(max_examples=15)
 def test_equal_angles_are_mirrored_postures(random_designs, data):
     tree = build_tree(data.draw(random_designs))
-    angles = {j.name.removeprefix("left_"): data.draw(st.floats(j.lower, j.upper)) for j in tree.moving if j.name.startswith("left")}
-    poses = link_poses(tree, {f"{side}_{name}": angle for side in ("left", "right") for name, angle in angles.items()})
+    angles = {
+        j.name.removeprefix("left_"): data.draw(st.floats(j.lower, j.upper))
+        for j in tree.moving
+        if j.name.startswith("left")
+    }
+    poses = link_poses(
+        tree,
+        {f"{side}_{name}": angle for side in ("left", "right") for name, angle in angles.items()},
+    )
     for link in tree.links:
         if link.name.startswith("left_"):
             rotation, position = poses[link.name]
@@ -85,11 +98,18 @@ def test_positive_toe_is_plantar_flexion(tree):
 
 
 def test_limits_efforts_and_speeds_are_the_designs(hyperleg, tree):
-    torque, speed = transmission.max_joint_torque(hyperleg, "walking"), transmission.single_joint_speed(hyperleg, "walking")
+    torque, speed = (
+        transmission.max_joint_torque(hyperleg, "walking"),
+        transmission.single_joint_speed(hyperleg, "walking"),
+    )
     for index, joint in enumerate(tree.moving[:7]):
         declared = getattr(hyperleg.joints, JOINTS[index])
         assert (joint.effort, joint.velocity) == (torque[index], speed[index])
-        np.testing.assert_allclose(np.rad2deg([joint.lower, joint.upper]), [declared.lower_deg, declared.upper_deg], atol=1e-12)
+        np.testing.assert_allclose(
+            np.rad2deg([joint.lower, joint.upper]),
+            [declared.lower_deg, declared.upper_deg],
+            atol=1e-12,
+        )
         assert (joint.coulomb, joint.viscous) == (declared.coulomb, declared.viscous)
 
 

@@ -25,7 +25,9 @@ def make(design):
         own = {k: changes.pop(k) for k in ("threads", "assist") if k in changes}
         chosen = load_task(task)
         commands = changes.pop("commands", {})
-        chosen = chosen.changed(commands=dataclasses.replace(chosen.commands, **commands), **changes)
+        chosen = chosen.changed(
+            commands=dataclasses.replace(chosen.commands, **commands), **changes
+        )
         return Environment(robot or design, chosen, simulations=simulations, seed=seed, **own)
 
     return made
@@ -37,6 +39,12 @@ def finely(make):
 
     def made(time_step, simulations=1, robot=None, **physics):
         settings = Physics(time_step=time_step, substeps=round(0.02 / time_step), **physics)
-        return make(simulations=simulations, robot=robot, physics=settings, start=STILL, limits=Limits(height=0.1, tilt=3.0))
+        return make(
+            simulations=simulations,
+            robot=robot,
+            physics=settings,
+            start=STILL,
+            limits=Limits(height=0.1, tilt=3.0),
+        )
 
     return made

@@ -36,13 +36,20 @@ def test_map_to_motors_gives_the_joint_torques_at_least_heat(name):
     wanted = rng.normal(size=(4, 2, len(model.stiffness))) * 20
     torque = actuation.applied(model.motor_from_joint, wanted)
     np.testing.assert_allclose(actuation.applied(model.joint_from_motor, torque), wanted, atol=1e-9)
-    expected = transmission.motor_torque(model.joint_from_motor, wanted, model.envelope.power_constant)
+    expected = transmission.motor_torque(
+        model.joint_from_motor, wanted, model.envelope.power_constant
+    )
     np.testing.assert_allclose(torque, expected, atol=1e-10)
     null = np.linalg.svd(model.joint_from_motor)[2][len(model.stiffness) :]
     heat = actuation.joule_power(model.envelope.power_constant, torque).sum(-1)
     for direction in null:
         for sign in (1e-3, -1e-3):
-            assert np.all(actuation.joule_power(model.envelope.power_constant, torque + sign * direction).sum(-1) > heat)
+            assert np.all(
+                actuation.joule_power(model.envelope.power_constant, torque + sign * direction).sum(
+                    -1
+                )
+                > heat
+            )
 
 
 @settings(max_examples=30, deadline=None)
@@ -52,7 +59,11 @@ def test_drive_is_the_envelope_clip(seed):
     model = actuation.actuation_model(DESIGNS["toe"])
     wanted, speed = rng.normal(size=(6, 2, 7)) * 200, rng.normal(size=(6, 2, 7)) * 400
     torque = actuation.driven_torque(model, wanted, speed)
-    expected = clip_torque(motor_envelope(DESIGNS["toe"]), np.linalg.solve(model.joint_from_motor, wanted[..., None])[..., 0], speed)
+    expected = clip_torque(
+        motor_envelope(DESIGNS["toe"]),
+        np.linalg.solve(model.joint_from_motor, wanted[..., None])[..., 0],
+        speed,
+    )
     np.testing.assert_allclose(torque, expected, atol=1e-9)
 
 
@@ -60,7 +71,9 @@ def test_drive_gives_what_is_wanted_inside_the_envelope():
     model = actuation.actuation_model(DESIGNS["toe"])
     wanted = np.full((1, 2, 7), 5.0)
     torque = actuation.driven_torque(model, wanted, np.zeros((1, 2, 7)))
-    np.testing.assert_allclose(actuation.applied(model.joint_from_motor, torque), wanted, atol=1e-10)
+    np.testing.assert_allclose(
+        actuation.applied(model.joint_from_motor, torque), wanted, atol=1e-10
+    )
 
 
 @given(velocity=st.floats(-50, 50), width=st.floats(0.01, 1))
@@ -84,7 +97,8 @@ def test_motor_friction_is_exact_where_a_motor_has_its_own_joint():
     np.testing.assert_allclose(viscous[:3], 0.08 / 25**2)
     assert np.all(coulomb >= 0)
     assert np.all(viscous >= 0)
-    # The printed joint values cannot all come from motors that share joints: ankle pitch would meet more than printed.
+    # The printed joint values cannot all come from motors that share joints: ankle pitch would meet
+    # more than printed.
     met = np.abs(transmission.joint_from_motor(design)) @ coulomb
     assert not np.allclose(met, actuation.actuation_model(design).coulomb, rtol=0.05)
 
@@ -100,16 +114,23 @@ def test_smoothing_is_a_moving_average_of_the_actions():
 
 def test_a_batch_of_designs_is_each_design():
     batch = DESIGNS["toe"].with_values(
-        {"transmission.scale.knee": np.array([0.8, 1.0, 1.3]), "joints.knee.stiffness": np.array([100.0, 120.0, 90.0])}
+        {
+            "transmission.scale.knee": np.array([0.8, 1.0, 1.3]),
+            "joints.knee.stiffness": np.array([100.0, 120.0, 90.0]),
+        }
     )
     rng = np.random.default_rng(1)
     target, position, velocity = rng.normal(size=(3, 3, 2, 7))
     model = actuation.actuation_model(batch)
     speed = actuation.motor_speed(model.joint_from_motor, velocity)
-    torque = actuation.driven_torque(model, actuation.controller_torque(model, target, position, velocity), speed)
+    torque = actuation.driven_torque(
+        model, actuation.controller_torque(model, target, position, velocity), speed
+    )
     for i in range(3):
         one = actuation.actuation_model(batch.take(i))
         alone = actuation.motor_speed(one.joint_from_motor, velocity[i])
         np.testing.assert_allclose(speed[i], alone, atol=1e-9)
         wanted = actuation.controller_torque(one, target[i], position[i], velocity[i])
-        np.testing.assert_allclose(torque[i], actuation.driven_torque(one, wanted, alone), atol=1e-9)
+        np.testing.assert_allclose(
+            torque[i], actuation.driven_torque(one, wanted, alone), atol=1e-9
+        )

@@ -1,4 +1,6 @@
-"""Alterations and their parts: what does nothing changes nothing, limits are those of the envelope, masses are felt."""
+"""Alterations and their parts: what does nothing changes nothing, limits are those of the envelope,
+masses are felt.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, damps_motors, edited, made, overrides, resistance
+from hyperleg_design.simulation.alteration import (
+    Alteration,
+    Limits,
+    Live,
+    damps_motors,
+    edited,
+    made,
+    overrides,
+    resistance,
+)
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.machine import machine_of
@@ -41,7 +52,9 @@ class Heavier(Alteration):
     mass: Any
 
     def edit(self, model, simulation=0):
-        model.body_mass[model.body("pelvis").id] += np.broadcast_to(self.mass, (simulation + 1,))[simulation]
+        model.body_mass[model.body("pelvis").id] += np.broadcast_to(self.mass, (simulation + 1,))[
+            simulation
+        ]
 
 
 class _Lagging(Live):
@@ -80,30 +93,49 @@ class Wrong(Alteration):
 
 
 def walked(design, alterations, steps=40, **changes):
-    environment = Environment(design, load_task("walk").changed(**changes), simulations=6, seed=3, threads=1, alterations=alterations)
+    environment = Environment(
+        design,
+        load_task("walk").changed(**changes),
+        simulations=6,
+        seed=3,
+        threads=1,
+        alterations=alterations,
+    )
     environment.recording = True
     environment.reset()
     rng = np.random.default_rng(5)
     seen = []
     for _ in range(steps):
         step = environment.step(0.4 * rng.normal(size=(6, environment.action_size)))
-        truth = [values for name, values in environment.signals().items() if not name.startswith(TOLD)]
+        truth = [
+            values for name, values in environment.signals().items() if not name.startswith(TOLD)
+        ]
         seen.append((step.observations["policy"], step.reward_terms, *truth))
     environment.close()
     return seen
 
 
-@pytest.mark.parametrize("physics", [Physics(), Physics(posture_dependent=True), Physics(friction="explicit")], ids=["plain", "linkage", "explicit"])
+@pytest.mark.parametrize(
+    "physics",
+    [Physics(), Physics(posture_dependent=True), Physics(friction="explicit")],
+    ids=["plain", "linkage", "explicit"],
+)
 def test_a_hook_that_changes_nothing_changes_nothing(design, physics):
-    plain, altered = walked(design, (), physics=physics), walked(design, (Through(),), physics=physics)
+    plain, altered = (
+        walked(design, (), physics=physics),
+        walked(design, (Through(),), physics=physics),
+    )
     for one, other in zip(plain, altered, strict=True):
         for a, b in zip(one, other, strict=True):
-            # Rounding alone, which contact enlarges: on one processor two of 864 accelerations differ by 2e-11, on others less.
+            # Rounding alone, which contact enlarges: on one processor two of 864 accelerations
+            # differ by 2e-11, on others less.
             np.testing.assert_allclose(a, b, rtol=1e-12, atol=1e-10)
 
 
 def test_no_alterations_means_no_chain(design):
-    environment = Environment(design, load_task("walk"), simulations=2, threads=1, alterations=lambda given: ())
+    environment = Environment(
+        design, load_task("walk"), simulations=2, threads=1, alterations=lambda given: ()
+    )
     assert all(chunk.drive.chain is None and chunk.altered is None for chunk in environment.chunks)
     assert environment.model.opt.integrator == simulation_model(design).opt.integrator
 
@@ -117,7 +149,9 @@ def test_alterations_may_depend_on_the_design(design):
 
     environment = Environment(design, load_task("walk"), simulations=2, threads=1, alterations=of)
     assert seen == [design]
-    assert environment.model.body_mass.sum() == pytest.approx(simulation_model(design).body_mass.sum() + 1.0)
+    assert environment.model.body_mass.sum() == pytest.approx(
+        simulation_model(design).body_mass.sum() + 1.0
+    )
     assert environment.layout.weight == pytest.approx(layout_of(design).weight + 9.81)
     assert made(None, design) == ()
 
@@ -137,37 +171,63 @@ def test_edits_leave_the_given_model_alone_and_its_constants_follow(design):
 def test_a_heavier_robot_presses_more_on_the_floor(design):
     forces = []
     for alterations in ((), (Heavier(3.0),)):
-        environment = Environment(design, load_task("walk"), simulations=1, threads=1, alterations=alterations)
+        environment = Environment(
+            design, load_task("walk"), simulations=1, threads=1, alterations=alterations
+        )
         environment.recording = True
         environment.reset()
         acting = np.zeros((1, environment.action_size))
-        forces.append(np.mean([environment.step(acting) and environment.signals()["pad_force"][..., 2].sum(-1).mean() for _ in range(10)]))
+        forces.append(
+            np.mean(
+                [
+                    environment.step(acting)
+                    and environment.signals()["pad_force"][..., 2].sum(-1).mean()
+                    for _ in range(10)
+                ]
+            )
+        )
     # while it still stands, before it tips over
     assert forces[1] - forces[0] == pytest.approx(3.0 * 9.81, rel=0.15)
 
 
 def test_wrong_sensors_reach_controller_and_policy_but_not_the_critic(design):
     task = load_task("walk")
-    told, true = (Environment(design, task, simulations=3, seed=1, threads=1, alterations=a) for a in ((Wrong(0.1),), ()))
+    told, true = (
+        Environment(design, task, simulations=3, seed=1, threads=1, alterations=a)
+        for a in ((Wrong(0.1),), ())
+    )
     first, other = told.reset(), true.reset()
     columns = told.observation_columns
     for group in ("policy", "critic"):
         difference = (first[group] - other[group])[0]
         for name, value in zip(columns[group], difference, strict=True):
-            expected = 0.1 if name == "joint_position.left_knee" else 0.25 if name.startswith("angular_velocity") else 0.0
+            expected = (
+                0.1
+                if name == "joint_position.left_knee"
+                else 0.25
+                if name.startswith("angular_velocity")
+                else 0.0
+            )
             assert value == pytest.approx(expected, abs=1e-6), name
     told.recording = true.recording = True
     acting = np.zeros((3, told.action_size))
     told.step(acting), true.step(acting)
-    wanted = told.signals()["driven_joint_torque"][:, 0, 3] - true.signals()["driven_joint_torque"][:, 0, 3]
+    wanted = (
+        told.signals()["driven_joint_torque"][:, 0, 3]
+        - true.signals()["driven_joint_torque"][:, 0, 3]
+    )
     # the knee's controller asks for stiffness times the offset less
     np.testing.assert_allclose(wanted, -design.joints.knee.stiffness * 0.1, rtol=0.02)
 
 
-@pytest.mark.parametrize("alteration", [Lagging(), Belt("left_hip_pitch", compliance=2.0, play=0.1)], ids=["lag", "belt"])
+@pytest.mark.parametrize(
+    "alteration", [Lagging(), Belt("left_hip_pitch", compliance=2.0, play=0.1)], ids=["lag", "belt"]
+)
 def test_an_altered_environment_put_back_goes_on_bit_for_bit(design, alteration):
     def environment():
-        return Environment(design, load_task("walk"), simulations=5, seed=4, threads=1, alterations=(alteration,))
+        return Environment(
+            design, load_task("walk"), simulations=5, seed=4, threads=1, alterations=(alteration,)
+        )
 
     actions = 0.5 * np.random.default_rng(0).normal(size=(80, 5, 14))
     first = environment()
@@ -182,7 +242,13 @@ def test_an_altered_environment_put_back_goes_on_bit_for_bit(design, alteration)
         np.testing.assert_array_equal(again.step(action).observations["policy"], observation)
     plain = Environment(design, load_task("walk"), simulations=5, seed=4, threads=1)
     plain.reset()
-    assert np.abs(plain.step(actions[0]).observations["policy"] - environment_step(environment(), actions[0])).max() > 1e-4
+    assert (
+        np.abs(
+            plain.step(actions[0]).observations["policy"]
+            - environment_step(environment(), actions[0])
+        ).max()
+        > 1e-4
+    )
 
 
 def environment_step(environment, action):
@@ -194,16 +260,25 @@ def test_limits_clip_as_the_envelope_does(design):
     envelope = motor_envelope(design)
     rng = np.random.default_rng(0)
     motors = len(envelope.peak_torque)
-    torque, speed = rng.uniform(-3, 3, (400, motors)) * envelope.peak_torque, rng.uniform(-2, 2, (400, motors)) * envelope.no_load_speed
+    torque, speed = (
+        rng.uniform(-3, 3, (400, motors)) * envelope.peak_torque,
+        rng.uniform(-2, 2, (400, motors)) * envelope.no_load_speed,
+    )
     limits = Limits(envelope.no_load_speed, envelope.stall_torque, envelope.peak_torque)
-    np.testing.assert_allclose(limits.clip(torque, speed), clip_torque(envelope, torque, speed), rtol=1e-12)
+    np.testing.assert_allclose(
+        limits.clip(torque, speed), clip_torque(envelope, torque, speed), rtol=1e-12
+    )
 
 
 def test_limits_that_nobody_knows_do_not_limit():
     free = np.full(2, np.inf)
     torque = np.array([[1e6, -1e6]])
-    np.testing.assert_array_equal(Limits(free, free, free).clip(torque, np.array([[5.0, -3.0]])), torque)
-    np.testing.assert_array_equal(Limits(free, free, np.array([3.0, 4.0])).clip(torque, np.zeros((1, 2))), [[3.0, -4.0]])
+    np.testing.assert_array_equal(
+        Limits(free, free, free).clip(torque, np.array([[5.0, -3.0]])), torque
+    )
+    np.testing.assert_array_equal(
+        Limits(free, free, np.array([3.0, 4.0])).clip(torque, np.zeros((1, 2))), [[3.0, -4.0]]
+    )
 
 
 def test_constants_change_for_all_or_one_by_one(design):
@@ -214,7 +289,9 @@ def test_constants_change_for_all_or_one_by_one(design):
     assert np.delete(one.stiffness, place).tolist() == np.delete(machine.stiffness, place).tolist()
     many = machine.changed("stiffness", place, lambda old: old * np.array([1.0, 2.0, 3.0]))
     assert many.stiffness.shape == (3, 14)
-    np.testing.assert_allclose(many.stiffness[:, place], machine.stiffness[place] * np.array([1, 2, 3]))
+    np.testing.assert_allclose(
+        many.stiffness[:, place], machine.stiffness[place] * np.array([1, 2, 3])
+    )
     assert machine.motors[machine.motor("left_toe")] == "left_toe"
     loose = dataclasses.replace(machine, free=np.arange(14) == 2)
     assert loose.rigid_inertia[2] == 0

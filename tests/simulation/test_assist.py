@@ -24,7 +24,9 @@ def test_forward_force():
 @pytest.mark.parametrize(("roll", "pitch"), [(0.1, 0.0), (0.0, 0.1), (-0.1, 0.0), (0.0, -0.1)])
 def test_torque_turns_back_upright(roll, pitch):
     wrench = Assist().wrench(motion_of(roll, pitch), AHEAD, np.zeros(1))
-    np.testing.assert_allclose(wrench[0, 3:], [-TORQUE * np.sin(roll), -TORQUE * np.sin(pitch), 0], atol=1e-9)
+    np.testing.assert_allclose(
+        wrench[0, 3:], [-TORQUE * np.sin(roll), -TORQUE * np.sin(pitch), 0], atol=1e-9
+    )
 
 
 def test_torque_damps_roll_and_pitch_but_not_yaw():

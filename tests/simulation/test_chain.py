@@ -15,14 +15,20 @@ from hyperleg_design.simulation.machine import machine_of
 @pytest.fixture
 def state():
     rng = np.random.default_rng(2)
-    return 0.3 * rng.normal(size=(5, 14)), 2.0 * rng.normal(size=(5, 14)), 0.3 * rng.normal(size=(5, 14))
+    return (
+        0.3 * rng.normal(size=(5, 14)),
+        2.0 * rng.normal(size=(5, 14)),
+        0.3 * rng.normal(size=(5, 14)),
+    )
 
 
 def test_without_alterations_it_is_controller_inverse_and_clip(design, state):
     position, velocity, target = state
     machine = machine_of(design)
     driven = Chain(machine, (), 5, 0.005).drive(position, velocity, target=target)
-    wanted = (machine.stiffness * (target - position) - machine.damping * velocity) @ np.linalg.inv(machine.joint_from_motor).T
+    wanted = (machine.stiffness * (target - position) - machine.damping * velocity) @ np.linalg.inv(
+        machine.joint_from_motor
+    ).T
     speed = velocity @ machine.joint_from_motor
     limits = Limits(machine.no_load_speed, machine.stall_torque, machine.peak_torque)
     np.testing.assert_allclose(driven.command, wanted, rtol=1e-9)
@@ -34,7 +40,9 @@ def test_without_alterations_it_is_controller_inverse_and_clip(design, state):
     assert driven.joint_torque is None
     # power is the same on both sides of the transmission
     power = np.einsum("nj,nj->n", driven.torque @ machine.joint_from_motor.T, velocity)
-    np.testing.assert_allclose(power, np.einsum("nk,nk->n", driven.torque, driven.motor_velocity), rtol=1e-9)
+    np.testing.assert_allclose(
+        power, np.einsum("nk,nk->n", driven.torque, driven.motor_velocity), rtol=1e-9
+    )
 
 
 class _Everything(Live):
@@ -99,11 +107,25 @@ def test_hooks_act_in_order_and_each_on_what_the_one_before_made(design, state):
     chain = Chain(machine, (Everything(),), 5, 0.005)
     driven = chain.drive(position, velocity, target=target)
     (live,) = chain.lives
-    assert live.order == ["begin", "target", "command", "limits", "motor_torque", "motor_damping", "transmitted", "joint_damping", "joint_torque"]
-    wanted = (machine.stiffness * (target + 0.02 - position) - machine.damping * 0.5 * velocity) @ np.linalg.inv(machine.joint_from_motor).T
+    assert live.order == [
+        "begin",
+        "target",
+        "command",
+        "limits",
+        "motor_torque",
+        "motor_damping",
+        "transmitted",
+        "joint_damping",
+        "joint_torque",
+    ]
+    wanted = (
+        machine.stiffness * (target + 0.02 - position) - machine.damping * 0.5 * velocity
+    ) @ np.linalg.inv(machine.joint_from_motor).T
     np.testing.assert_allclose(driven.command, wanted, rtol=1e-9)
     limits = Limits(machine.no_load_speed, machine.stall_torque, np.full(14, 3.0))
-    np.testing.assert_allclose(driven.believed, limits.clip(2 * wanted, driven.motor_velocity), rtol=1e-9)
+    np.testing.assert_allclose(
+        driven.believed, limits.clip(2 * wanted, driven.motor_velocity), rtol=1e-9
+    )
     np.testing.assert_allclose(driven.torque, 0.9 * driven.believed)
     np.testing.assert_allclose(live.torque, driven.torque)
     np.testing.assert_allclose(driven.transmitted, driven.torque + 1.0)

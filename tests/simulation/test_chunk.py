@@ -38,5 +38,7 @@ def test_joint_order_of_the_state_is_the_layouts(make) -> None:
     chunk = environment.chunks[0]
     names = [environment.model.joint(i).name for i in range(1, environment.model.njnt)]
     assert tuple(names) == environment.layout.joints
-    np.testing.assert_array_equal(chunk.motion.joint_position, chunk.batch.state[:, 1 + 7 : 1 + 7 + 14])
+    np.testing.assert_array_equal(
+        chunk.motion.joint_position, chunk.batch.state[:, 1 + 7 : 1 + 7 + 14]
+    )
     environment.close()

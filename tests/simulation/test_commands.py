@@ -2,7 +2,14 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.simulation.commands import SIGHT, VelocityCommands, WaypointCommands, clipped, commander, segment_distance
+from hyperleg_design.simulation.commands import (
+    SIGHT,
+    VelocityCommands,
+    WaypointCommands,
+    clipped,
+    commander,
+    segment_distance,
+)
 from hyperleg_design.simulation.state import read_motion
 
 T_TEST = ((9.14, 0.0), (9.14, 4.57), (9.14, -4.57), (9.14, 0.0), (0.0, 0.0))
@@ -16,7 +23,14 @@ def at(places, yaw=0.0):
 
 
 def test_velocity_commands_keep_their_ranges_and_shares():
-    settings = VelocityCommands(forward_low=0.2, forward_high=1.0, sideways=0.3, turning=0.5, test_share=0.4, standing_share=0.1)
+    settings = VelocityCommands(
+        forward_low=0.2,
+        forward_high=1.0,
+        sideways=0.3,
+        turning=0.5,
+        test_share=0.4,
+        standing_share=0.1,
+    )
     keeper, rng = commander(settings, 5000), np.random.default_rng(0)
     keeper.reset(np.arange(5000), at(np.zeros((5000, 2))), rng)
     values = keeper.vector(None)
@@ -29,7 +43,10 @@ def test_velocity_commands_keep_their_ranges_and_shares():
 
 
 def test_velocity_commands_change_after_their_interval():
-    keeper, rng = commander(VelocityCommands(interval=0.1, test_share=0.0), 3), np.random.default_rng(0)
+    keeper, rng = (
+        commander(VelocityCommands(interval=0.1, test_share=0.0), 3),
+        np.random.default_rng(0),
+    )
     motion = at(np.zeros((3, 2)))
     keeper.reset(np.arange(3), motion, rng)
     first = keeper.vector(None)
@@ -41,7 +58,10 @@ def test_velocity_commands_change_after_their_interval():
 
 
 def test_waypoints_are_drawn_within_range_and_bearing():
-    keeper, rng = commander(WaypointCommands(near=2, far=5, bearing=0.5), 2000), np.random.default_rng(0)
+    keeper, rng = (
+        commander(WaypointCommands(near=2, far=5, bearing=0.5), 2000),
+        np.random.default_rng(0),
+    )
     keeper.reset(np.arange(2000), at(np.full((2000, 2), 3.0), yaw=1.0), rng)
     goal = keeper.judge(at(np.full((2000, 2), 3.0), yaw=1.0))
     assert goal.distance.min() > 2
@@ -54,7 +74,10 @@ def test_waypoints_are_drawn_within_range_and_bearing():
 
 def test_a_course_is_run_in_order_from_where_and_how_the_robot_stands():
     start, yaw = np.array([1.0, -2.0]), 0.7
-    keeper, rng = commander(WaypointCommands(course_share=1.0, courses=(T_TEST,)), 1), np.random.default_rng(0)
+    keeper, rng = (
+        commander(WaypointCommands(course_share=1.0, courses=(T_TEST,)), 1),
+        np.random.default_rng(0),
+    )
     keeper.reset(np.array([0]), at(start, yaw), rng)
     turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
     places = [start + turn @ p for p in T_TEST]
@@ -70,11 +93,16 @@ def test_a_course_is_run_in_order_from_where_and_how_the_robot_stands():
             np.testing.assert_allclose(keeper.last[0], place)
             assert not goal.finished[0]
             np.testing.assert_allclose(goal.distance, np.linalg.norm(places[index + 1] - place))
-    np.testing.assert_allclose(np.linalg.norm(np.diff(np.array([[0, 0], *T_TEST]), axis=0), axis=1).sum(), 36.56)
+    np.testing.assert_allclose(
+        np.linalg.norm(np.diff(np.array([[0, 0], *T_TEST]), axis=0), axis=1).sum(), 36.56
+    )
 
 
 def test_progress_is_counted_once():
-    keeper, rng = commander(WaypointCommands(course_share=1.0, courses=(((5.0, 0.0),),)), 1), np.random.default_rng(0)
+    keeper, rng = (
+        commander(WaypointCommands(course_share=1.0, courses=(((5.0, 0.0),),)), 1),
+        np.random.default_rng(0),
+    )
     keeper.reset(np.array([0]), at([0.0, 0.0]), rng)
     progress = [keeper.judge(at([x, 0.0])).progress[0] for x in (1.0, 0.5, 1.5, 1.5)]
     np.testing.assert_allclose(progress, [1.0, 0.0, 0.5, 0.0])
@@ -93,7 +121,9 @@ def test_distance_from_a_segment():
     points = np.array([[1.0, 1.0], [-3.0, 4.0], [5.0, 0.0], [2.0, -0.5]])
     start, end = np.zeros((4, 2)), np.tile([4.0, 0.0], (4, 1))
     np.testing.assert_allclose(segment_distance(points, start, end), [1.0, 5.0, 1.0, 0.5])
-    np.testing.assert_allclose(segment_distance(points, start, start), np.linalg.norm(points, axis=1))
+    np.testing.assert_allclose(
+        segment_distance(points, start, start), np.linalg.norm(points, axis=1)
+    )
 
 
 def test_clipping_keeps_the_direction():

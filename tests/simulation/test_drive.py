@@ -61,14 +61,18 @@ def test_torque_on_tendons_equals_torque_at_joints(design):
     other.expand("dof_damping")[:] = batch.expand("dof_damping")
     other.state[:] = batch.state
     other.ctrl = 0.0
-    other.qfrc_applied[:, 6:] = np.einsum("jm,nlm->nlj", matrix, torque.reshape(3, 2, -1)).reshape(3, -1)
+    other.qfrc_applied[:, 6:] = np.einsum("jm,nlm->nlj", matrix, torque.reshape(3, 2, -1)).reshape(
+        3, -1
+    )
     batch.step()
     other.step()
     np.testing.assert_allclose(other.qvel, batch.qvel, atol=1e-10)
 
 
 def test_the_native_motor_model_agrees(design):
-    """The robot's own MuJoCo model, with joint friction left out, moves as the simulated one does."""
+    """The robot's own MuJoCo model, with joint friction left out, moves as the simulated one
+    does.
+    """
     _, batch, _, torque, _ = driven(design, friction="explicit")
     batch.qfrc_applied = 0.0
     spec = mujoco_spec(design, friction=False)
@@ -83,15 +87,23 @@ def test_the_native_motor_model_agrees(design):
 
 
 def test_native_dc_motors_at_full_voltage_are_the_envelope(design):
-    """`<dcmotor>` on the tendons with a force range gives the upper bound of the envelope at the tendon's speed."""
+    """`<dcmotor>` on the tendons with a force range gives the upper bound of the envelope at the
+    tendon's speed.
+    """
     envelope = motor_envelope(design)
     spec = mujoco_spec(design, friction=False)
     for index, actuator in enumerate(list(spec.actuators)):
         motor = index % 7
         voltage, peak = 36.0, float(envelope.peak_torque[motor])
         actuator.set_to_dcmotor(
-            motorconst=[0, 0], resistance=0, nominal=[voltage, float(envelope.stall_torque[motor]), float(envelope.no_load_speed[motor])]
-        )  # fmt: skip
+            motorconst=[0, 0],
+            resistance=0,
+            nominal=[
+                voltage,
+                float(envelope.stall_torque[motor]),
+                float(envelope.no_load_speed[motor]),
+            ],
+        )
         actuator.ctrlrange = [-voltage, voltage]
         actuator.forcelimited, actuator.forcerange = 1, [-peak, peak]
     model = spec.compile()
@@ -103,7 +115,9 @@ def test_native_dc_motors_at_full_voltage_are_the_envelope(design):
             data.ctrl[:] = sign * 36.0
             mujoco.mj_forward(model, data)
             lower, upper = torque_limits(envelope, data.ten_velocity.reshape(2, 7))
-            np.testing.assert_allclose(data.actuator_force.reshape(2, 7), upper if sign > 0 else lower, rtol=1e-6)
+            np.testing.assert_allclose(
+                data.actuator_force.reshape(2, 7), upper if sign > 0 else lower, rtol=1e-6
+            )
 
 
 @pytest.mark.parametrize("space", ["joint", "motor"])
@@ -112,7 +126,13 @@ def test_implicit_and_explicit_friction_agree_as_the_step_shrinks(design, space)
     for step in (1e-4, 5e-5):
         ends = []
         for kind in ("implicit", "explicit"):
-            _, batch, _, _, _ = driven(design, friction=kind, friction_space=space, time_step=step, integrator="implicitfast")
+            _, batch, _, _, _ = driven(
+                design,
+                friction=kind,
+                friction_space=space,
+                time_step=step,
+                integrator="implicitfast",
+            )
             before = batch.qvel.copy()
             batch.step()
             ends.append((batch.qvel - before) / step)
@@ -131,7 +151,9 @@ def test_explicit_friction_is_what_is_printed(design):
 
 
 def test_implicit_friction_does_not_make_feet_chatter(finely):
-    """In the air at 200 Hz the printed explicit friction shakes the toe; the implicit one lets it follow smoothly."""
+    """In the air at 200 Hz the printed explicit friction shakes the toe; the implicit one lets it
+    follow smoothly.
+    """
     shaking = {}
     for kind in ("implicit", "explicit"):
         environment = finely(0.005, friction=kind)

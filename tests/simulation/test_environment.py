@@ -29,7 +29,13 @@ def run(environment, actions):
 def test_same_seed_same_bytes_for_any_number_of_threads(make, task):
     found = []
     for threads in (1, 2, 3):
-        environment = make(task, simulations=64, seed=7, threads=threads, randomisation=Randomisation(push_speed=0.5, push_interval=0.2))
+        environment = make(
+            task,
+            simulations=64,
+            seed=7,
+            threads=threads,
+            randomisation=Randomisation(push_speed=0.5, push_interval=0.2),
+        )
         found.append(run(environment, actions_of(environment, 45, spread=1.0)))
     for other in found[1:]:
         assert all(a.tobytes() == b.tobytes() for a, b in zip(found[0], other, strict=True))
@@ -91,7 +97,10 @@ def test_ended_episodes_start_anew(make):
             assert step.terminated[simulation] or step.truncated[simulation]
             assert environment.episode_step[simulation] == 0
             assert step.episode_steps[row] == before[simulation] + 1
-            last, first = step.final_observations["policy"][row], step.observations["policy"][simulation]
+            last, first = (
+                step.final_observations["policy"][row],
+                step.observations["policy"][simulation],
+            )
             assert abs(last[5]) < 0.9 or not np.allclose(last, first)
             np.testing.assert_allclose(first[3:6], [0, 0, -1], atol=1e-6)  # upright again
             assert np.all(first[-32:-2] == 0)  # no actions yet
@@ -110,7 +119,15 @@ def test_new_starts_stand_on_the_floor(make):
 
 
 def test_episodes_time_out_without_counting_as_falls(make, design):
-    stiff = {f"joints.{j}.stiffness": v for j, v in (("hip_pitch", 800.0), ("knee", 800.0), ("ankle_pitch", 800.0), ("hip_roll", 300.0))}
+    stiff = {
+        f"joints.{j}.stiffness": v
+        for j, v in (
+            ("hip_pitch", 800.0),
+            ("knee", 800.0),
+            ("ankle_pitch", 800.0),
+            ("hip_roll", 300.0),
+        )
+    }
     environment = make(robot=design.with_values(stiff), simulations=2, limits=Limits(duration=0.2))
     environment.reset()
     steps = [environment.step(np.zeros((2, 14))) for _ in range(10)]
@@ -188,7 +205,9 @@ def test_no_assist_unless_given_and_it_helps(make):
     assert make().assist is None
     survivors = []
     for assist in (None, Assist(1.0)):
-        environment = make(simulations=4, assist=assist, commands={"test_share": 0.0, "standing_share": 1.0})
+        environment = make(
+            simulations=4, assist=assist, commands={"test_share": 0.0, "standing_share": 1.0}
+        )
         environment.reset()
         alive = np.ones(4, bool)
         for _ in range(200):
@@ -209,7 +228,10 @@ def test_a_batch_of_designs_gives_each_simulation_its_own_robot(make, design, fr
         "contact.friction": [0.5, 1.0, 0.8],
     }
     batch = design.with_values({path: np.array(v) for path, v in values.items()})
-    settings = {"physics": Physics(friction=friction), "start": Start(joint_position=0, tilt=0, yaw=0)}
+    settings = {
+        "physics": Physics(friction=friction),
+        "start": Start(joint_position=0, tilt=0, yaw=0),
+    }
     together = make(robot=batch, simulations=3, **settings)
     together.reset()
     actions = actions_of(together, 8)
@@ -220,11 +242,15 @@ def test_a_batch_of_designs_gives_each_simulation_its_own_robot(make, design, fr
         alone.reset()
         for action in actions:
             alone.step(action[i : i + 1])
-        np.testing.assert_allclose(together.chunks[0].drive.qpos[i], alone.chunks[0].drive.qpos[0], atol=1e-6)
+        np.testing.assert_allclose(
+            together.chunks[0].drive.qpos[i], alone.chunks[0].drive.qpos[0], atol=1e-6
+        )
 
 
 def test_a_large_batch_of_designs_is_split(make, design):
-    batch = design.with_values({"pelvis.mass": np.linspace(12, 18, 34), "toe.mass": np.array([0.3])})
+    batch = design.with_values(
+        {"pelvis.mass": np.linspace(12, 18, 34), "toe.mass": np.array([0.3])}
+    )
     environment = make(robot=batch, simulations=34)
     environment.reset()
     assert len(environment.chunks) == 2
@@ -277,7 +303,10 @@ def test_signals_agree_with_the_reward_of_power(make, design):
     environment.set_reward("power", -1.0)
     for action in actions_of(environment, 5):
         step = environment.step(action)
-    signals, heat = environment.signals(), environment.chunks[0].drive.model.envelope.power_constant.reshape(3, 1, -1)
+    signals, heat = (
+        environment.signals(),
+        environment.chunks[0].drive.model.envelope.power_constant.reshape(3, 1, -1),
+    )
     torque, speed = signals["motor_torque"], signals["motor_velocity"]
     assert torque.shape == (3, 4, 14)
     power = (heat * torque**2 + torque * speed).sum(-1).mean(1)
@@ -296,7 +325,9 @@ def test_signals_of_a_step_that_ends_an_episode_are_of_that_episode(make):
         signals = environment.signals()
         for simulation in step.ended:
             _, x, y, _ = signals["base_orientation"][simulation, -1]
-            assert signals["base_position"][simulation, -1, 2] < 0.6 or 1 - 2 * (x * x + y * y) < 0.7
+            assert (
+                signals["base_position"][simulation, -1, 2] < 0.6 or 1 - 2 * (x * x + y * y) < 0.7
+            )
             assert np.all(np.abs(signals["motor_torque"][simulation]).sum(-1) > 0)
         if len(step.ended):
             return

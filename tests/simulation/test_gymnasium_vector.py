@@ -12,7 +12,9 @@ def test_vector_interface(make):
     assert vector.observation_space.contains(observations)
     finals = 0
     for _ in range(80):
-        observations, reward, terminated, truncated, info = vector.step(np.full((4, 14), 2.0, np.float32))
+        observations, reward, terminated, truncated, info = vector.step(
+            np.full((4, 14), 2.0, np.float32)
+        )
         assert vector.observation_space.contains(observations)
         assert reward.shape == terminated.shape == truncated.shape == (4,)
         if "final_obs" in info:

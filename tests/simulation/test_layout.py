@@ -7,7 +7,9 @@ from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.layout import GRAVITY, layout_of
 
 
-@pytest.mark.parametrize(("name", "joints", "motors"), [("toe", 14, 14), ("toe_locked", 12, 14), ("toe_removed", 12, 12)])
+@pytest.mark.parametrize(
+    ("name", "joints", "motors"), [("toe", 14, 14), ("toe_locked", 12, 14), ("toe_removed", 12, 12)]
+)
 def test_both_legs_in_the_same_order(name: str, joints: int, motors: int) -> None:
     layout = layout_of(load_design(name))
     assert (len(layout.joints), len(layout.motors)) == (joints, motors)
@@ -29,5 +31,10 @@ def test_pads_lie_side_by_side_mirrored() -> None:
 def test_weight_and_names() -> None:
     layout = layout_of(load_design("toe"))
     assert layout.weight == pytest.approx(32.0 * GRAVITY, rel=1e-6)
-    assert [layout.joints[i] for i in layout.hip_sideways] == ["left_hip_yaw", "left_hip_roll", "right_hip_yaw", "right_hip_roll"]
+    assert [layout.joints[i] for i in layout.hip_sideways] == [
+        "left_hip_yaw",
+        "left_hip_roll",
+        "right_hip_yaw",
+        "right_hip_roll",
+    ]
     assert layout.joint_indices("tail").size == 0

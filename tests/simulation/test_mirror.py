@@ -17,10 +17,20 @@ def test_mirroring_twice_gives_the_same(design, parts):
     assert sorted(mirrored.index) == list(range(size(parts, layout)))
 
 
-@pytest.mark.parametrize(("task", "variant"), [("walk", "toe"), ("goal", "toe"), ("walk_paper", "toe_removed")])
+@pytest.mark.parametrize(
+    ("task", "variant"), [("walk", "toe"), ("goal", "toe"), ("walk_paper", "toe_removed")]
+)
 def test_a_mirrored_robot_moves_as_the_mirror_image(design, make, task, variant):
-    """Two simulations, one started as the mirror image of the other, with mirrored actions, stay mirror images."""
-    environment = make(task, robot=ablate(design, variant), simulations=2, seed=4, start=Start(joint_position=0.1, tilt=0.05))
+    """Two simulations, one started as the mirror image of the other, with mirrored actions, stay
+    mirror images.
+    """
+    environment = make(
+        task,
+        robot=ablate(design, variant),
+        simulations=2,
+        seed=4,
+        start=Start(joint_position=0.1, tilt=0.05),
+    )
     environment.reset()
     maps = environment.mirror_maps()
     chunk = environment.chunks[0]

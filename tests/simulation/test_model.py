@@ -4,7 +4,13 @@ import pytest
 
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.simulation.layout import layout_of
-from hyperleg_design.simulation.model import foot_loads, pad_forces, pad_loads, pad_slip, simulation_model
+from hyperleg_design.simulation.model import (
+    foot_loads,
+    pad_forces,
+    pad_loads,
+    pad_slip,
+    simulation_model,
+)
 from hyperleg_design.simulation.settings import Physics
 
 
@@ -33,7 +39,10 @@ def test_pad_sensors_are_the_contact_forces(design, cone):
     assert np.all(found[:, 0] < 0)  # friction against the motion
     np.testing.assert_allclose(pad_loads(data.sensordata), found[:, 2])
     np.testing.assert_allclose(pad_slip(data.sensordata), np.hypot(0.5, 0.2))
-    np.testing.assert_allclose(foot_loads(found[:, 2]), [found[layout.pad_foot == 0, 2].sum(), found[layout.pad_foot == 1, 2].sum()])
+    np.testing.assert_allclose(
+        foot_loads(found[:, 2]),
+        [found[layout.pad_foot == 0, 2].sum(), found[layout.pad_foot == 1, 2].sum()],
+    )
 
 
 def test_pads_off_the_floor_read_zero(design):

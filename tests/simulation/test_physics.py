@@ -1,4 +1,6 @@
-"""Whether the simulated physics is right: dynamics against Pinocchio, energy, weight, convergence."""
+"""Whether the simulated physics is right: dynamics against Pinocchio, energy, weight,
+convergence.
+"""
 
 import mujoco
 import numpy as np
@@ -51,8 +53,12 @@ def _check_dynamics(robot, environment, simulation):
     limits = np.zeros(len(v))
     for row in range(data.nefc):  # joints at their stops push as well
         if data.efc_type[row] == mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT:
-            limits[model.jnt_dofadr[data.efc_id[row]]] += _limit_sign(model, data, row) * data.efc_force[row]
-    np.testing.assert_allclose(pin.inverse_dynamics(q, v, a), force + limits, atol=2e-6 * (1 + np.abs(force).max()))
+            limits[model.jnt_dofadr[data.efc_id[row]]] += (
+                _limit_sign(model, data, row) * data.efc_force[row]
+            )
+    np.testing.assert_allclose(
+        pin.inverse_dynamics(q, v, a), force + limits, atol=2e-6 * (1 + np.abs(force).max())
+    )
     return data.ncon
 
 
@@ -64,7 +70,9 @@ def _limit_sign(model, data, row):
 
 
 def energy_residual(environment, duration=0.3, drop=0.03):
-    """Change of energy less what went in, over a drop onto the floor with all joints moving [J]; work that went in [J]."""
+    """Change of energy less what went in, over a drop onto the floor with all joints moving [J];
+    work that went in [J].
+    """
     environment.recording = True
     environment.reset()
     chunk = environment.chunks[0]
@@ -90,18 +98,34 @@ def energy_residual(environment, duration=0.3, drop=0.03):
     return energy[-1] - energy[0] - put_in, np.sum(driven) * step
 
 
-@pytest.mark.parametrize("physics", [{}, {"friction": "explicit"}, {"friction_space": "motor", "integrator": "implicitfast"}])
+@pytest.mark.parametrize(
+    "physics",
+    [{}, {"friction": "explicit"}, {"friction_space": "motor", "integrator": "implicitfast"}],
+)
 def test_energy_closes_to_the_order_of_the_integrator(finely, physics):
-    """Work in equals kinetic (rotors too) plus potential energy plus losses; halving the step halves the rest."""
-    (coarse, work), (fine, _) = (energy_residual(finely(step, **physics)) for step in (5e-4, 2.5e-4))
+    """Work in equals kinetic (rotors too) plus potential energy plus losses; halving the step
+    halves the rest.
+    """
+    (coarse, work), (fine, _) = (
+        energy_residual(finely(step, **physics)) for step in (5e-4, 2.5e-4)
+    )
     assert abs(fine) < 0.05 * work
     assert abs(fine) == pytest.approx(abs(coarse) / 2, rel=0.2)
 
 
 def stiff(design):
     """Joints that hold the robot up without balance."""
-    gains = {"hip_pitch": 800.0, "hip_roll": 300.0, "knee": 800.0, "ankle_pitch": 800.0, "ankle_roll": 400.0, "toe": 100.0}
-    return design.with_values({f"joints.{joint}.stiffness": value for joint, value in gains.items()})
+    gains = {
+        "hip_pitch": 800.0,
+        "hip_roll": 300.0,
+        "knee": 800.0,
+        "ankle_pitch": 800.0,
+        "ankle_roll": 400.0,
+        "toe": 100.0,
+    }
+    return design.with_values(
+        {f"joints.{joint}.stiffness": value for joint, value in gains.items()}
+    )
 
 
 def test_standing_feet_carry_the_weight(design, finely):
@@ -120,7 +144,9 @@ def test_standing_feet_carry_the_weight(design, finely):
 
 
 def test_momentum_changes_by_gravity_and_contact_forces_alone(finely, design):
-    """Over a landing, mass times the change of the centre of mass's velocity is the impulse of weight and pads."""
+    """Over a landing, mass times the change of the centre of mass's velocity is the impulse of
+    weight and pads.
+    """
     environment = finely(0.0005)
     environment.recording = True
     environment.reset()
@@ -130,7 +156,9 @@ def test_momentum_changes_by_gravity_and_contact_forces_alone(finely, design):
     for _ in range(10):
         momentum.append(_momentum(environment.model, chunk.drive.qpos[0], chunk.drive.qvel[0]))
         environment.step(REACH[None])
-        force = environment.signals()["pad_force"][0].sum(1) - np.array([0, 0, environment.layout.weight])
+        force = environment.signals()["pad_force"][0].sum(1) - np.array(
+            [0, 0, environment.layout.weight]
+        )
         impulse += force.sum(0) * environment.task.physics.time_step
     change = _momentum(environment.model, chunk.drive.qpos[0], chunk.drive.qvel[0]) - momentum[0]
     assert np.linalg.norm(impulse) > 3
@@ -154,14 +182,19 @@ def settled_drop(environment, duration=0.16):
     for _ in range(round(duration / 0.02)):
         environment.step(REACH[None] * 0.3)
         peak = max(peak, environment.signals()["pad_force"][0, ..., 2].sum(-1).max())
-    return np.concatenate([environment.chunks[0].drive.qpos[0, [0, 2]], environment.chunks[0].drive.qpos[0, 7:]]), peak
+    return np.concatenate(
+        [environment.chunks[0].drive.qpos[0, [0, 2]], environment.chunks[0].drive.qpos[0, 7:]]
+    ), peak
 
 
 @pytest.mark.slow
 def test_the_time_step_converges(finely):
     """Positions tend to a limit at first order, and 200 Hz is near it."""
     limit, peak = settled_drop(finely(0.0001))
-    errors = [np.abs(settled_drop(finely(step))[0] - limit).max() for step in (0.005, 0.0025, 0.001, 0.0005)]
+    errors = [
+        np.abs(settled_drop(finely(step))[0] - limit).max()
+        for step in (0.005, 0.0025, 0.001, 0.0005)
+    ]
     assert errors[0] < 0.05  # [m, rad] after 0.16 s with a landing
     assert errors[3] < 0.35 * errors[1]
     assert settled_drop(finely(0.0005))[1] == pytest.approx(peak, rel=0.05)
@@ -178,7 +211,11 @@ def test_the_solver_has_converged(finely):
 @pytest.mark.slow
 def test_cone_torsion_and_integrator_change_little(finely):
     usual, peak = settled_drop(finely(0.005))
-    for physics in ({"cone": "elliptic"}, {"contact_dimensions": 4}, {"integrator": "implicitfast"}):
+    for physics in (
+        {"cone": "elliptic"},
+        {"contact_dimensions": 4},
+        {"integrator": "implicitfast"},
+    ):
         other, other_peak = settled_drop(finely(0.005, **physics))
         np.testing.assert_allclose(other, usual, atol=0.01)
         assert other_peak == pytest.approx(peak, rel=0.03)

@@ -15,7 +15,9 @@ def robot(design):
 
 @pytest.fixture
 def state(robot):
-    """Two robots that stand upright, facing along y, moving at 1.2 m/s ahead and 0.1 m/s to their left."""
+    """Two robots that stand upright, facing along y, moving at 1.2 m/s ahead and 0.1 m/s to their
+    left.
+    """
     layout, count = robot.layout, 2
     qpos = np.zeros((count, 21))
     qpos[:, 2], qpos[:, 3], qpos[:, 6] = 0.76, np.sqrt(0.5), np.sqrt(0.5)
@@ -25,16 +27,32 @@ def state(robot):
     load = np.zeros((4, count, 12))
     load[:, 0] = 314 / 12
     goal = Goal(
-        offset=np.array([[2.0, 0.0], [0.0, 3.0]]), distance=np.array([2.0, 3.0]), heading_error=np.array([0.0, np.pi / 2]),
-        following=np.zeros((2, 2)), speed_cap=np.array([1.0, 3.0]), progress=np.array([0.02, 0.0]), arrived=np.array([False, True]),
-        deviation=np.array([0.3, 2.0]), finished=np.zeros(2, bool),
-    )  # fmt: skip
+        offset=np.array([[2.0, 0.0], [0.0, 3.0]]),
+        distance=np.array([2.0, 3.0]),
+        heading_error=np.array([0.0, np.pi / 2]),
+        following=np.zeros((2, 2)),
+        speed_cap=np.array([1.0, 3.0]),
+        progress=np.array([0.02, 0.0]),
+        arrived=np.array([False, True]),
+        deviation=np.array([0.3, 2.0]),
+        finished=np.zeros(2, bool),
+    )
     return State(
-        motion=read_motion(qpos, qvel), action=np.full((count, 14), 0.5), previous_action=np.zeros((count, 14)),
-        command=np.array([[1.2, 0.1, 0.0], [1.0, 0.0, 0.4]]), motor_torque=np.zeros((4, count, 14)), motor_velocity=np.zeros((4, count, 14)),
-        pad_load=load, foot_load=load.reshape(4, count, 2, 6).sum(-1), pad_slip=np.full((count, 12), 0.2), power=np.array([100.0, -5.0]),
-        thermal_excess=np.array([0.0, 2.0]), phase=np.array([0.1, 0.7]), terminated=np.array([False, True]), goal=goal,
-    )  # fmt: skip
+        motion=read_motion(qpos, qvel),
+        action=np.full((count, 14), 0.5),
+        previous_action=np.zeros((count, 14)),
+        command=np.array([[1.2, 0.1, 0.0], [1.0, 0.0, 0.4]]),
+        motor_torque=np.zeros((4, count, 14)),
+        motor_velocity=np.zeros((4, count, 14)),
+        pad_load=load,
+        foot_load=load.reshape(4, count, 2, 6).sum(-1),
+        pad_slip=np.full((count, 12), 0.2),
+        power=np.array([100.0, -5.0]),
+        thermal_excess=np.array([0.0, 2.0]),
+        phase=np.array([0.1, 0.7]),
+        terminated=np.array([False, True]),
+        goal=goal,
+    )
 
 
 def value(name, state, robot, **parameters):
@@ -43,8 +61,14 @@ def value(name, state, robot, **parameters):
 
 def test_table_ii_is_all_there_and_marked():
     assert {n for n, t in TERMS.items() if t.paper} == {
-        "termination", "power", "thermal", "linear_velocity", "angular_velocity", "goal_arrival", "position_progress",
-    }  # fmt: skip
+        "termination",
+        "power",
+        "thermal",
+        "linear_velocity",
+        "angular_velocity",
+        "goal_arrival",
+        "position_progress",
+    }
     assert all(t.description for t in TERMS.values())
 
 
@@ -52,14 +76,19 @@ def test_terms_of_table_ii(state, robot):
     np.testing.assert_array_equal(value("termination", state, robot), [0, 1])
     np.testing.assert_array_equal(value("power", state, robot), [100, -5])
     np.testing.assert_array_equal(value("thermal", state, robot), [0, 2])
-    np.testing.assert_allclose(value("linear_velocity", state, robot), [1.0, np.exp(-(0.2**2 + 0.1**2) / 0.1)])
-    np.testing.assert_allclose(value("angular_velocity", state, robot), [1.0, np.exp(-(0.4**2) / 0.2)])
+    np.testing.assert_allclose(
+        value("linear_velocity", state, robot), [1.0, np.exp(-(0.2**2 + 0.1**2) / 0.1)]
+    )
+    np.testing.assert_allclose(
+        value("angular_velocity", state, robot), [1.0, np.exp(-(0.4**2) / 0.2)]
+    )
     np.testing.assert_array_equal(value("goal_arrival", state, robot), [0, 1])
     np.testing.assert_array_equal(value("position_progress", state, robot), [0.02, 0])
 
 
 def test_contact_terms(state, robot):
-    # phases 0.1 and 0.7: the left foot should stand, then swing; the right one swings? 0.6 and 0.2 both stand
+    # phases 0.1 and 0.7: the left foot should stand, then swing; the right one swings? 0.6 and 0.2
+    # both stand
     np.testing.assert_array_equal(rewards.stance(state.phase, 0.62), [[True, True], [False, True]])
     np.testing.assert_array_equal(value("contact_match", state, robot), [1.0, 0.5])
     np.testing.assert_array_equal(value("flight", state, robot), [0.0, 1.0])
@@ -75,7 +104,10 @@ def test_posture_terms(state, robot):
     np.testing.assert_allclose(value("action_rate", state, robot), 14 * 0.25)
     np.testing.assert_allclose(value("roll_pitch_rate", state, robot), 0.0)
     motion = state.motion
-    motion.joint_position[0, [0, 8]] += 0.1, -0.2  # left yaw and right roll, which also nears its stop at -5 deg
+    motion.joint_position[0, [0, 8]] += (
+        0.1,
+        -0.2,
+    )  # left yaw and right roll, which also nears its stop at -5 deg
     motion.joint_position[1, 3] = 3.0  # a knee past 150 deg
     motion.angular_velocity[0] = 1.0, 2.0, 3.0
     np.testing.assert_allclose(value("hip_deviation", state, robot), [0.3, 0.0])

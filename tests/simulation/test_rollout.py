@@ -24,7 +24,9 @@ def test_recording_is_deterministic_and_whole(make):
 
 
 def test_first_end_is_where_the_first_episode_ends(make):
-    found = rollout(make(simulations=4), lambda observations: np.full((4, 14), 2.0), 120, keep=["base_position"])
+    found = rollout(
+        make(simulations=4), lambda observations: np.full((4, 14), 2.0), 120, keep=["base_position"]
+    )
     assert list(found.signals) == ["base_position"]
     for simulation, end in enumerate(found.first_end):
         assert found.ending[simulation, end] != 0
@@ -32,7 +34,12 @@ def test_first_end_is_where_the_first_episode_ends(make):
 
 
 def test_it_can_be_stopped(make):
-    found = rollout(make(simulations=2), lambda o: np.zeros((2, 14)), 50, each_step=lambda number, ending: number == 4)
+    found = rollout(
+        make(simulations=2),
+        lambda o: np.zeros((2, 14)),
+        50,
+        each_step=lambda number, ending: number == 4,
+    )
     assert found.ending.shape == (2, 5)
     assert list(found.first_end) == [5, 5]
 

@@ -15,9 +15,13 @@ from hyperleg_design.simulation.tasks import load_task
 @pytest.mark.parametrize("task", ["walk", "goal"])
 def test_an_environment_put_back_goes_on_bit_for_bit(hyperleg: Design, task: str) -> None:
     def made() -> Environment:
-        return Environment(hyperleg, load_task(task), simulations=20, seed=4, threads=1, assist=Assist(0.5))
+        return Environment(
+            hyperleg, load_task(task), simulations=20, seed=4, threads=1, assist=Assist(0.5)
+        )
 
-    actions = np.random.default_rng(0).normal(size=(150, 20, 14))  # long enough for falls and new starts
+    actions = np.random.default_rng(0).normal(
+        size=(150, 20, 14)
+    )  # long enough for falls and new starts
     first = made()
     first.reset()
     for action in actions[:70]:
@@ -52,4 +56,9 @@ def test_of_another_environment(hyperleg: Design) -> None:
     with pytest.raises(InputError, match="must be 4"):
         put_snapshot(Environment(hyperleg, load_task("walk"), simulations=4, threads=1), snapshot)
     with pytest.raises(InputError, match="another robot"):
-        put_snapshot(Environment(ablate(hyperleg, "toe_removed"), load_task("walk"), simulations=3, threads=1), snapshot)
+        put_snapshot(
+            Environment(
+                ablate(hyperleg, "toe_removed"), load_task("walk"), simulations=3, threads=1
+            ),
+            snapshot,
+        )

@@ -21,7 +21,13 @@ def test_shipped_tasks_read():
 def test_paper_presets_are_table_ii():
     walk, goal = load_task("walk_paper"), load_task("goal_paper")
     weights = {n: r.weight for n, r in walk.rewards.items()}
-    assert weights == {"termination": -200, "power": -1e-4, "thermal": -10, "linear_velocity": 2.5, "angular_velocity": 0.5}
+    assert weights == {
+        "termination": -200,
+        "power": -1e-4,
+        "thermal": -10,
+        "linear_velocity": 2.5,
+        "angular_velocity": 0.5,
+    }
     assert walk.rewards["linear_velocity"].parameters == {"width": 0.1}
     assert walk.rewards["angular_velocity"].parameters == {"width": 0.2}
     assert goal.rewards["goal_arrival"].weight == 150
@@ -51,7 +57,10 @@ def test_deviations_are_declared():
         ({"rewards": {"power": "much"}}, "expects a number"),
         ({"observations": {"policy": ["proprioception"]}}, "critic"),
         ({"observations": {"policy": ["smell"], "critic": ["proprioception"]}}, "smell"),
-        ({"observations": {"policy": ["waypoint"], "critic": ["proprioception"]}}, "kind waypoints"),
+        (
+            {"observations": {"policy": ["waypoint"], "critic": ["proprioception"]}},
+            "kind waypoints",
+        ),
         ({"commands": {"kind": "dance"}}, "one of velocity, waypoints"),
         ({"commands": {"kind": "velocity", "forwrd_low": 1}}, "did you mean forward_low"),
         ({"commands": {"kind": "waypoints", "courses": [[1, 2]]}}, "lists of points|list of lists"),
@@ -78,7 +87,8 @@ def test_a_missing_section_or_file_is_named(tmp_path):
 def test_a_user_file_is_read(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(
-        "name: mine\ncommands: {kind: velocity}\nobservations: {policy: [proprioception], critic: [privileged]}\nrewards: {power: -1e-4}\n"
+        "name: mine\ncommands: {kind: velocity}\nobservations: {policy: [proprioception], critic: "
+        "[privileged]}\nrewards: {power: -1e-4}\n"
     )
     task = load_task(path)
     assert task.rewards["power"].weight == -1e-4

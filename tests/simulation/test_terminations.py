@@ -2,7 +2,16 @@ import numpy as np
 
 from hyperleg_design.simulation.settings import Limits
 from hyperleg_design.simulation.state import read_motion
-from hyperleg_design.simulation.terminations import COURSE_FINISHED, LOW, OFF_PATH, RUNNING, TILTED, TIME_OUT, ending, fell
+from hyperleg_design.simulation.terminations import (
+    COURSE_FINISHED,
+    LOW,
+    OFF_PATH,
+    RUNNING,
+    TILTED,
+    TIME_OUT,
+    ending,
+    fell,
+)
 
 
 class _Goal:
@@ -18,7 +27,9 @@ def test_each_way_to_end():
     goal = _Goal([0, 0, 0, 0, 5, 5, 0], [False] * 6 + [True])
     steps = np.array([10, 10, 10, 1000, 1000, 10, 1000])
     code = ending(read_motion(qpos, np.zeros((7, 20))), goal, steps, Limits(), 0.02)
-    np.testing.assert_array_equal(code, [RUNNING, LOW, TILTED, TIME_OUT, LOW, OFF_PATH, COURSE_FINISHED])
+    np.testing.assert_array_equal(
+        code, [RUNNING, LOW, TILTED, TIME_OUT, LOW, OFF_PATH, COURSE_FINISHED]
+    )
     np.testing.assert_array_equal(fell(code), [False, True, True, False, True, False, False])
     without = ending(read_motion(qpos, np.zeros((7, 20))), None, steps, Limits(), 0.02)
     np.testing.assert_array_equal(without, [RUNNING, LOW, TILTED, TIME_OUT, LOW, RUNNING, TIME_OUT])

@@ -6,7 +6,9 @@ from hyperleg_design.simulation.thermal import ThermalState
 
 
 def test_average_of_squares_makes_the_penalty_memoryless():
-    """With the margin's own time constant the penalty is the present overload over T, whatever came before."""
+    """With the margin's own time constant the penalty is the present overload over T, whatever came
+    before.
+    """
     rng = np.random.default_rng(0)
     state = ThermalState(Thermal(), (5, 3))
     for _ in range(50):
@@ -46,7 +48,9 @@ def test_time_constant():
 
 
 def test_the_readings_differ_where_the_sign_changes():
-    square, signed = (ThermalState(Thermal(reading=r), (1, 1)) for r in ("ema_of_square", "square_of_ema"))
+    square, signed = (
+        ThermalState(Thermal(reading=r), (1, 1)) for r in ("ema_of_square", "square_of_ema")
+    )
     for step in range(1000):
         for state in (square, signed):
             state.advance(np.full((4, 1, 1), 2.0 * (-1) ** step), 0.02)

@@ -15,10 +15,19 @@ INERTIA, ROTOR, RATIO, STEP = 0.05, 2e-4, 8.0, 0.005
 def machine(rotor=ROTOR, ratio=RATIO):
     free = np.array([np.inf])
     return Machine(
-        joints=("j",), motors=("m",), joint_from_motor=np.array([[ratio]]), motor_from_joint=np.array([[1 / ratio]]), stiffness=np.zeros(1),
-        damping=np.zeros(1), rotor_inertia=np.array([rotor]), no_load_speed=free, stall_torque=free, peak_torque=free, power_constant=np.zeros(1),
+        joints=("j",),
+        motors=("m",),
+        joint_from_motor=np.array([[ratio]]),
+        motor_from_joint=np.array([[1 / ratio]]),
+        stiffness=np.zeros(1),
+        damping=np.zeros(1),
+        rotor_inertia=np.array([rotor]),
+        no_load_speed=free,
+        stall_torque=free,
+        peak_torque=free,
+        power_constant=np.zeros(1),
         rated_torque=free,
-    )  # fmt: skip
+    )
 
 
 def run(belt, torque, steps, step=STEP, speed=0.0):
@@ -48,10 +57,20 @@ def equation(stiffness, damping, play, torque, steps, step=STEP, stiffening=0.0)
     def rate(time, state):
         stretch = state[0] - RATIO * state[2]
         beyond = stretch - np.clip(stretch, -play / 2, play / 2)
-        pull = stiffness * (1 + (stiffening * beyond) ** 2) * beyond + (abs(stretch) > play / 2) * damping * (state[1] - RATIO * state[3])
+        pull = stiffness * (1 + (stiffening * beyond) ** 2) * beyond + (
+            abs(stretch) > play / 2
+        ) * damping * (state[1] - RATIO * state[3])
         return [state[1], (torque(time) - pull) / ROTOR, state[3], RATIO * pull / INERTIA]
 
-    found = solve_ivp(rate, (0, steps * step), np.zeros(4), t_eval=np.arange(steps) * step, max_step=2e-4, rtol=1e-8, atol=1e-10)
+    found = solve_ivp(
+        rate,
+        (0, steps * step),
+        np.zeros(4),
+        t_eval=np.arange(steps) * step,
+        max_step=2e-4,
+        rtol=1e-8,
+        atol=1e-10,
+    )
     return found.y
 
 
@@ -87,7 +106,9 @@ def test_a_belt_that_stiffens_moves_the_joint_as_its_equation_says():
 def test_a_resonance_keeps_its_frequency_and_its_energy_at_200_hertz():
     stiffness = stiffness_of(15.0)
     # an even push for half a period leaves both masses ringing
-    q, _v, rotor = run(Belt("m", 1 / stiffness, 0.0, 0.0), lambda time: 0.2 if time < 0.03 else 0.0, 600)
+    q, _v, rotor = run(
+        Belt("m", 1 / stiffness, 0.0, 0.0), lambda time: 0.2 if time < 0.03 else 0.0, 600
+    )
     stretch_speed = rotor - RATIO * np.gradient(q, STEP)
     window = stretch_speed[40:552]
     spectrum = np.abs(np.fft.rfft((window - window.mean()) * np.hanning(len(window)), 8192))
@@ -98,7 +119,9 @@ def test_a_resonance_keeps_its_frequency_and_its_energy_at_200_hertz():
 
 def test_momentum_is_that_of_the_torque():
     for play, error in ((0.0, 1e-6), (0.1, 0.02)):  # exact where the belt is linear
-        _q, v, rotor = run(Belt("m", 2e-2, play, 1e-3), lambda time: 0.3 if time < 0.1 else 0.0, 200)
+        _q, v, rotor = run(
+            Belt("m", 2e-2, play, 1e-3), lambda time: 0.3 if time < 0.1 else 0.0, 200
+        )
         # of the joint's side over the ratio, so that belt torque cancels
         np.testing.assert_allclose(ROTOR * rotor[60:] + INERTIA / RATIO * v[60:], 0.03, rtol=error)
 
@@ -135,7 +158,9 @@ def test_simulations_differ_and_rigid_ones_keep_their_rotor():
 
 
 def test_belts_of_one_motor_become_one():
-    found = joined([Belt("a", 1.0, 0.1), Belt("b", 1.0), Belt("a", 2.0, 0.2, 0.5), Belt("a", 0.0, 0.0, 0.5)])
+    found = joined(
+        [Belt("a", 1.0, 0.1), Belt("b", 1.0), Belt("a", 2.0, 0.2, 0.5), Belt("a", 0.0, 0.0, 0.5)]
+    )
     assert [b.motor for b in found] == ["a", "b"]
     assert found[0].compliance == pytest.approx(3.0)
     assert found[0].play == pytest.approx(0.3)

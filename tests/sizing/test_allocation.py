@@ -16,7 +16,9 @@ from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
 WEIGHT = 32.0 * 9.81
 
 
-def _problem(variant: str = "toe", wide: float = 1.0, acceleration: np.ndarray | None = None) -> dict:
+def _problem(
+    variant: str = "toe", wide: float = 1.0, acceleration: np.ndarray | None = None
+) -> dict:
     design = load_design(variant=variant)
     model = rigid_body_model(design)
     q = posture(design, "mid_squat", model)
@@ -46,12 +48,21 @@ def closed_form(problem: dict) -> tuple[np.ndarray, np.ndarray]:
     loads = jacobian.reshape(-1, size).T
     drives = np.zeros((size, 2 * motors))
     for leg in range(2):
-        drives[6 + leg * joints : 6 + (leg + 1) * joints, leg * motors : (leg + 1) * motors] = matrix
+        drives[6 + leg * joints : 6 + (leg + 1) * joints, leg * motors : (leg + 1) * motors] = (
+            matrix
+        )
     both = np.hstack([loads, drives])
     heat = problem["power_constant"] * problem["upper"][0, 0] ** 2
-    curve = np.concatenate([np.full(loads.shape[1], RIDGE * 2 * heat.sum() / WEIGHT**2), np.tile(problem["power_constant"], 2)])
+    curve = np.concatenate(
+        [
+            np.full(loads.shape[1], RIDGE * 2 * heat.sum() / WEIGHT**2),
+            np.tile(problem["power_constant"], 2),
+        ]
+    )
     scale = np.sqrt(curve)
-    solution = np.linalg.lstsq(both / scale, problem["required"][0], rcond=1e-14)[0] / scale  # least norm in the heat's metric
+    solution = (
+        np.linalg.lstsq(both / scale, problem["required"][0], rcond=1e-14)[0] / scale
+    )  # least norm in the heat's metric
     return solution[: loads.shape[1]].reshape(-1, 3), solution[loads.shape[1] :].reshape(2, motors)
 
 
@@ -59,7 +70,9 @@ def closed_form(problem: dict) -> tuple[np.ndarray, np.ndarray]:
 def test_without_active_limits_it_is_the_kkt_solution(variant):
     problem = _problem(variant)
     force, torque = closed_form(problem)
-    assert np.all(np.linalg.norm(force[:, :2], axis=1) < force[:, 2])  # no limit is active, or the check would be none
+    assert np.all(
+        np.linalg.norm(force[:, :2], axis=1) < force[:, 2]
+    )  # no limit is active, or the check would be none
     assert np.all(np.abs(torque) < problem["upper"][0])
     found = least_heat(**problem)
     np.testing.assert_allclose(found.motor_torque[0], torque, atol=2e-5)
@@ -77,7 +90,10 @@ def test_equations_of_motion_hold_and_forces_stay_in_their_cones(push):
     force = found.contact_force[0]
     assert force[:, 2].min() > -1e-5
     assert np.max(np.linalg.norm(force[:, :2], axis=1) - force[:, 2]) < 1e-4
-    missing = problem["required"][0, :6] - np.einsum("piv,pi->v", problem["contact_jacobian"][0], force)[:6]
+    missing = (
+        problem["required"][0, :6]
+        - np.einsum("piv,pi->v", problem["contact_jacobian"][0], force)[:6]
+    )
     np.testing.assert_allclose(missing, found.gap[0], atol=1e-6)
 
 
@@ -99,9 +115,16 @@ def test_no_allocation_is_cooler(rng):
 def test_samples_do_not_mix():
     problems = [_problem(acceleration=np.array([x, 0, 0, 0, 0, 0.0])) for x in (0.0, 0.8)]
     stacked = ("required", "contact_jacobian", "bears", "lower", "upper")
-    both = least_heat(**{k: np.concatenate([p[k] for p in problems]) if k in stacked else problems[0][k] for k in problems[0]})
+    both = least_heat(
+        **{
+            k: np.concatenate([p[k] for p in problems]) if k in stacked else problems[0][k]
+            for k in problems[0]
+        }
+    )
     for n, problem in enumerate(problems):
-        np.testing.assert_allclose(both.motor_torque[n], least_heat(**problem).motor_torque[0], atol=1e-4)
+        np.testing.assert_allclose(
+            both.motor_torque[n], least_heat(**problem).motor_torque[0], atol=1e-4
+        )
 
 
 def test_weak_motors_are_reported_by_how_much():

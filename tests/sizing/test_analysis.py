@@ -33,18 +33,33 @@ def test_matrices_are_the_papers(found):
 def test_torques_and_speeds_are_the_papers(found):
     for joint, printed in paper.MAX_JOINT_TORQUE.items():
         assert found["max_joint_torque"][joint] == pytest.approx(printed, rel=1e-3)
-    for joint, speed in {"knee": 10.5, "ankle_pitch": 13.7, "ankle_roll": 22.2, "toe": 17.2}.items():
+    for joint, speed in {
+        "knee": 10.5,
+        "ankle_pitch": 13.7,
+        "ankle_roll": 22.2,
+        "toe": 17.2,
+    }.items():
         assert found["single_joint_speed"][joint] == pytest.approx(speed, abs=0.05)
 
 
 def test_reflected_inertia_is_that_of_the_rotors(found):
-    matrix, rotors = np.array(found["reduction"]["walking"]), [m["rotor_inertia"] for m in found["motors"].values()]
-    assert np.allclose(found["reflected_inertia"], matrix @ np.diag(rotors) @ matrix.T, rtol=1e-12, atol=1e-15)
+    matrix, rotors = (
+        np.array(found["reduction"]["walking"]),
+        [m["rotor_inertia"] for m in found["motors"].values()],
+    )
+    assert np.allclose(
+        found["reflected_inertia"], matrix @ np.diag(rotors) @ matrix.T, rtol=1e-12, atol=1e-15
+    )
 
 
 def test_a_joint_alone_never_gives_more_than_at_its_best(found):
-    sums = np.abs(np.array(found["reduction"]["walking"])) @ [m["peak_torque"] for m in found["motors"].values()]
-    assert all(alone <= best + 1e-9 for alone, best in zip(found["torque_alone"].values(), sums, strict=True))
+    sums = np.abs(np.array(found["reduction"]["walking"])) @ [
+        m["peak_torque"] for m in found["motors"].values()
+    ]
+    assert all(
+        alone <= best + 1e-9
+        for alone, best in zip(found["torque_alone"].values(), sums, strict=True)
+    )
     assert found["torque_alone"]["knee"] == pytest.approx(83.4, abs=0.05)
 
 

@@ -20,7 +20,9 @@ def test_postures_stand_on_the_floor(variant, name):
     model = rigid_body_model(DESIGNS[variant])
     points = contact_points(model, posture(DESIGNS[variant], name, model))
     assert points[:, 2].min() == pytest.approx(0.0, abs=1e-9)
-    on_floor = {p.row for p, point in zip(sole_pads(model.tree), points, strict=True) if point[2] < 1e-3}
+    on_floor = {
+        p.row for p, point in zip(sole_pads(model.tree), points, strict=True) if point[2] < 1e-3
+    }
     assert on_floor == ({"tip"} if name == "toe_off" else {"heel", "ball", "tip"})
 
 
@@ -35,7 +37,10 @@ def test_result_is_feasible_by_hand(variant, direction, name):
     _, jacobian = contact_kinematics(model, q)
     joints = joint_from_motor(design).shape[0]
     nothing = np.zeros(model.model.nv)
-    balance = (model.inverse_dynamics(q, nothing, nothing) - np.einsum("piv,pi->v", jacobian, found.pad_force))[6 : 6 + joints]
+    balance = (
+        model.inverse_dynamics(q, nothing, nothing)
+        - np.einsum("piv,pi->v", jacobian, found.pad_force)
+    )[6 : 6 + joints]
     np.testing.assert_allclose(joint_from_motor(design) @ found.motor_torque, balance, atol=1e-3)
     lower, upper = torque_limits(motor_envelope(design), np.zeros(len(motor_names(design))))
     assert np.all(found.motor_torque < upper + 1e-5)
@@ -46,7 +51,9 @@ def test_result_is_feasible_by_hand(variant, direction, name):
 
 
 def test_linear_program_agrees():
-    """With a pyramid of many sides in place of the cone, scipy's linear solver finds the same force, from inside."""
+    """With a pyramid of many sides in place of the cone, scipy's linear solver finds the same
+    force, from inside.
+    """
     from scipy.optimize import linprog
 
     design = DESIGNS["toe"]
@@ -56,14 +63,19 @@ def test_linear_program_agrees():
     _, jacobian = contact_kinematics(model, q)
     nothing = np.zeros(model.model.nv)
     columns, matrix = slice(6, 13), joint_from_motor(design)
-    edges = np.array([[np.cos(t), np.sin(t), 1.0] for t in np.linspace(0, 2 * np.pi, 64, endpoint=False)])
-    loads = np.concatenate([edges @ jacobian[p][:, columns] for p in range(6)])  # one row an edge force
+    edges = np.array(
+        [[np.cos(t), np.sin(t), 1.0] for t in np.linspace(0, 2 * np.pi, 64, endpoint=False)]
+    )
+    loads = np.concatenate(
+        [edges @ jacobian[p][:, columns] for p in range(6)]
+    )  # one row an edge force
     limits = [(-p, p) for p in motor_envelope(design).peak_torque]
     result = linprog(
         np.concatenate([-np.ones(len(loads)), np.zeros(7)]),
-        A_eq=np.hstack([loads.T, matrix]), b_eq=model.inverse_dynamics(q, nothing, nothing)[columns],
+        A_eq=np.hstack([loads.T, matrix]),
+        b_eq=model.inverse_dynamics(q, nothing, nothing)[columns],
         bounds=[(0, None)] * len(loads) + limits,
-    )  # fmt: skip
+    )
     assert -result.fun == pytest.approx(found.force[2], rel=2e-3)
     assert -result.fun <= found.force[2] * (1 + 1e-6)
 
@@ -80,7 +92,10 @@ def test_without_the_toe_motor_the_leg_is_weaker():
 def test_speed_narrows_the_envelope():
     design = DESIGNS["toe"]
     extending = np.array([0, 0, 0, -6.0, 0, 0, 0])
-    assert largest_force(design, "mid_squat", joint_velocity=extending).force[2] < largest_force(design, "mid_squat").force[2]
+    assert (
+        largest_force(design, "mid_squat", joint_velocity=extending).force[2]
+        < largest_force(design, "mid_squat").force[2]
+    )
 
 
 def test_force_through_the_centre_of_mass():
@@ -105,15 +120,22 @@ def test_right_leg_mirrors_left():
 
 
 def test_weak_motors_cannot_hold_the_leg():
-    gears = {f"actuators.{a}.gear": 1 for a in ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle", "toe")}
+    gears = {
+        f"actuators.{a}.gear": 1
+        for a in ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle", "toe")
+    }
     weak = load_design(overrides={**gears, "masses.law": "fixed"})
-    with pytest.raises(InfeasibleError, match=r"no contact force of the left foot lets its motors hold"):
+    with pytest.raises(
+        InfeasibleError, match=r"no contact force of the left foot lets its motors hold"
+    ):
         largest_force(weak, "mid_squat", "forward", vertical=5000.0)
 
 
 def test_table_has_a_row_for_each_question():
     rows = capability_table({"toe": DESIGNS["toe"]})
-    assert [(r["posture"], r["direction"]) for r in rows] == [(p, d) for p in POSTURES for d in ("vertical", "forward")]
+    assert [(r["posture"], r["direction"]) for r in rows] == [
+        (p, d) for p in POSTURES for d in ("vertical", "forward")
+    ]
     assert all(r["force"] > 0 for r in rows)
 
 

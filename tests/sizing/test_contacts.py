@@ -63,4 +63,6 @@ def test_jacobian_is_the_material_velocity(rng):
             found.append(model.data.oMf[frame].act(inside))
         return np.array(found)
 
-    np.testing.assert_allclose(jacobian @ v, (followed(step) - followed(-step)) / (2 * step), atol=1e-6)
+    np.testing.assert_allclose(
+        jacobian @ v, (followed(step) - followed(-step)) / (2 * step), atol=1e-6
+    )

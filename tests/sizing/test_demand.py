@@ -33,7 +33,9 @@ def test_equations_of_motion_hold(walk):
         _, jacobian = contact_kinematics(walk.motion.model, walk.motion.q[n])
         given = np.einsum("piv,pi->v", jacobian, walk.allocation.contact_force[n])
         np.testing.assert_allclose(given[:6], required[n, :6], atol=1e-6)
-        np.testing.assert_allclose(given[6:] + walk.joint_torque[n].ravel(), required[n, 6:], atol=1e-6)
+        np.testing.assert_allclose(
+            given[6:] + walk.joint_torque[n].ravel(), required[n, 6:], atol=1e-6
+        )
     assert walk.joint_torque.shape[1:] == (2, joints)
 
 
@@ -61,7 +63,12 @@ def test_contact_forces_carry_the_weight_within_their_cones(walk):
     weight = GRAVITY * sum(link.mass for link in walk.motion.model.tree.links)
     assert force[..., 2].sum(1).mean() == pytest.approx(weight, rel=1e-3)
     assert force[..., 2].min() > -1e-3
-    assert np.max(np.linalg.norm(force[..., :2], axis=-1) - walk.design.contact.friction * force[..., 2]) < 1e-2
+    assert (
+        np.max(
+            np.linalg.norm(force[..., :2], axis=-1) - walk.design.contact.friction * force[..., 2]
+        )
+        < 1e-2
+    )
     assert not force[~walk.motion.contact].any()
 
 
@@ -72,9 +79,13 @@ def test_power_is_the_same_at_joints_and_motors(walk):
 
 
 def test_work_over_a_stride_is_friction_alone(walk):
-    """A steady stride gains no energy, the feet do not slip: motors give what joint friction takes."""
+    """A steady stride gains no energy, the feet do not slip: motors give what joint friction
+    takes.
+    """
     friction = joint_friction(walk.design, walk.motion.joint_velocity) * walk.motion.joint_velocity
-    assert float(walk.power.mechanical) == pytest.approx(float(friction.sum((1, 2)).mean()), rel=0.02)
+    assert float(walk.power.mechanical) == pytest.approx(
+        float(friction.sum((1, 2)).mean()), rel=0.02
+    )
 
 
 def test_the_walk_lies_inside_every_envelope(walk):
@@ -89,25 +100,33 @@ def test_table_says_what_the_arrays_say(walk):
     assert [r["motor"] for r in rows] == list(motor_names(walk.design))
     for m, row in enumerate(rows):
         assert row["peak_torque"] == pytest.approx(np.abs(walk.motor_torque[..., m]).max())
-        assert row["rms_torque"] == pytest.approx(np.sqrt((walk.motor_torque[..., m] ** 2).mean(0)).max())
+        assert row["rms_torque"] == pytest.approx(
+            np.sqrt((walk.motor_torque[..., m] ** 2).mean(0)).max()
+        )
         assert row["margin"] == pytest.approx(walk.margin[..., m].min())
     assert sum(r["joule"] for r in rows) == pytest.approx(float(walk.power.joule))
     assert sum(r["joule"] for r in rows) == pytest.approx(walk.allocation.heat.mean())
     summary = walk.summary()
     mass = sum(link.mass for link in walk.motion.model.tree.links)
-    assert summary["cost_of_transport"] == pytest.approx(summary["motor_side"] / (mass * GRAVITY * 1.33))
+    assert summary["cost_of_transport"] == pytest.approx(
+        summary["motor_side"] / (mass * GRAVITY * 1.33)
+    )
     assert summary["cost_of_transport_battery"] > summary["cost_of_transport"]
 
 
 def test_locking_the_toe_never_needs_less_than_its_motor_gives():
     """The same stance forces: seven motors on six joints are never hotter than six."""
-    kept, gone = (demand(load_design(variant=v), "squat") for v in ("toe_locked", "toe_removed_matched"))
+    kept, gone = (
+        demand(load_design(variant=v), "squat") for v in ("toe_locked", "toe_removed_matched")
+    )
     assert float(kept.power.joule) < float(gone.power.joule)
     assert float(kept.power.mechanical) == pytest.approx(float(gone.power.mechanical), rel=1e-3)
 
 
 def test_weak_motors_are_beyond():
-    weak = load_design(overrides={"actuators.knee.gear": 4.0, "actuators.ankle.gear": 4.0, "masses.law": "fixed"})
+    weak = load_design(
+        overrides={"actuators.knee.gear": 4.0, "actuators.ankle.gear": 4.0, "masses.law": "fixed"}
+    )
     motion = reference_motion(weak, "walk", samples=61)
     found = demand(weak, motion)
     assert 0 < found.beyond_share < 1
@@ -129,7 +148,9 @@ def test_hop_needs_no_ground_in_flight():
 def test_friction_opposes_motion():
     design = load_design()
     np.testing.assert_allclose(joint_friction(design, np.full(7, 10.0))[3], 5.59 + 0.10 * 10)
-    np.testing.assert_allclose(joint_friction(design, -np.ones(7)), -joint_friction(design, np.ones(7)))
+    np.testing.assert_allclose(
+        joint_friction(design, -np.ones(7)), -joint_friction(design, np.ones(7))
+    )
 
 
 def test_several_designs_at_once():

@@ -8,7 +8,13 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.names import VARIANTS
-from hyperleg_design.sizing.energy import cost_of_transport, design_ledger, energy_ledger, joint_power, power_cost_of_transport
+from hyperleg_design.sizing.energy import (
+    cost_of_transport,
+    design_ledger,
+    energy_ledger,
+    joint_power,
+    power_cost_of_transport,
+)
 
 SAMPLES = arrays(float, (5, 3), elements=st.floats(-1e3, 1e3))
 CP = np.array([3.54, 33.44, 124.57])
@@ -29,7 +35,8 @@ def test_balance_closes_for_every_motor_and_in_sum(torque, velocity, out, regen)
 
 
 def test_one_motor_by_hand():
-    # drives at 2 Nm and 10 rad/s, brakes at 2 Nm and -50 rad/s, brakes too slowly to give anything back
+    # drives at 2 Nm and 10 rad/s, brakes at 2 Nm and -50 rad/s, brakes too slowly to give anything
+    # back
     ledger = energy_ledger([[2.0], [2.0], [2.0]], [[10.0], [-50.0], [-5.0]], 0.5, [3.0], 0.9, 0.8)
     np.testing.assert_allclose(ledger.joule[:, 0], 12.0)
     np.testing.assert_allclose(ledger.mechanical[:, 0], [20, -100, -10])
@@ -48,7 +55,9 @@ def test_one_motor_by_hand():
 
 def test_perfect_drivers_leave_the_papers_total():
     rng = np.random.default_rng(1)
-    ledger = energy_ledger(rng.normal(size=(2, 50, 3)), 100 * rng.normal(size=(2, 50, 3)), 0.01, CP, 1.0, 1.0)
+    ledger = energy_ledger(
+        rng.normal(size=(2, 50, 3)), 100 * rng.normal(size=(2, 50, 3)), 0.01, CP, 1.0, 1.0
+    )
     np.testing.assert_allclose(ledger.battery, ledger.motor_side, rtol=1e-12, atol=1e-9)
     assert not np.any(ledger.driver_loss)
     # without regeneration the battery sees only what is drawn
@@ -56,14 +65,20 @@ def test_perfect_drivers_leave_the_papers_total():
 
 
 @settings(max_examples=30)
-@given(seed=st.integers(0, 10_000), variant=st.sampled_from(VARIANTS), posture=st.sampled_from(["walking", "standing"]))
+@given(
+    seed=st.integers(0, 10_000),
+    variant=st.sampled_from(VARIANTS),
+    posture=st.sampled_from(["walking", "standing"]),
+)
 def test_joint_powers_sum_to_the_motors(seed, variant, posture):
     design = load_design("hyperleg", variant=variant)
     matrix = transmission.joint_from_motor(design, posture)
     rng = np.random.default_rng(seed)
     motor_torque = rng.normal(size=(40, matrix.shape[1]))
     joint_velocity = 5 * rng.normal(size=(40, matrix.shape[0]))
-    ledger = design_ledger(design, motor_torque, transmission.motor_velocity(matrix, joint_velocity), 0.005)
+    ledger = design_ledger(
+        design, motor_torque, transmission.motor_velocity(matrix, joint_velocity), 0.005
+    )
     joints = joint_power(transmission.joint_torque(matrix, motor_torque), joint_velocity)
     np.testing.assert_allclose(joints.sum(-1), ledger.mechanical.sum(-1), atol=1e-9)
     assert ledger.joule[0, 4] == pytest.approx(124.57 * motor_torque[0, 4] ** 2, rel=2e-3)
@@ -88,15 +103,23 @@ def test_batch_of_designs_equals_each():
 
 def test_table_three_adds_up_on_the_motor_side():
     # Joule 125.9 W and mechanical 134.3 W make 260.2 W without driver losses
-    ledger = energy_ledger([[np.sqrt(125.9 / 3.54)]], [[134.3 / np.sqrt(125.9 / 3.54)]], 1.0, [3.54])
+    ledger = energy_ledger(
+        [[np.sqrt(125.9 / 3.54)]], [[134.3 / np.sqrt(125.9 / 3.54)]], 1.0, [3.54]
+    )
     assert ledger.motor_side[0, 0] == pytest.approx(260.2, abs=0.05)
     assert ledger.battery[0, 0] == pytest.approx(260.2 / 0.9, abs=0.1)
 
 
 def test_costs_of_transport_of_the_paper_at_its_two_speeds():
-    np.testing.assert_allclose(power_cost_of_transport([260.2, 313.0], 32.0, 1.33), [0.623, 0.750], atol=5e-4)
+    np.testing.assert_allclose(
+        power_cost_of_transport([260.2, 313.0], 32.0, 1.33), [0.623, 0.750], atol=5e-4
+    )
     # energy over 20 m: power times time
-    np.testing.assert_allclose(cost_of_transport(np.array([260.2 * 15.96, 313.0 * 16.13]), 32.0, 20.0), [0.661, 0.804], atol=5e-4)
+    np.testing.assert_allclose(
+        cost_of_transport(np.array([260.2 * 15.96, 313.0 * 16.13]), 32.0, 20.0),
+        [0.661, 0.804],
+        atol=5e-4,
+    )
 
 
 @pytest.mark.parametrize(
@@ -116,7 +139,12 @@ def test_costs_of_transport_of_the_paper_at_its_two_speeds():
     ],
 )
 def test_bad_input_is_one_error_that_names_the_field(change, field):
-    good = {"motor_torque": np.zeros((4, 3)), "motor_velocity": np.zeros((4, 3)), "time_step": 0.01, "power_constant": CP}
+    good = {
+        "motor_torque": np.zeros((4, 3)),
+        "motor_velocity": np.zeros((4, 3)),
+        "time_step": 0.01,
+        "power_constant": CP,
+    }
     with pytest.raises(InputError) as caught:
         energy_ledger(**{**good, **change})
     assert caught.value.field == field

@@ -4,7 +4,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.sizing.envelope import BRAKING, DRIVING, IDLE, clip_torque, motor_envelope, quadrant, torque_limits
+from hyperleg_design.sizing.envelope import (
+    BRAKING,
+    DRIVING,
+    IDLE,
+    clip_torque,
+    motor_envelope,
+    quadrant,
+    torque_limits,
+)
 
 SPEEDS = st.lists(st.floats(-2000, 2000), min_size=7, max_size=7).map(np.array)
 
@@ -25,7 +33,9 @@ def isaac_dc_motor(torque, speed, stall, free, peak):
 def test_paper_motors_stand_where_the_paper_puts_them(envelope):
     np.testing.assert_allclose(envelope.no_load_speed, [300, 300, 300, 327.2, 366, 366, 366])
     np.testing.assert_allclose(envelope.peak_torque, [5.04, 5.04, 5.04, 2.68, 1.63, 1.63, 1.63])
-    np.testing.assert_allclose(envelope.stall_torque, [84.7, 84.7, 84.7, 9.78, 2.94, 2.94, 2.94], rtol=2e-3)
+    np.testing.assert_allclose(
+        envelope.stall_torque, [84.7, 84.7, 84.7, 9.78, 2.94, 2.94, 2.94], rtol=2e-3
+    )
     assert (envelope.efficiency_out, envelope.efficiency_regen) == (0.9, 0.8)
 
 
@@ -33,7 +43,9 @@ def test_limits_at_the_marked_speeds(envelope):
     lower, upper = torque_limits(envelope, 0.0)
     np.testing.assert_array_equal(upper, envelope.peak_torque)
     np.testing.assert_array_equal(lower, -envelope.peak_torque)
-    np.testing.assert_allclose(torque_limits(envelope, envelope.corner_speed)[1], envelope.peak_torque)
+    np.testing.assert_allclose(
+        torque_limits(envelope, envelope.corner_speed)[1], envelope.peak_torque
+    )
     np.testing.assert_allclose(torque_limits(envelope, envelope.no_load_speed)[1], 0, atol=1e-12)
     np.testing.assert_allclose(torque_limits(envelope, -envelope.no_load_speed)[0], 0, atol=1e-12)
     lower, upper = torque_limits(envelope, 1.001 * envelope.top_speed)
@@ -48,7 +60,9 @@ def test_interval_is_never_inside_out_and_holds_zero_up_to_no_load_speed(envelop
     assert np.all(-envelope.peak_torque <= lower)
     assert np.all(lower <= upper)
     assert np.all(upper <= envelope.peak_torque)
-    np.testing.assert_array_equal((lower <= 0) & (upper >= 0), np.abs(speed) <= envelope.no_load_speed)
+    np.testing.assert_array_equal(
+        (lower <= 0) & (upper >= 0), np.abs(speed) <= envelope.no_load_speed
+    )
     mirrored = torque_limits(envelope, -speed)
     np.testing.assert_array_equal((lower, upper), (-mirrored[1], -mirrored[0]))
 
@@ -57,7 +71,15 @@ def test_interval_is_never_inside_out_and_holds_zero_up_to_no_load_speed(envelop
 @given(speed=SPEEDS, torque=st.lists(st.floats(-20, 20), min_size=7, max_size=7).map(np.array))
 def test_clip_is_the_dc_motor_clip_of_the_simulator(envelope, speed, torque):
     expected = [
-        isaac_dc_motor(*values) for values in zip(torque, speed, envelope.stall_torque, envelope.no_load_speed, envelope.peak_torque, strict=True)
+        isaac_dc_motor(*values)
+        for values in zip(
+            torque,
+            speed,
+            envelope.stall_torque,
+            envelope.no_load_speed,
+            envelope.peak_torque,
+            strict=True,
+        )
     ]
     clipped = clip_torque(envelope, torque, speed)
     np.testing.assert_allclose(clipped, expected, rtol=1e-9, atol=1e-9)
@@ -66,7 +88,8 @@ def test_clip_is_the_dc_motor_clip_of_the_simulator(envelope, speed, torque):
 
 def test_quadrants_have_the_sign_of_power():
     np.testing.assert_array_equal(
-        quadrant(np.array([1.0, -1.0, 1.0, -1.0, 0.0]), np.array([2.0, -2.0, -2.0, 2.0, 3.0])), [DRIVING, DRIVING, BRAKING, BRAKING, IDLE]
+        quadrant(np.array([1.0, -1.0, 1.0, -1.0, 0.0]), np.array([2.0, -2.0, -2.0, 2.0, 3.0])),
+        [DRIVING, DRIVING, BRAKING, BRAKING, IDLE],
     )
 
 
@@ -76,18 +99,25 @@ def test_bus_voltage_moves_the_line_and_not_the_peak(envelope):
     np.testing.assert_allclose(raised.stall_torque, 1.5 * envelope.stall_torque)
     np.testing.assert_array_equal(raised.peak_torque, envelope.peak_torque)
     # the resistance of the winding is the slope of the line, whatever the voltage
-    np.testing.assert_allclose(raised.stall_torque / raised.no_load_speed, 1 / envelope.power_constant)
+    np.testing.assert_allclose(
+        raised.stall_torque / raised.no_load_speed, 1 / envelope.power_constant
+    )
 
 
 def test_batch_equals_each_design():
     batch = load_design("hyperleg").with_values(
-        {"electrical.voltage_ratio": np.array([0.8, 1.0, 1.3]), "actuators.knee.motor": np.array(["RI70", "RI60", "U10"])}
+        {
+            "electrical.voltage_ratio": np.array([0.8, 1.0, 1.3]),
+            "actuators.knee.motor": np.array(["RI70", "RI60", "U10"]),
+        }
     )
     speed = np.linspace(-400, 400, 7)
     together = torque_limits(motor_envelope(batch), speed)
     assert together[0].shape == (3, 7)
     for i in range(3):
-        np.testing.assert_array_equal(np.array(together)[:, i], torque_limits(motor_envelope(batch.take(i)), speed))
+        np.testing.assert_array_equal(
+            np.array(together)[:, i], torque_limits(motor_envelope(batch.take(i)), speed)
+        )
 
 
 def test_only_installed_motors_count():

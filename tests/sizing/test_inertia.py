@@ -7,7 +7,12 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import VARIANTS
-from hyperleg_design.sizing.inertia import centroidal_inertia, com_height, leg_inertia, rotor_swing_inertia
+from hyperleg_design.sizing.inertia import (
+    centroidal_inertia,
+    com_height,
+    leg_inertia,
+    rotor_swing_inertia,
+)
 
 
 @settings(max_examples=15)
@@ -22,7 +27,9 @@ def test_leg_is_pinocchios(random_designs, data):
     matrix = body.mass_matrix(q)
     hip = body.model.getJointId("left_hip_pitch")
     place = body.model.idx_vs[hip]
-    assert leg.swing_inertia + rotor_swing_inertia(design) == pytest.approx(matrix[place, place], rel=1e-9)
+    assert leg.swing_inertia + rotor_swing_inertia(design) == pytest.approx(
+        matrix[place, place], rel=1e-9
+    )
     assert leg.swing_inertia == pytest.approx((matrix - body.reflected)[place, place], rel=1e-9)
     # the composite bodies behind joints
     pin.centerOfMass(body.model, body.data, q)
@@ -34,7 +41,9 @@ def test_leg_is_pinocchios(random_designs, data):
 
     floating = rigid_body_model(design)
     assert leg.total_mass == pytest.approx(pin.computeTotalMass(floating.model), rel=1e-9)
-    assert com_height(design) == pytest.approx(floating.center_of_mass(floating.neutral())[2], rel=1e-9)
+    assert com_height(design) == pytest.approx(
+        floating.center_of_mass(floating.neutral())[2], rel=1e-9
+    )
 
 
 def test_paper_masses():
@@ -64,8 +73,16 @@ def test_point_mass_on_the_toe_adds_its_squared_distance():
     leg = leg_inertia(design)
     com, toe = np.asarray(design.toe.com), design.toe
     x = design.foot.ball_length + com[0]
-    z = design.thigh.length + design.shank.length + design.foot.ankle_height - toe.axis_height - com[2]
-    np.testing.assert_allclose(np.diff(leg.swing_inertia), 0.1 * (x**2 + z**2 + toe.gyration[1] ** 2))
+    z = (
+        design.thigh.length
+        + design.shank.length
+        + design.foot.ankle_height
+        - toe.axis_height
+        - com[2]
+    )
+    np.testing.assert_allclose(
+        np.diff(leg.swing_inertia), 0.1 * (x**2 + z**2 + toe.gyration[1] ** 2)
+    )
 
 
 def test_batch_equals_each_design():
@@ -89,10 +106,25 @@ def test_batch_equals_each_design():
 
 def test_measures_without_dimension_do_not_know_the_scale_of_mass():
     design = load_design("hyperleg")
-    names = ("pelvis.mass", "thigh.mass", "shank.mass", "foot.mass", "foot.cross_mass", "toe.mass", "hip.yaw_carrier_mass", "hip.roll_carrier_mass")
+    names = (
+        "pelvis.mass",
+        "thigh.mass",
+        "shank.mass",
+        "foot.mass",
+        "foot.cross_mass",
+        "toe.mass",
+        "hip.yaw_carrier_mass",
+        "hip.roll_carrier_mass",
+    )
     heavier = leg_inertia(design.with_values({name: 1.5 * design[name] for name in names}))
     leg = leg_inertia(design)
-    for name in ("leg_share", "distal_share", "inertia_over_leg", "inertia_over_total", "gyration_over_length"):
+    for name in (
+        "leg_share",
+        "distal_share",
+        "inertia_over_leg",
+        "inertia_over_total",
+        "gyration_over_length",
+    ):
         assert getattr(heavier, name) == pytest.approx(getattr(leg, name))
     assert heavier.swing_inertia == pytest.approx(1.5 * leg.swing_inertia)
 
@@ -107,7 +139,9 @@ def test_centroidal_inertia_is_a_bodys_and_turns_with_the_base():
     body = rigid_body_model(design)
     matrix = body.mass_matrix(body.neutral())[:6, :6]
     offset = matrix[:3, 3:] / matrix[0, 0]
-    np.testing.assert_allclose(straight, matrix[3:, 3:] - matrix[0, 0] * offset.T @ offset, atol=1e-9)
+    np.testing.assert_allclose(
+        straight, matrix[3:, 3:] - matrix[0, 0] * offset.T @ offset, atol=1e-9
+    )
     turned = body.neutral()
     turned[3:7] = [0.0, 0.0, np.sin(0.4), np.cos(0.4)]
     np.testing.assert_allclose(centroidal_inertia(design, turned), straight, atol=1e-12)

@@ -7,7 +7,14 @@ from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import SIDES
-from hyperleg_design.sizing.kinematics import about_x, about_y, check_range, hip_center, leg_angles, leg_reach
+from hyperleg_design.sizing.kinematics import (
+    about_x,
+    about_y,
+    check_range,
+    hip_center,
+    leg_angles,
+    leg_reach,
+)
 
 DESIGN = load_design()
 MODEL = rigid_body_model(DESIGN)
@@ -24,10 +31,17 @@ def _foot(q: np.ndarray, side: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 @settings(max_examples=60)
-@given(st.lists(st.floats(0, 1), min_size=6, max_size=6), st.sampled_from(SIDES), st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
+@given(
+    st.lists(st.floats(0, 1), min_size=6, max_size=6),
+    st.sampled_from(SIDES),
+    st.floats(-0.5, 0.5),
+    st.floats(-0.5, 0.5),
+)
 def test_inverse_of_forward_kinematics(share, side, pitch, roll):
     angles = LOWER + np.array(share) * (UPPER - LOWER)
-    if abs(angles[2]) + abs(angles[1]) > 2.0:  # beyond, the hip's roll and yaw have a second solution
+    if (
+        abs(angles[2]) + abs(angles[1]) > 2.0
+    ):  # beyond, the hip's roll and yaw have a second solution
         angles[1] = 0.3
     q = MODEL.neutral()
     base = about_x(np.array(roll)) @ about_y(np.array(pitch))
@@ -49,13 +63,26 @@ def test_batches_equal_single_poses(rng):
     offsets = np.array([0.0, 0.0, -0.6]) + rng.uniform(-0.08, 0.08, (20, 3))
     rotations = about_y(rng.uniform(-0.3, 0.3, 20)) @ about_x(rng.uniform(-0.2, 0.2, 20))
     together = leg_angles(DESIGN, "left", offsets, rotations, check_limits=False)
-    single = [leg_angles(DESIGN, "left", o, r, check_limits=False) for o, r in zip(offsets, rotations, strict=True)]
+    single = [
+        leg_angles(DESIGN, "left", o, r, check_limits=False)
+        for o, r in zip(offsets, rotations, strict=True)
+    ]
     np.testing.assert_allclose(together, single, atol=1e-14)
 
 
 def test_mirrored_feet_give_equal_angles():
-    left = leg_angles(DESIGN, "left", np.array([0.05, 0.04, -0.62]), about_x(np.array(0.1)) @ about_y(np.array(0.2)))
-    right = leg_angles(DESIGN, "right", np.array([0.05, -0.04, -0.62]), about_x(np.array(-0.1)) @ about_y(np.array(0.2)))
+    left = leg_angles(
+        DESIGN,
+        "left",
+        np.array([0.05, 0.04, -0.62]),
+        about_x(np.array(0.1)) @ about_y(np.array(0.2)),
+    )
+    right = leg_angles(
+        DESIGN,
+        "right",
+        np.array([0.05, -0.04, -0.62]),
+        about_x(np.array(-0.1)) @ about_y(np.array(0.2)),
+    )
     np.testing.assert_allclose(left, right, atol=1e-12)
 
 
@@ -68,12 +95,19 @@ def test_straight_leg_reaches_the_sum_of_its_lengths():
 
 
 def test_out_of_reach_says_how_far():
-    with pytest.raises(InfeasibleError, match=r"left leg: the ankle is 0\.8000 m from the hip; the leg reaches 0\.0250 \.\. 0\.7150 m"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"left leg: the ankle is 0\.8000 m from the hip; the leg reaches 0\.0250 \.\. "
+        r"0\.7150 m",
+    ):
         leg_angles(DESIGN, "left", np.array([0.0, 0.0, -0.8]), np.eye(3))
 
 
 def test_range_names_joint_and_angle():
-    with pytest.raises(InfeasibleError, match=r"right ankle_pitch would have to turn to -\d+\.\d deg; its range is -56 \.\. 60 deg"):
+    with pytest.raises(
+        InfeasibleError,
+        match=r"right ankle_pitch would have to turn to -\d+\.\d deg; its range is -56 \.\. 60 deg",
+    ):
         leg_angles(DESIGN, "right", np.array([0.0, 0.0, -0.6]), about_y(np.array(-0.9)))
     with pytest.raises(InfeasibleError, match="left toe"):
         check_range(DESIGN, "left", np.array([0, 0, 0, 0.1, 0, 0, 0.5]))
@@ -85,4 +119,9 @@ def test_bad_input():
     with pytest.raises(InputError, match="side"):
         leg_angles(DESIGN, "middle", np.zeros(3), np.eye(3))
     with pytest.raises(InputError, match="batch"):
-        leg_angles(DESIGN.with_values({"toe.mass": np.array([0.2, 0.3])}), "left", np.array([0, 0, -0.6]), np.eye(3))
+        leg_angles(
+            DESIGN.with_values({"toe.mass": np.array([0.2, 0.3])}),
+            "left",
+            np.array([0, 0, -0.6]),
+            np.eye(3),
+        )

@@ -16,7 +16,12 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 def random_set(seed, joints, motors):
     rng = np.random.default_rng(seed)
-    return rng, rng.normal(size=(joints, motors)) * 20, -rng.uniform(0.5, 3, motors), rng.uniform(0.5, 7, motors)
+    return (
+        rng,
+        rng.normal(size=(joints, motors)) * 20,
+        -rng.uniform(0.5, 3, motors),
+        rng.uniform(0.5, 7, motors),
+    )
 
 
 @settings(max_examples=40, deadline=None)
@@ -28,7 +33,9 @@ def test_with_as_many_motors_as_joints_it_is_read_off_the_motors(seed, reach):
     share = np.maximum(motor / upper, motor / lower)
     assert found.load == pytest.approx(share.max(), rel=1e-8)
     assert found.motor == np.argmax(share)
-    assert found.slack == pytest.approx(np.minimum(upper - motor, motor - lower).min(), rel=1e-8, abs=1e-9)
+    assert found.slack == pytest.approx(
+        np.minimum(upper - motor, motor - lower).min(), rel=1e-8, abs=1e-9
+    )
 
 
 @settings(max_examples=10, deadline=None)
@@ -37,8 +44,13 @@ def test_with_more_motors_it_is_cvxpys(seed, shape, reach):
     rng, matrix, lower, upper = random_set(seed, *shape)
     torque = reach * matrix @ rng.uniform(lower, upper)
     motor, load, slack = cp.Variable(shape[1]), cp.Variable(), cp.Variable()
-    cp.Problem(cp.Minimize(load), [matrix @ motor == torque, motor <= load * upper, motor >= load * lower]).solve(solver=cp.CLARABEL)
-    cp.Problem(cp.Maximize(slack), [matrix @ motor == torque, motor <= upper - slack, motor >= lower + slack]).solve(solver=cp.CLARABEL)
+    cp.Problem(
+        cp.Minimize(load), [matrix @ motor == torque, motor <= load * upper, motor >= load * lower]
+    ).solve(solver=cp.CLARABEL)
+    cp.Problem(
+        cp.Maximize(slack),
+        [matrix @ motor == torque, motor <= upper - slack, motor >= lower + slack],
+    ).solve(solver=cp.CLARABEL)
     found = margin(matrix, lower, upper, torque)
     assert found.load == pytest.approx(load.value, rel=1e-5, abs=1e-6)
     assert found.slack == pytest.approx(slack.value, rel=1e-5, abs=1e-5)
@@ -51,7 +63,12 @@ def test_with_a_motor_that_must_brake_it_is_cvxpys_too(seed, reach):
     upper[0], lower[1] = 0.3 * lower[0], 0.4 * upper[1]
     torque = matrix @ (reach * rng.uniform(lower, upper))
     motor, load = cp.Variable(5), cp.Variable(nonneg=True)
-    limits = [motor[0] >= load * lower[0], motor[0] <= upper[0], motor[1] <= load * upper[1], motor[1] >= lower[1]]
+    limits = [
+        motor[0] >= load * lower[0],
+        motor[0] <= upper[0],
+        motor[1] <= load * upper[1],
+        motor[1] >= lower[1],
+    ]
     limits += [motor[2:] <= load * upper[2:], motor[2:] >= load * lower[2:]]
     problem = cp.Problem(cp.Minimize(load), [matrix @ motor == torque, *limits])
     problem.solve(solver=cp.CLARABEL)
@@ -66,12 +83,16 @@ def test_with_a_motor_that_must_brake_it_is_cvxpys_too(seed, reach):
 @given(seed=SEEDS, shape=st.sampled_from([(4, 4), (6, 7)]))
 def test_both_measures_agree_on_what_is_inside(seed, shape):
     rng, matrix, lower, upper = random_set(seed, *shape)
-    torque = rng.uniform(*zonotope.box(matrix, lower, upper), (50, shape[0])) * rng.uniform(0, 1, (50, 1))
+    torque = rng.uniform(*zonotope.box(matrix, lower, upper), (50, shape[0])) * rng.uniform(
+        0, 1, (50, 1)
+    )
     found = margin(matrix, lower, upper, torque)
     inside = zonotope.contains(matrix, lower, upper, torque)
     np.testing.assert_array_equal(found.inside, inside)
     np.testing.assert_array_equal(found.slack >= 0, inside)
-    np.testing.assert_allclose(margin(matrix, lower, upper, 1.7 * torque).load, 1.7 * found.load, rtol=1e-9)
+    np.testing.assert_allclose(
+        margin(matrix, lower, upper, 1.7 * torque).load, 1.7 * found.load, rtol=1e-9
+    )
     edge = margin(matrix, lower, upper, torque / found.load[:, None])
     np.testing.assert_allclose(edge.load, 1, rtol=1e-9)
     np.testing.assert_allclose(edge.slack, 0, atol=1e-8)
@@ -90,7 +111,9 @@ def test_a_single_joint_torque_loads_the_leg_as_much_as_it_is_of_the_largest():
         matrix, peak = transmission.joint_from_motor(design), motor_envelope(design).peak_torque
         for joint in range(len(matrix)):
             largest = zonotope.alone(matrix, -peak, peak, joint)
-            assert margin(matrix, -peak, peak, np.eye(len(matrix))[joint] * 30).load == pytest.approx(30 / largest)
+            assert margin(
+                matrix, -peak, peak, np.eye(len(matrix))[joint] * 30
+            ).load == pytest.approx(30 / largest)
 
 
 def test_past_no_load_speed_too_little_braking_is_infinite_load():
@@ -115,9 +138,15 @@ def test_trajectory_uses_each_samples_speed_and_names_the_motor():
     for i in range(40):
         limits = torque_limits(envelope, speed[i])
         one = margin(matrix, *limits, torque[i])
-        assert (found.load[i], found.slack[i], found.motor[i]) == (pytest.approx(one.load), pytest.approx(one.slack), one.motor)
+        assert (found.load[i], found.slack[i], found.motor[i]) == (
+            pytest.approx(one.load),
+            pytest.approx(one.slack),
+            one.motor,
+        )
         at = found.motor[i]
-        assert found.load[i] == pytest.approx(max(motor[i, at] / limits[0][at], motor[i, at] / limits[1][at]))
+        assert found.load[i] == pytest.approx(
+            max(motor[i, at] / limits[0][at], motor[i, at] / limits[1][at])
+        )
     assert found.worst == int(np.argmax(found.load))
     # the same motion with a matrix for each sample
     each = trajectory_margin(np.tile(matrix, (40, 1, 1)), envelope, torque, velocity)

@@ -9,7 +9,14 @@ from hyperleg_design.robot.description import urdf
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.sizing import other_robots
 from hyperleg_design.sizing.inertia import leg_inertia
-from hyperleg_design.sizing.other_robots import SOURCES, RobotSource, compare, find_source, measure, robots_folder
+from hyperleg_design.sizing.other_robots import (
+    SOURCES,
+    RobotSource,
+    compare,
+    find_source,
+    measure,
+    robots_folder,
+)
 
 URDF_SOURCES = [s for s in SOURCES if s.file.endswith(".urdf")]
 
@@ -26,7 +33,8 @@ def test_every_robot_is_a_sensible_leg(robots):
         assert 0 < leg.distal_mass < leg.swing_mass <= leg.leg_mass, name
         assert 0.05 < leg.distal_share < 0.5, name
         assert 0.2 < leg.leg_length < 1.1, name
-        # the centre of mass is within the leg, and inertia is at least that of the mass at its centre
+        # the centre of mass is within the leg, and inertia is at least that of the mass at its
+        # centre
         assert leg.com_distance < leg.leg_length, name
         assert leg.swing_inertia > leg.swing_mass * leg.com_distance**2, name
         assert np.isnan(leg.total_mass) == (not robot.source.whole), name
@@ -49,10 +57,15 @@ def test_swing_inertia_is_pinocchios_with_the_knee_straightened(source, robots):
     pin.centerOfMass(model, data, q)
     first = model.getJointId(source.first_hip)
     expected = [data.mass[j] for j in (first, hip, knee)]
-    np.testing.assert_allclose([robot.leg.leg_mass, robot.leg.swing_mass, robot.leg.distal_mass], expected, rtol=1e-9)
+    np.testing.assert_allclose(
+        [robot.leg.leg_mass, robot.leg.swing_mass, robot.leg.distal_mass], expected, rtol=1e-9
+    )
     # the foot is as far from the hip, across its axis, as this knee lets it
     pin.framesForwardKinematics(model, data, q)
-    sole = data.oMf[model.getFrameId(source.foot)].act(np.array(source.sole)) - data.oMi[hip].translation
+    sole = (
+        data.oMf[model.getFrameId(source.foot)].act(np.array(source.sole))
+        - data.oMi[hip].translation
+    )
     axis = pin.computeJointJacobian(model, data, q, hip)[3:, place]
     axis = data.oMi[hip].rotation @ axis
     across = np.linalg.norm(sole - (sole @ axis) * axis)
@@ -81,10 +94,14 @@ def test_own_description_measures_as_the_batched_analysis_does(tmp_path, monkeyp
 
 
 def test_posed_sdf_reads_like_the_urdf_of_the_same_leg(tmp_path, monkeypatch):
-    # a thigh and a shank, both rods along x of their links, which hang down; a loop-closing joint comes last
+    # a thigh and a shank, both rods along x of their links, which hang down; a loop-closing joint
+    # comes last
     link = """<link name="{0}"><pose>{1}</pose><inertial><mass>{2}</mass><pose>{3} 0 0 0 0 0</pose>
         <inertia><ixx>0.01</ixx><iyy>0.02</iyy><izz>0.03</izz></inertia></inertial></link>"""
-    joint = '<joint name="{0}" type="revolute"><parent>{1}</parent><child>{2}</child><axis><xyz>0 1 0</xyz></axis></joint>'
+    joint = (
+        '<joint name="{0}" type="revolute"><parent>{1}</parent><child>{2}</child><axis><xyz>0 '
+        "1 0</xyz></axis></joint>"
+    )
     text = "".join(
         [
             link.format("body", "0 0 1 0 0 0", 5, 0),
@@ -97,7 +114,9 @@ def test_posed_sdf_reads_like_the_urdf_of_the_same_leg(tmp_path, monkeypatch):
     )
     (tmp_path / "leg.sdf").write_text(f'<sdf version="1.6"><model name="m">{text}</model></sdf>')
     monkeypatch.setattr(other_robots, "robots_folder", lambda: tmp_path)
-    source = RobotSource("Rods", "biped", "leg.sdf", "hip", "hip", "knee", "", "shank", (0.4, 0.0, 0.0), 0.05)
+    source = RobotSource(
+        "Rods", "biped", "leg.sdf", "hip", "hip", "knee", "", "shank", (0.4, 0.0, 0.0), 0.05
+    )
     leg = measure(source).leg
     assert leg.total_mass == pytest.approx(8)
     assert leg.leg_mass == leg.swing_mass == pytest.approx(3)

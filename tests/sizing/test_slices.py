@@ -16,7 +16,12 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 def random_set(seed, joints, motors):
     rng = np.random.default_rng(seed)
-    return rng, rng.normal(size=(joints, motors)) * 20, -rng.uniform(0.5, 3, motors), rng.uniform(0.5, 7, motors)
+    return (
+        rng,
+        rng.normal(size=(joints, motors)) * 20,
+        -rng.uniform(0.5, 3, motors),
+        rng.uniform(0.5, 7, motors),
+    )
 
 
 def corners(matrix, lower, upper):
@@ -29,7 +34,10 @@ def largest(matrix, lower, upper, direction, held=()):
     """Cvxpy's answer to `support`, with the torque of some joints held at zero."""
     motor = cp.Variable(len(lower))
     joint = matrix @ motor
-    problem = cp.Problem(cp.Maximize(direction @ joint), [motor >= lower, motor <= upper, *(joint[i] == 0 for i in held)])
+    problem = cp.Problem(
+        cp.Maximize(direction @ joint),
+        [motor >= lower, motor <= upper, *(joint[i] == 0 for i in held)],
+    )
     problem.solve(solver=cp.CLARABEL)
     return problem.value
 
@@ -54,7 +62,9 @@ def test_projection_is_the_hull_of_projected_corners(seed, shape):
     hull = ConvexHull(corners(matrix, lower, upper)[:, [0, 2]])
     assert len(polygon) == 2 * shape[1]
     assert area(polygon) == pytest.approx(hull.volume, rel=1e-9)
-    assert area(polygon) == pytest.approx(float(zonotope.volume(matrix[[0, 2]], lower, upper)), rel=1e-9)
+    assert area(polygon) == pytest.approx(
+        float(zonotope.volume(matrix[[0, 2]], lower, upper)), rel=1e-9
+    )
 
 
 def test_cut_of_two_joints_reaches_as_far_as_cvxpy(leg):
@@ -65,7 +75,9 @@ def test_cut_of_two_joints_reaches_as_far_as_cvxpy(leg):
     for angle in np.linspace(0, 2 * np.pi, 8, endpoint=False):
         direction = np.zeros(len(matrix))
         direction[[3, 4]] = np.cos(angle), np.sin(angle)
-        assert (polygon @ direction[[3, 4]]).max() == pytest.approx(largest(matrix, lower, upper, direction, held), rel=1e-6)
+        assert (polygon @ direction[[3, 4]]).max() == pytest.approx(
+            largest(matrix, lower, upper, direction, held), rel=1e-6
+        )
 
 
 @settings(max_examples=25, deadline=None)
@@ -97,7 +109,10 @@ def test_paper_leg_with_and_without_toe_motor():
     assert area(cut[0]) == pytest.approx(area(cut[1]))
     assert area(shadow[0]) > 1.5 * area(shadow[1])
     peak = motor_envelope(full).peak_torque[3:]
-    np.testing.assert_allclose(shadow[0].max(0), zonotope.box(transmission.joint_from_motor(full, "walking")[3:5, 3:], -peak, peak)[1])
+    np.testing.assert_allclose(
+        shadow[0].max(0),
+        zonotope.box(transmission.joint_from_motor(full, "walking")[3:5, 3:], -peak, peak)[1],
+    )
 
 
 def test_cuts_that_miss_or_touch():
@@ -118,7 +133,11 @@ def test_shadow_in_three_joints_has_the_closed_form_volume(seed, shape):
     _, matrix, lower, upper = random_set(seed, *shape)
     body = slices.slice_polyhedron(matrix, lower, upper, (0, 1, 2), {})
     assert body.volume == pytest.approx(float(zonotope.volume(matrix[:3], lower, upper)), rel=1e-8)
-    edges = {tuple(sorted(pair)) for face in body.faces for pair in zip(face, np.roll(face, -1), strict=True)}
+    edges = {
+        tuple(sorted(pair))
+        for face in body.faces
+        for pair in zip(face, np.roll(face, -1), strict=True)
+    }
     assert len(body.vertices) - len(edges) + len(body.faces) == 2
     assert len(body.faces) == shape[1] * (shape[1] - 1)
 
@@ -136,7 +155,9 @@ def test_cut_in_three_joints_is_convex_and_faces_outward(leg):
     assert not zonotope.contains(matrix, lower, upper, 1.0001 * full).any()
 
 
-@pytest.mark.parametrize(("joints", "held"), [((0, 0), None), ((0, 5), None), ((0, 1), {1: 0.0}), ((0, 1), {7: 0.0})])
+@pytest.mark.parametrize(
+    ("joints", "held"), [((0, 0), None), ((0, 5), None), ((0, 1), {1: 0.0}), ((0, 1), {7: 0.0})]
+)
 def test_rows_that_are_not_there_are_refused(joints, held):
     with pytest.raises(InputError, match="rows"):
         slices.slice_polygon(np.eye(3), -np.ones(3), np.ones(3), joints, held)

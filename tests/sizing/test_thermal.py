@@ -5,7 +5,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.sizing.thermal import READINGS, moving_average, rms_torque, thermal_use, time_to_limit
+from hyperleg_design.sizing.thermal import (
+    READINGS,
+    moving_average,
+    rms_torque,
+    thermal_use,
+    time_to_limit,
+)
 
 RATED = np.array([1.76, 0.94, 0.57])
 SAMPLES = arrays(float, (12, 3), elements=st.floats(-10, 10))
@@ -19,7 +25,9 @@ def test_average_solves_its_differential_equation():
     value = np.array([0.4])
     for k in range(60):
         held = float(samples[k, 0])
-        value = solve_ivp(lambda _, e, x=held: (x - e) / 3.0, (0, step), value, rtol=1e-11, atol=1e-13).y[:, -1]
+        value = solve_ivp(
+            lambda _, e, x=held: (x - e) / 3.0, (0, step), value, rtol=1e-11, atol=1e-13
+        ).y[:, -1]
         assert found[k] == pytest.approx(value[0], abs=1e-9)
 
 
@@ -28,7 +36,11 @@ def test_average_solves_its_differential_equation():
 def test_average_goes_on_where_it_stopped_and_does_not_depend_on_the_step(samples, start, cut):
     whole = moving_average(samples, 0.1, start=start)
     first = moving_average(samples[:cut], 0.1, start=start)
-    np.testing.assert_allclose(np.concatenate([first, moving_average(samples[cut:], 0.1, start=first[-1])]), whole, atol=1e-12)
+    np.testing.assert_allclose(
+        np.concatenate([first, moving_average(samples[cut:], 0.1, start=first[-1])]),
+        whole,
+        atol=1e-12,
+    )
     finer = moving_average(np.repeat(samples, 4, axis=0), 0.025, start=start)[3::4]
     np.testing.assert_allclose(finer, whole, atol=1e-12)
 

@@ -28,14 +28,20 @@ def test_log_levels_are_evenly_spaced_in_the_logarithm():
 
 
 def test_scale_multiplies_each_base_value_vectors_too():
-    axis = read("foot", {"paths": ["thigh.length", "shank.length", "foot.com"], "scale": [0.5, 2.0]})
+    axis = read(
+        "foot", {"paths": ["thigh.length", "shank.length", "foot.com"], "scale": [0.5, 2.0]}
+    )
     found = axis.leaf_values(BASE, np.array([0.5, 2.0]))
-    np.testing.assert_allclose(found["thigh.length"], [0.5 * BASE.thigh.length, 2 * BASE.thigh.length])
+    np.testing.assert_allclose(
+        found["thigh.length"], [0.5 * BASE.thigh.length, 2 * BASE.thigh.length]
+    )
     np.testing.assert_allclose(found["foot.com"], [0.5 * BASE.foot.com, 2 * BASE.foot.com])
 
 
 def test_several_paths_share_a_value():
-    axis = read("gear", {"paths": ["actuators.knee.gear", "actuators.ankle.gear"], "values": [5, 9]})
+    axis = read(
+        "gear", {"paths": ["actuators.knee.gear", "actuators.ankle.gear"], "values": [5, 9]}
+    )
     found = axis.leaf_values(BASE, np.array([5.0, 9.0]))
     assert set(found) == {"actuators.knee.gear", "actuators.ankle.gear"}
     np.testing.assert_array_equal(found["actuators.ankle.gear"], [5, 9])
@@ -73,7 +79,11 @@ def test_listed_values_are_drawn_evenly(count):
         ("toe.mas", {"values": [0.1]}, ["axes.toe.mas", "did you mean toe.mass"]),
         ("reductions", {"values": [1]}, ["axes.reductions", "paths"]),
         ("toe", {"values": [1]}, ["axes.toe", "paths"]),
-        ("a", {"paths": ["thigh.lenght"], "values": [1]}, ["thigh.lenght", "did you mean thigh.length"]),
+        (
+            "a",
+            {"paths": ["thigh.lenght"], "values": [1]},
+            ["thigh.lenght", "did you mean thigh.length"],
+        ),
         ("a", {"paths": [], "values": [1]}, ["axes.a.paths"]),
         ("a", {"paths": ["toe.mass", "toe.mass"], "values": [1]}, ["different leaves"]),
         ("toe.mass", [0.1, 0.2], ["axes.toe.mass", "mapping"]),
@@ -92,7 +102,11 @@ def test_listed_values_are_drawn_evenly(count):
         ("toe.mass", {"low": 0.1, "high": 0.5, "steps": 1}, ["2 .."]),
         ("toe.mass", {"low": 0.1, "high": 0.5, "steps": 2.5}, ["whole number"]),
         ("toe.mass", {"low": 0.1, "high": 0.5, "steps": 3, "log": "yes"}, ["true or false"]),
-        ("toe.mass", {"scale": {"low": 0.1, "high": 0.5, "step": 3}}, ["axes.toe.mass.scale.step", "did you mean steps"]),
+        (
+            "toe.mass",
+            {"scale": {"low": 0.1, "high": 0.5, "step": 3}},
+            ["axes.toe.mass.scale.step", "did you mean steps"],
+        ),
         ("toe.mass", {"scale": {"values": [1]}, "low": 1}, ["inside scale"]),
         ("toe.mass", {"scale": 2}, ["of the factor"]),
         ("toe.mass", {"scale": [1, 100]}, ["toe.mass takes 0 .. 10 kg"]),

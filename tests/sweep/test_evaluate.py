@@ -37,7 +37,9 @@ def test_impossible_designs_are_told_apart_and_the_others_kept():
     leg = sum(SWEEP.base[p] for p in ("thigh.length", "shank.length", "foot.ankle_height"))
     foot = SWEEP.base.foot.heel_length + rows["foot.ball_length"] + SWEEP.base.toe.length
     np.testing.assert_array_equal(rejected, foot >= leg)
-    assert set(rows["rejected"][rejected]) == {"foot.ball_length: makes the foot longer than the leg; lengths are metres"}
+    assert set(rows["rejected"][rejected]) == {
+        "foot.ball_length: makes the foot longer than the leg; lengths are metres"
+    }
     for column in measures.columns(SWEEP.measures):
         assert np.isnan(rows[column][rejected]).all()
         if not column.endswith(".toe"):
@@ -51,7 +53,10 @@ def test_rows_are_those_of_each_design_alone():
     np.testing.assert_array_equal(rows["variant"][:4], ["toe", "toe_removed_matched"] * 2)
     samples = SWEEP.samples()
     for row in range(0, 80, 7):
-        one = {name: values[rows["sample"][row] : rows["sample"][row] + 1] for name, values in samples.items()}
+        one = {
+            name: values[rows["sample"][row] : rows["sample"][row] + 1]
+            for name, values in samples.items()
+        }
         try:
             expected = measures.evaluate(SWEEP.design(one, rows["variant"][row]), SWEEP.measures)
         except InputError:
@@ -76,7 +81,13 @@ def test_stretches_give_the_same_bits_as_the_whole(cuts):
 
 
 def test_no_good_design_at_all():
-    sweep = sweep_from_mapping({"design": "hyperleg", "axes": {"foot.ball_length": {"values": [0.58, 0.59, 0.6]}}, "set": {"thigh.length": 0.2}})
+    sweep = sweep_from_mapping(
+        {
+            "design": "hyperleg",
+            "axes": {"foot.ball_length": {"values": [0.58, 0.59, 0.6]}},
+            "set": {"thigh.length": 0.2},
+        }
+    )
     rows = evaluate.evaluate_range(sweep, 0, 3)
     assert (rows["rejected"] != "").all()
     assert np.isnan(rows["total_mass"]).all()
@@ -86,19 +97,34 @@ def counted(sweep, monkeypatch):
     """How often a batch of designs is built, as a list that grows."""
     calls = []
     original = type(sweep).design
-    monkeypatch.setattr(type(sweep), "design", lambda self, part, variant: calls.append(1) or original(self, part, variant))
+    monkeypatch.setattr(
+        type(sweep),
+        "design",
+        lambda self, part, variant: calls.append(1) or original(self, part, variant),
+    )
     return calls
 
 
-MANY = {"design": "hyperleg", "sampling": "random", "count": 1024, "set": {"thigh.length": 0.28}, "measures": ["total_mass"]}
-TWO_WAYS_TO_FAIL = {"foot.ball_length": {"low": 0.1, "high": 0.6}, "foot.mass": {"low": 0.03, "high": 0.7}}
+MANY = {
+    "design": "hyperleg",
+    "sampling": "random",
+    "count": 1024,
+    "set": {"thigh.length": 0.28},
+    "measures": ["total_mass"],
+}
+TWO_WAYS_TO_FAIL = {
+    "foot.ball_length": {"low": 0.1, "high": 0.6},
+    "foot.mass": {"low": 0.03, "high": 0.7},
+}
 
 
 def test_refused_designs_cost_a_batch_a_reason_not_one_each(monkeypatch):
     sweep = sweep_from_mapping(MANY | {"axes": TWO_WAYS_TO_FAIL})
     calls = counted(sweep, monkeypatch)
     _, reasons = evaluate.evaluate_samples(sweep, sweep.samples(), "toe")
-    found = {reason.split(":")[0]: int((reasons == reason).sum()) for reason in set(reasons) if reason}
+    found = {
+        reason.split(":")[0]: int((reasons == reason).sum()) for reason in set(reasons) if reason
+    }
     assert min(found["foot.ball_length"], found["foot.cross_mass"]) > 20
     assert len(calls) <= 3
 
@@ -126,7 +152,9 @@ def test_halving_tries_only_the_bad_designs_alone(monkeypatch):
 
 REFUSALS = {
     "joints.knee.lower_deg": {"joints.knee.lower_deg": [0.0, 170.0, 0.0]},
-    "foot.gyration": {"foot.gyration": np.array([[0.03, 0.05, 0.056], [0.001, 0.002, 0.4], [0.03, 0.05, 0.056]])},
+    "foot.gyration": {
+        "foot.gyration": np.array([[0.03, 0.05, 0.056], [0.001, 0.002, 0.4], [0.03, 0.05, 0.056]])
+    },
     "thigh.mass": {"thigh.mass": [5.71, 1.0, 5.71]},
 }
 

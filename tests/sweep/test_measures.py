@@ -46,7 +46,11 @@ def test_a_batch_equals_its_designs_one_by_one(variant):
 
 SIMULATED = ("joints.", "contact.", "transmission.linkage.")
 """Sections that no sizing measure reads."""
-LEAVES = sorted(p for p, rule in parameters.rules(Design).items() if rule.kind == "number" and not p.startswith(SIMULATED))
+LEAVES = sorted(
+    p
+    for p, rule in parameters.rules(Design).items()
+    if rule.kind == "number" and not p.startswith(SIMULATED)
+)
 
 
 @pytest.mark.parametrize("variant", ["toe", "toe_removed"])
@@ -66,7 +70,9 @@ def test_a_batch_in_any_one_leaf_equals_its_designs(variant):
         together = measures.evaluate(designs)
         alone = [measures.evaluate(designs.take(i)) for i in range(2)]
         for column, found in together.items():
-            np.testing.assert_allclose(found, [a[column][0] for a in alone], rtol=1e-12, err_msg=f"{path}: {column}")
+            np.testing.assert_allclose(
+                found, [a[column][0] for a in alone], rtol=1e-12, err_msg=f"{path}: {column}"
+            )
     assert made > 0.8 * len(LEAVES)
 
 
@@ -83,7 +89,9 @@ def test_every_measure_has_its_columns_unit_and_meaning():
 
 def test_only_the_toes_parts_are_missing_without_a_toe():
     for variant in VARIANTS[1:]:
-        missing = {c for c, v in measures.evaluate(ablate(BASE, variant)).items() if np.isnan(v).any()}
+        missing = {
+            c for c, v in measures.evaluate(ablate(BASE, variant)).items() if np.isnan(v).any()
+        }
         assert missing == {c for c in measures.columns(measures.MEASURES) if c.endswith(".toe")}
 
 
@@ -92,7 +100,9 @@ def test_the_papers_robot():
     assert found["total_mass"] == pytest.approx(32.0, rel=1e-12)
     assert found["leg_mass"] == pytest.approx(8.27, rel=1e-12)
     # Table I
-    for joint, printed in zip(JOINTS, (126.0, 126.0, 126.0, 211.95, 111.70, 48.44, 46.84), strict=True):
+    for joint, printed in zip(
+        JOINTS, (126.0, 126.0, 126.0, 211.95, 111.70, 48.44, 46.84), strict=True
+    ):
         assert found[f"max_joint_torque.{joint}"] == pytest.approx(printed, rel=1e-3)
     assert found["zonotope_to_box_volume"] == pytest.approx(0.130, abs=5e-4)
     assert found["torque_alone.knee"] == pytest.approx(83.4, abs=0.05)
@@ -104,7 +114,9 @@ def test_leg_inertia_is_that_of_pinocchio():
         design = ablate(batch(3, 2), variant).take(1)
         model = rigid_body_model(design, floating=False)
         matrix = model.mass_matrix(model.neutral()) - model.reflected
-        assert measures.evaluate(design, ["swing_inertia"])["swing_inertia"][0] == pytest.approx(matrix[2, 2], rel=1e-10)
+        assert measures.evaluate(design, ["swing_inertia"])["swing_inertia"][0] == pytest.approx(
+            matrix[2, 2], rel=1e-10
+        )
 
 
 def test_actuators_weigh_what_a_change_of_motor_changes():
@@ -114,8 +126,13 @@ def test_actuators_weigh_what_a_change_of_motor_changes():
     assert gained[0] == pytest.approx(gained[1], rel=1e-9)
     assert gained[0] > 0
     without = ablate(BASE, "toe_removed")
-    lost = columns[0]["actuator_mass"][0] - measures.evaluate(without, ["actuator_mass"])["actuator_mass"][0]
-    assert lost == pytest.approx(float(mass_table(BASE).thigh - mass_table(without).thigh), rel=1e-9)
+    lost = (
+        columns[0]["actuator_mass"][0]
+        - measures.evaluate(without, ["actuator_mass"])["actuator_mass"][0]
+    )
+    assert lost == pytest.approx(
+        float(mass_table(BASE).thigh - mass_table(without).thigh), rel=1e-9
+    )
 
 
 def test_holding_heat_is_least_among_all_motor_torques():
@@ -136,7 +153,14 @@ def test_largest_power_is_the_maximum_over_the_rates(seed, motors):
     """Against a fine search over the rate, with the envelope's own limits."""
     rng = np.random.default_rng(seed)
     peak = rng.uniform(0.2, 5, motors)
-    envelope = MotorEnvelope(rng.uniform(50, 400, motors), peak * rng.uniform(0.7, 15, motors), peak, np.ones(motors), 0.9, 0.8)
+    envelope = MotorEnvelope(
+        rng.uniform(50, 400, motors),
+        peak * rng.uniform(0.7, 15, motors),
+        peak,
+        np.ones(motors),
+        0.9,
+        0.8,
+    )
     speed = rng.uniform(0, 60, motors) * (rng.random(motors) > 0.3)
     found = float(measures.largest_power(envelope, speed))
     if not speed.any():
@@ -156,9 +180,13 @@ def test_push_off_power_is_a_support_of_the_speed_dependent_set():
     direction = np.array([0, 0, 0, -1.0, 1.0, 0, 0])
     best = 0.0
     for rate in np.linspace(0, 8, 4001):
-        lower, upper = torque_limits(one.envelope, transmission.motor_velocity(one.walking, rate * direction))
+        lower, upper = torque_limits(
+            one.envelope, transmission.motor_velocity(one.walking, rate * direction)
+        )
         best = max(best, float(support(one.walking, lower, upper, rate * direction)))
-    assert measures.evaluate(BASE, ["push_off_power"])["push_off_power"][0] == pytest.approx(best, rel=1e-6)
+    assert measures.evaluate(BASE, ["push_off_power"])["push_off_power"][0] == pytest.approx(
+        best, rel=1e-6
+    )
 
 
 def test_all_catalogue_motors_give_finite_measures():

@@ -16,15 +16,26 @@ def brute_force(values, better):
     for i, point in enumerate(cost):
         if np.isnan(point).any():
             continue
-        dominated = any(not np.isnan(o).any() and np.all(o <= point) and np.any(o < point) for o in cost)
+        dominated = any(
+            not np.isnan(o).any() and np.all(o <= point) and np.any(o < point) for o in cost
+        )
         keep[i] = not dominated
     return keep
 
 
-@given(data=st.data(), values=arrays(float, array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=12), elements=VALUES))
+@given(
+    data=st.data(),
+    values=arrays(
+        float, array_shapes(min_dims=2, max_dims=2, min_side=1, max_side=12), elements=VALUES
+    ),
+)
 @settings(max_examples=200, deadline=None)
 def test_equals_brute_force(data, values):
-    better = data.draw(st.lists(st.sampled_from(["low", "high"]), min_size=values.shape[1], max_size=values.shape[1]))
+    better = data.draw(
+        st.lists(
+            st.sampled_from(["low", "high"]), min_size=values.shape[1], max_size=values.shape[1]
+        )
+    )
     np.testing.assert_array_equal(nondominated(values, better), brute_force(values, better))
 
 
@@ -41,7 +52,9 @@ def test_equal_points_all_stay_and_order_does_not_matter():
     values = np.array([[1.0, 1.0], [1.0, 1.0], [2.0, 0.0], [2.0, 1.0]])
     np.testing.assert_array_equal(nondominated(values, ["low", "low"]), [True, True, True, False])
     shuffle = np.random.default_rng(0).permutation(4)
-    np.testing.assert_array_equal(nondominated(values[shuffle], ["low", "low"]), nondominated(values, ["low", "low"])[shuffle])
+    np.testing.assert_array_equal(
+        nondominated(values[shuffle], ["low", "low"]), nondominated(values, ["low", "low"])[shuffle]
+    )
 
 
 def test_nothing_has_no_front():
@@ -49,7 +62,12 @@ def test_nothing_has_no_front():
     assert not nondominated(np.full((3, 2), np.nan), ["low", "high"]).any()
 
 
-MISUSE = [(np.zeros(3), ["low"]), (np.zeros((3, 2)), ["low"]), (np.zeros((3, 1)), ["best"]), (np.zeros((3, 0)), [])]
+MISUSE = [
+    (np.zeros(3), ["low"]),
+    (np.zeros((3, 2)), ["low"]),
+    (np.zeros((3, 1)), ["best"]),
+    (np.zeros((3, 0)), []),
+]
 
 
 @pytest.mark.parametrize(("values", "better"), MISUSE)

@@ -14,8 +14,17 @@ from hyperleg_design.sweep.reference_loads import StaticLoad
 BASE = load_design("hyperleg")
 DESIGNS = {
     "hyperleg": {},
-    "long_heavy": {"thigh.length": 0.45, "toe.mass": 0.4, "foot.com": [0.04, 0.0, -0.03], "thigh.com_forward": 0.02},
-    "other_motors": {"actuators.knee.motor": "RI80", "actuators.hip_pitch.motor": "U8", "toe.length": 0.08},
+    "long_heavy": {
+        "thigh.length": 0.45,
+        "toe.mass": 0.4,
+        "foot.com": [0.04, 0.0, -0.03],
+        "thigh.com_forward": 0.02,
+    },
+    "other_motors": {
+        "actuators.knee.motor": "RI80",
+        "actuators.hip_pitch.motor": "U8",
+        "toe.length": 0.08,
+    },
 }
 
 
@@ -24,14 +33,20 @@ def make(name, variant):
 
 
 def pinocchio_torque(design, load: StaticLoad, link: str):
-    """Left-leg torques by gravity and contact in Pinocchio: g(q) - J^T F, at the point of the load."""
+    """Left-leg torques by gravity and contact in Pinocchio: g(q) - J^T F, at the point of the
+    load.
+    """
     import pinocchio as pin
 
     model = rigid_body_model(design)
     names = joint_names(design)
     q = model.neutral()
     hip, knee, ankle, toe = np.asarray(load.angles, float)
-    angles = dict.fromkeys(names, 0.0) | {"hip_pitch": hip, "knee": knee, "ankle_pitch": ankle} | ({"toe": toe} if "toe" in names else {})
+    angles = (
+        dict.fromkeys(names, 0.0)
+        | {"hip_pitch": hip, "knee": knee, "ankle_pitch": ankle}
+        | ({"toe": toe} if "toe" in names else {})
+    )
     q[7 : 7 + len(names)] = [angles[n] for n in names]
     q[7 + len(names) :] = [angles[n] for n in names]
     tau = np.array(pin.computeGeneralizedGravity(model.model, model.data, q))
@@ -58,7 +73,9 @@ def test_squat_is_what_pinocchio_finds_in_the_sagittal_plane(name, variant):
     # the robot is in balance: its centre of mass stands over the load
     ahead = model.center_of_mass(q)[0] - model.frame_position(q, "left_thigh")[0]
     assert ahead == pytest.approx(float(load.pressure_point), abs=1e-9)
-    assert 2 * float(load.force) == pytest.approx(GRAVITY * sum(link.mass for link in model.tree.links), rel=1e-12)
+    assert 2 * float(load.force) == pytest.approx(
+        GRAVITY * sum(link.mass for link in model.tree.links), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
@@ -67,10 +84,14 @@ def test_push_off_is_what_pinocchio_finds_in_the_sagittal_plane(name, variant):
     design = make(name, variant)
     load = reference_loads.push_off(design, inertials(design))
     moving = joint_names(design)
-    expected, *_ = pinocchio_torque(design, load, "left_toe_plate" if "toe" in moving else "left_foot")
+    expected, *_ = pinocchio_torque(
+        design, load, "left_toe_plate" if "toe" in moving else "left_foot"
+    )
     for joint in ("hip_pitch", "knee", "ankle_pitch", "toe"):
         if joint in moving:
-            assert load.torque[moving.index(joint)] == pytest.approx(expected[moving.index(joint)], abs=1e-9)
+            assert load.torque[moving.index(joint)] == pytest.approx(
+                expected[moving.index(joint)], abs=1e-9
+            )
 
 
 def test_squat_keeps_knee_and_trunk_as_stated():
@@ -88,7 +109,9 @@ def test_a_robot_that_no_lean_brings_over_its_foot_has_no_squat():
 
 def test_a_batch_equals_its_designs():
     rng = np.random.default_rng(5)
-    batch = BASE.with_values({"toe.mass": rng.uniform(0.1, 0.5, 4), "thigh.length": rng.uniform(0.3, 0.45, 4)})
+    batch = BASE.with_values(
+        {"toe.mass": rng.uniform(0.1, 0.5, 4), "thigh.length": rng.uniform(0.3, 0.45, 4)}
+    )
     for load in (reference_loads.squat, reference_loads.push_off):
         together = load(batch, inertials(batch))
         for i in range(4):

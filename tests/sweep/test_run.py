@@ -58,14 +58,21 @@ def test_the_table_holds_every_design_and_what_made_it(tmp_path):
     result = go(tmp_path / "out")
     columns = result.columns()
     assert len(columns["sample"]) == 120
-    assert columns["foot.ball_length"].tobytes() == np.repeat(sweep().samples()["foot.ball_length"], 2).tobytes()
+    assert (
+        columns["foot.ball_length"].tobytes()
+        == np.repeat(sweep().samples()["foot.ball_length"], 2).tobytes()
+    )
     made = table.read_metadata(result.table_path)
     assert made["sweep"] == json.loads(json.dumps(sweep().to_mapping()))
     assert made["sweep"]["seed"] == 7
     assert made["sweep"]["design"]["toe"]["mass"]["value"] == 0.22
     assert made["commit"] == "abc"
     assert made["versions"]["numpy"] == np.__version__
-    assert sorted(p.name for p in result.folder.iterdir()) == [".hyperleg", "designs.parquet", "summary.json"]
+    assert sorted(p.name for p in result.folder.iterdir()) == [
+        ".hyperleg",
+        "designs.parquet",
+        "summary.json",
+    ]
     assert json.loads((result.folder / "summary.json").read_text()) == result.summary
 
 
@@ -196,7 +203,9 @@ def test_a_wrong_definition_writes_nothing(tmp_path):
 
 @pytest.mark.parametrize("limit", [300, 9000])
 def test_a_full_disk_is_one_clear_error_and_nothing_half_written(tmp_path, whole, limit):
-    """Files longer than the limit cannot be written: at first not even the state, then not the joined table."""
+    """Files longer than the limit cannot be written: at first not even the state, then not the
+    joined table.
+    """
     folder = tmp_path / "out"
     old = resource.getrlimit(resource.RLIMIT_FSIZE)
     ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -230,7 +239,9 @@ run.run_sweep(sys.argv[1], sys.argv[2], chunk=10, progress=False)
 
 
 def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(tmp_path):
-    """SIGKILL in mid-run, then again, then to the end; content lies outside a checkout, so no commit changes."""
+    """SIGKILL in mid-run, then again, then to the end; content lies outside a checkout, so no
+    commit changes.
+    """
     home = tmp_path / "home"
     for kind in ("descriptions", "motors", "sweeps"):
         shutil.copytree(resources.content_folder(kind), home / kind)
@@ -239,12 +250,16 @@ def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(tmp_path):
     environment = os.environ | {"HYPERLEG_HOME": str(home)}
 
     def start(out, pause):
-        return subprocess.Popen([sys.executable, "-c", SCRIPT, str(path), str(out), str(pause)], env=environment)
+        return subprocess.Popen(
+            [sys.executable, "-c", SCRIPT, str(path), str(out), str(pause)], env=environment
+        )
 
     for wanted in (1, 3):
         process = start(folder, 0.25)
         deadline = time.monotonic() + 60
-        while len(list((folder / CHUNKS).glob("0*.parquet"))) < wanted and time.monotonic() < deadline:
+        while (
+            len(list((folder / CHUNKS).glob("0*.parquet"))) < wanted and time.monotonic() < deadline
+        ):
             time.sleep(0.02)
         process.send_signal(signal.SIGKILL)
         assert process.wait() == -signal.SIGKILL

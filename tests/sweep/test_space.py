@@ -8,12 +8,27 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.sweep.space import MAX_DESIGNS, SAMPLINGS, load_sweep, sweep_from_mapping
 
-AXES = {"toe.mass": {"low": 0.1, "high": 0.5}, "leg": {"paths": ["thigh.length", "shank.length"], "scale": {"low": 0.8, "high": 1.2}}}
-GRID = {"toe.mass": {"values": [0.1, 0.3]}, "actuators.knee.motor": {"values": ["RI60", "RI70", "RI80"]}}
+AXES = {
+    "toe.mass": {"low": 0.1, "high": 0.5},
+    "leg": {"paths": ["thigh.length", "shank.length"], "scale": {"low": 0.8, "high": 1.2}},
+}
+GRID = {
+    "toe.mass": {"values": [0.1, 0.3]},
+    "actuators.knee.motor": {"values": ["RI60", "RI70", "RI80"]},
+}
 
 
 def sampled(sampling="sobol", count=16, seed=0, **more):
-    return sweep_from_mapping({"design": "hyperleg", "sampling": sampling, "count": count, "seed": seed, "axes": AXES, **more})
+    return sweep_from_mapping(
+        {
+            "design": "hyperleg",
+            "sampling": sampling,
+            "count": count,
+            "seed": seed,
+            "axes": AXES,
+            **more,
+        }
+    )
 
 
 @pytest.mark.parametrize("name", resources.names("sweeps"))
@@ -25,10 +40,23 @@ def test_shipped_sweeps_read(name):
 
 
 def test_a_grid_has_every_combination_once():
-    sweep = sweep_from_mapping({"design": "hyperleg", "variants": ["toe", "toe_locked"], "axes": GRID})
+    sweep = sweep_from_mapping(
+        {"design": "hyperleg", "variants": ["toe", "toe_locked"], "axes": GRID}
+    )
     samples = sweep.samples()
     assert (sweep.count, sweep.size) == (6, 12)
-    assert len(set(zip(samples["toe.mass"].tolist(), samples["actuators.knee.motor"].tolist(), strict=True))) == 6
+    assert (
+        len(
+            set(
+                zip(
+                    samples["toe.mass"].tolist(),
+                    samples["actuators.knee.motor"].tolist(),
+                    strict=True,
+                )
+            )
+        )
+        == 6
+    )
 
 
 @pytest.mark.parametrize("sampling", [s for s in SAMPLINGS if s != "grid"])
@@ -42,7 +70,11 @@ def test_samples_follow_from_the_seed(sampling):
 @given(count=st.integers(1, 40), seed=st.integers(0, 2**31))
 @settings(max_examples=20, deadline=None)
 def test_a_latin_hypercube_has_one_sample_a_stratum(count, seed):
-    for values, (low, high) in zip(sampled("latin_hypercube", count, seed).samples().values(), ((0.1, 0.5), (0.8, 1.2)), strict=True):
+    for values, (low, high) in zip(
+        sampled("latin_hypercube", count, seed).samples().values(),
+        ((0.1, 0.5), (0.8, 1.2)),
+        strict=True,
+    ):
         strata = np.floor((values - low) / (high - low) * count).astype(int)
         np.testing.assert_array_equal(np.sort(np.clip(strata, 0, count - 1)), np.arange(count))
 
@@ -53,7 +85,9 @@ def test_sobol_points_are_balanced(power, seed):
     """The first 2^k points have one in each of 2^k equal intervals of every axis."""
     count = 2**power
     values = sampled("sobol", count, seed).samples()["toe.mass"]
-    np.testing.assert_array_equal(np.sort(((values - 0.1) / 0.4 * count).astype(int)), np.arange(count))
+    np.testing.assert_array_equal(
+        np.sort(((values - 0.1) / 0.4 * count).astype(int)), np.arange(count)
+    )
 
 
 def test_designs_take_the_samples_and_become_the_variant():
@@ -63,7 +97,9 @@ def test_designs_take_the_samples_and_become_the_variant():
     assert design.batch_shape == (4,)
     assert design.variant == "toe_removed_matched"
     np.testing.assert_array_equal(design["toe.mass"], samples["toe.mass"])
-    np.testing.assert_allclose(design["shank.length"], samples["leg"] * sweep.base.shank.length, rtol=1e-15)
+    np.testing.assert_allclose(
+        design["shank.length"], samples["leg"] * sweep.base.shank.length, rtol=1e-15
+    )
 
 
 def test_set_and_overrides_change_the_base():
@@ -77,7 +113,13 @@ def test_set_and_overrides_change_the_base():
 def test_the_digest_sees_what_changes_numbers():
     base = sampled().digest()
     assert base == sampled().digest()
-    for change in ({"seed": 1}, {"count": 17}, {"sampling": "random"}, {"variants": ["toe_locked"]}, {"measures": ["leg_mass"]}):
+    for change in (
+        {"seed": 1},
+        {"count": 17},
+        {"sampling": "random"},
+        {"variants": ["toe_locked"]},
+        {"measures": ["leg_mass"]},
+    ):
         assert sampled(**change).digest() != base, change
 
 
@@ -94,7 +136,10 @@ def test_the_digest_sees_what_changes_numbers():
         ({"axes": [1]}, ["at least one axis"]),
         ({"axes": {"toe.mas": {"values": [1]}}}, ["axes.toe.mas", "did you mean toe.mass"]),
         ({"axes": {"variant": {"paths": ["toe.mass"], "values": [1]}}}, ["another column"]),
-        ({"axes": {"a": {"paths": ["toe.mass"], "values": [1]}, "toe.mass": {"values": [1]}}}, ["moved by the axis a"]),
+        (
+            {"axes": {"a": {"paths": ["toe.mass"], "values": [1]}, "toe.mass": {"values": [1]}}},
+            ["moved by the axis a"],
+        ),
         ({"sampling": "halton"}, ["sampling", "grid, random, sobol"]),
         ({"sampling": "sobol"}, ["count", "is missing"]),
         ({"sampling": "sobol", "count": 0}, ["count", "1 .."]),
@@ -112,7 +157,10 @@ def test_the_digest_sees_what_changes_numbers():
         ({"measures": []}, ["measures"]),
         ({"objectives": ["max_joint_torque"]}, ["objectives", "max_joint_torque"]),
         ({"objectives": "leg_mass"}, ["list of measures"]),
-        ({"maps": [{"x": "toe.mass", "y": "toe.mass", "measure": "leg_mass"}]}, ["maps.x", "different"]),
+        (
+            {"maps": [{"x": "toe.mass", "y": "toe.mass", "measure": "leg_mass"}]},
+            ["maps.x", "different"],
+        ),
         ({"maps": [{"x": "actuators.knee.motor", "measure": "leg_mass"}]}, ["numeric axes"]),
         ({"maps": [{"x": "toe.mass", "measure": "leg_mas"}]}, ["did you mean leg_mass"]),
         ({"maps": [{"x": "toe.mass"}]}, ["maps", "measure"]),
@@ -130,12 +178,20 @@ def test_what_is_wrong_is_named(change, words):
 
 
 def test_a_grid_of_millions_is_a_mistake():
-    axes = {name: {"low": 0.9, "high": 1.1, "steps": 1000} for name in ("thigh.length", "shank.length", "pelvis.height")}
+    axes = {
+        name: {"low": 0.9, "high": 1.1, "steps": 1000}
+        for name in ("thigh.length", "shank.length", "pelvis.height")
+    }
     with pytest.raises(InputError, match="sample with sobol"):
         sweep_from_mapping({"design": "hyperleg", "axes": axes})
 
 
-BROKEN = ["axes: [", "axes: {toe.mass: {values: [1]}, toe.mass: {values: [2]}}", "- 1", "design: hyperleg\naxes:\n  toe.mass: 1"]
+BROKEN = [
+    "axes: [",
+    "axes: {toe.mass: {values: [1]}, toe.mass: {values: [2]}}",
+    "- 1",
+    "design: hyperleg\naxes:\n  toe.mass: 1",
+]
 
 
 @pytest.mark.parametrize("text", BROKEN)
@@ -154,7 +210,9 @@ def test_a_missing_file_lists_the_shipped_ones():
 
 LEAVES = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
 KEYS = st.sampled_from(["toe.mass", "values", "low", "high", "steps", "scale", "paths"])
-ANYTHING = st.recursive(LEAVES, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KEYS, inner), max_leaves=8)
+ANYTHING = st.recursive(
+    LEAVES, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KEYS, inner), max_leaves=8
+)
 FIELDS = ["axes", "variants", "sampling", "count", "seed", "measures", "objectives", "maps", "set"]
 
 

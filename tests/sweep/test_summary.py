@@ -20,14 +20,22 @@ def result(tmp_path_factory):
         "objectives": ["push_off_heat", "single_joint_speed.ankle_pitch"],
         "set": {"thigh.length": 0.30},
     }
-    return run_sweep(sweep_from_mapping(definition), tmp_path_factory.mktemp("summary") / "out", progress=False)
+    return run_sweep(
+        sweep_from_mapping(definition), tmp_path_factory.mktemp("summary") / "out", progress=False
+    )
 
 
 def test_counts(result):
     summary = result.summary
-    assert (summary["samples"], summary["designs"], summary["rejected"]) == (12, 24, 0 + int((result.columns()["rejected"] != "").sum()))
+    assert (summary["samples"], summary["designs"], summary["rejected"]) == (
+        12,
+        24,
+        0 + int((result.columns()["rejected"] != "").sum()),
+    )
     assert sum(summary["rejected_because"].values()) == summary["rejected"]
-    assert list(summary["rejected_because"]) == ["foot.ball_length: makes the foot longer than the leg; lengths are metres"]
+    assert list(summary["rejected_because"]) == [
+        "foot.ball_length: makes the foot longer than the leg; lengths are metres"
+    ]
 
 
 def test_ranges_are_of_the_table(result):
@@ -35,8 +43,14 @@ def test_ranges_are_of_the_table(result):
     for variant, ranges in result.summary["range"].items():
         for column, (low, median, high) in ranges.items():
             values = columns[column][columns["variant"] == variant]
-            assert (low, median, high) == (np.nanmin(values), np.nanmedian(values), np.nanmax(values))
-    missing = set(result.summary["range"]["toe"]) - set(result.summary["range"]["toe_removed_matched"])
+            assert (low, median, high) == (
+                np.nanmin(values),
+                np.nanmedian(values),
+                np.nanmax(values),
+            )
+    missing = set(result.summary["range"]["toe"]) - set(
+        result.summary["range"]["toe_removed_matched"]
+    )
     assert missing == {c for c in measures.columns(measures.MEASURES) if c.endswith(".toe")}
 
 
@@ -44,7 +58,9 @@ def test_fronts_are_those_of_each_variant(result):
     columns = result.columns()
     for variant, front in result.summary["front"].items():
         rows = columns["variant"] == variant
-        values = np.stack([columns["push_off_heat"][rows], columns["single_joint_speed.ankle_pitch"][rows]], -1)
+        values = np.stack(
+            [columns["push_off_heat"][rows], columns["single_joint_speed.ankle_pitch"][rows]], -1
+        )
         expected = columns["sample"][rows][nondominated(values, ["low", "high"])]
         assert front == {"designs": len(expected), "samples": expected.tolist()}
         assert 0 < len(expected) < rows.sum()

@@ -9,7 +9,13 @@ from hyperleg_design.sweep.evaluate import evaluate_range
 from hyperleg_design.sweep.space import sweep_from_mapping
 
 SWEEP = sweep_from_mapping(
-    {"design": "hyperleg", "axes": {"toe.mass": {"values": [0.1, 0.2, 0.3]}, "actuators.toe.motor": {"values": ["RI50", "RI60"]}}}
+    {
+        "design": "hyperleg",
+        "axes": {
+            "toe.mass": {"values": [0.1, 0.2, 0.3]},
+            "actuators.toe.motor": {"values": ["RI50", "RI60"]},
+        },
+    }
 )
 
 
@@ -47,7 +53,9 @@ def test_columns_carry_units_and_other_tools_read_them(tmp_path, parts):
         assert schema.field(column).metadata[b"unit"].decode() == measures.measure_of(column).unit
     assert schema.field("toe.mass").metadata[b"unit"] == b"kg"
     frame = pd.read_parquet(path)
-    assert frame["total_mass"].iloc[0] == pytest.approx(32.0 - 2 * 0.12 + 2 * (frame["leg_mass"].iloc[0] - 8.15))
+    assert frame["total_mass"].iloc[0] == pytest.approx(
+        32.0 - 2 * 0.12 + 2 * (frame["leg_mass"].iloc[0] - 8.15)
+    )
 
 
 def test_what_is_no_table_is_refused(tmp_path, parts):

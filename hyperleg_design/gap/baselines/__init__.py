@@ -1,1 +1,3 @@
-"""Tools that a diagnosis is compared with, on the same logs: each fits a fixed set of parameters that a person chose."""
+"""Tools that a diagnosis is compared with, on the same logs: each fits a fixed set of parameters
+that a person chose.
+"""

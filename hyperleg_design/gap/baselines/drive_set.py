@@ -1,5 +1,6 @@
-"""PACE's parameters (arXiv 2509.06342) and what a fit of them on some logs is: armature, viscous damping, Coulomb friction and encoder
-bias of each joint, and one delay of all commands. All are kept as differences from the nominal model.
+"""PACE's parameters (arXiv 2509.06342) and what a fit of them on some logs is: armature, viscous
+damping, Coulomb friction and encoder bias of each joint, and one delay of all commands. All are
+kept as differences from the nominal model.
 """
 
 from __future__ import annotations
@@ -20,16 +21,22 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 KINDS = ("armature", "damping", "friction", "bias")
-"""Of each joint [kg m^2, Nms/rad, Nm, rad], in the order of a vector of values; `delay` [s] comes last."""
+"""Of each joint [kg m^2, Nms/rad, Nm, rad], in the order of a vector of values; `delay` [s] comes
+last."""
 EFFECT = {
-    "armature": "rotor_inertia", "damping": "viscous_friction", "friction": "coulomb_friction", "bias": "encoder_offset", "delay": "command_delay",
-}  # fmt: skip
+    "armature": "rotor_inertia",
+    "damping": "viscous_friction",
+    "friction": "coulomb_friction",
+    "bias": "encoder_offset",
+    "delay": "command_delay",
+}
 """The effect of the catalogue that each stands for."""
 LARGEST_BIAS, LARGEST_DELAY = 0.1, 0.025
 """PACE's bounds [rad, s]: 0.1 rad, 10 steps at 400 Hz."""
 ARMATURE, FRICTION, DAMPING = 1.5, 0.25, 0.15
-"""Largest difference over the joint's inertia, over its strength, and over its strength a rad/s. PACE gives absolute numbers for one
-robot (1 kg m^2, 0.5 Nm, 7 Nms/rad on ANYmal's 89 Nm joints); these are of that order, or wider, on any."""
+"""Largest difference over the joint's inertia, over its strength, and over its strength a rad/s.
+PACE gives absolute numbers for one robot (1 kg m^2, 0.5 Nm, 7 Nms/rad on ANYmal's 89 Nm joints);
+these are of that order, or wider, on any."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +71,9 @@ class DriveSet:
         return EFFECT[KINDS[index // joints]], self.subject.joints[index % joints]
 
     def cause(self, values: np.ndarray) -> tuple[str, str, float]:
-        """What such a fit would name: effect, location and size of the largest change over its usual calibration error."""
+        """What such a fit would name: effect, location and size of the largest change over its
+        usual calibration error.
+        """
         size = np.abs(values) / self.spread
         at = int(np.argmax(size))
         return (*self.place(at), float(size[at]))
@@ -94,20 +103,42 @@ def drive_set(subject: Subject, step: float) -> DriveSet:
         InputError: a floating base.
     """
     if subject.floating:
-        raise InputError(subject.name, "base", subject.base, "expects a fixed base: these methods replay whole logs of a robot in the air")
+        raise InputError(
+            subject.name,
+            "base",
+            subject.base,
+            "expects a fixed base: these methods replay whole logs of a robot in the air",
+        )
     inertia = np.maximum(joint_inertia(subject) + np.diag(subject.armature), 1e-9)
     strength, joints = joint_strength(subject), len(subject.joints)
     own = subject.model.dof_armature[subject.model.nv - joints :]
-    high = np.concatenate([ARMATURE * inertia, DAMPING * strength, FRICTION * strength, np.full(joints, LARGEST_BIAS), [LARGEST_DELAY]])
-    low = np.concatenate([-0.9 * own, -subject.viscous, -subject.coulomb, np.full(joints, -LARGEST_BIAS), [0.0]])
+    high = np.concatenate(
+        [
+            ARMATURE * inertia,
+            DAMPING * strength,
+            FRICTION * strength,
+            np.full(joints, LARGEST_BIAS),
+            [LARGEST_DELAY],
+        ]
+    )
+    low = np.concatenate(
+        [-0.9 * own, -subject.viscous, -subject.coulomb, np.full(joints, -LARGEST_BIAS), [0.0]]
+    )
     return DriveSet(subject, low, high, _spreads(subject, step))
 
 
 def _spreads(subject: Subject, step: float) -> np.ndarray:
-    known: Mapping[tuple[str, str], float] = {(u.effect, u.location): u.spread for u in nuisance.usual_errors(subject, step) if u.parameter == 0}
+    known: Mapping[tuple[str, str], float] = {
+        (u.effect, u.location): u.spread
+        for u in nuisance.usual_errors(subject, step)
+        if u.parameter == 0
+    }
     inertia = joint_inertia(subject)
     rotors = nuisance.ROTOR * np.diag(subject.armature) + nuisance.OWN_INERTIA * inertia
-    joints = [[known[effect, j] for j in subject.joints] for effect in ("viscous_friction", "coulomb_friction", "encoder_offset")]
+    joints = [
+        [known[effect, j] for j in subject.joints]
+        for effect in ("viscous_friction", "coulomb_friction", "encoder_offset")
+    ]
     late = nuisance.LATE + nuisance.LATE_TICKS * step
     return np.concatenate([rotors, *joints, [late]])
 
@@ -122,4 +153,9 @@ def check_logs(signals: Sequence[Signals]) -> None:
         raise InputError("baselines", "logs", 0, "expects at least one log")
     for one in signals:
         if best_input(one) != "target":
-            raise InputError(one.log.name, "position_target", None, "expects targets and gains of all joints: these methods replay the closed loop")
+            raise InputError(
+                one.log.name,
+                "position_target",
+                None,
+                "expects targets and gains of all joints: these methods replay the closed loop",
+            )

@@ -1,13 +1,16 @@
-"""The diagnosis's own way to fit parameters, on the very parameters of `drive_set`: Gauss-Newton whose slopes are traces.
+"""The diagnosis's own way to fit parameters, on the very parameters of `drive_set`: Gauss-Newton
+whose slopes are traces.
 
-Traces say what torque each parameter leaves in the balance of motion. What a replay of the whole log would make of such a torque r
-is, to first order, the response e of the closed loop along the logged motion,
+Traces say what torque each parameter leaves in the balance of motion. What a replay of the whole
+log would make of such a torque r is, to first order, the response e of the closed loop along the
+logged motion,
 
     M(q) e'' + (D + friction slope) e' + (K + gravity slope) e = r,
 
-so residual and traces both go through that response (`ClosedLoop`), and least squares then minimises the position error that replays
-show. The first steps need no simulation at all; the last ones take the error itself from one replay a step, where finite differences
-take one more for every parameter.
+so residual and traces both go through that response (`ClosedLoop`), and least squares then
+minimises the position error that replays show. The first steps need no simulation at all; the last
+ones take the error itself from one replay a step, where finite differences take one more for every
+parameter.
 """
 
 from __future__ import annotations
@@ -41,15 +44,23 @@ BLOCK = 0.01
 SLOPE = 1e-4
 """Of finite differences of gravity [rad]."""
 STEPS, ENOUGH = 6, 1e-3
-"""Steps with replays, and the least share of the squared error that a step must take off for another one."""
+"""Steps with replays, and the least share of the squared error that a step must take off for
+another one."""
 WIDE = 50.0
-"""Standard deviation of the parameters over their usual calibration error: a prior for those that the logs do not show."""
-CATALOGUE = {"damping": "viscous_friction", "friction": "coulomb_friction", "bias": "encoder_offset"}
+"""Standard deviation of the parameters over their usual calibration error: a prior for those that
+the logs do not show."""
+CATALOGUE = {
+    "damping": "viscous_friction",
+    "friction": "coulomb_friction",
+    "bias": "encoder_offset",
+}
 
 
 @dataclass(frozen=True, eq=False)
 class ClosedLoop:
-    """Response of a robot's closed loop along one log in steps of a block, by the trapezoidal rule (Newmark, 1/4 and 1/2)."""
+    """Response of a robot's closed loop along one log in steps of a block, by the trapezoidal rule
+    (Newmark, 1/4 and 1/2).
+    """
 
     step: float
     inverse: np.ndarray
@@ -68,7 +79,9 @@ class ClosedLoop:
         for tick in range(len(torque)):
             ahead = position + h * velocity + h * h / 4 * acceleration
             faster = velocity + h / 2 * acceleration
-            pulled = torque[tick] - self.damping[tick][:, None] * faster - self.stiffness[tick] @ ahead
+            pulled = (
+                torque[tick] - self.damping[tick][:, None] * faster - self.stiffness[tick] @ ahead
+            )
             acceleration = self.inverse[tick] @ pulled
             position, velocity = ahead + h * h / 4 * acceleration, faster + h / 2 * acceleration
             out[tick] = position
@@ -95,9 +108,15 @@ def _posture_of(signals: Signals) -> _Posture:
     for joint in range(count):
         unit = np.zeros(count)
         unit[joint] = 1.0
-        inertia[:, :, joint] = rigid.inverse_dynamics(subject, posture, still, still + unit) - gravity
-        slope[:, :, joint] = (rigid.inverse_dynamics(subject, posture + SLOPE * unit, still, still) - gravity) / SLOPE
-    of_block = (np.arange(len(signals.time) // _size(signals)) * _size(signals) + _size(signals) // 2) // every
+        inertia[:, :, joint] = (
+            rigid.inverse_dynamics(subject, posture, still, still + unit) - gravity
+        )
+        slope[:, :, joint] = (
+            rigid.inverse_dynamics(subject, posture + SLOPE * unit, still, still) - gravity
+        ) / SLOPE
+    of_block = (
+        np.arange(len(signals.time) // _size(signals)) * _size(signals) + _size(signals) // 2
+    ) // every
     return _Posture(inertia[of_block], slope[of_block])
 
 
@@ -113,7 +132,9 @@ def _blocks(signals: Signals, values: np.ndarray) -> np.ndarray:
     return np.asarray(values[: count * size].reshape(count, size, *values.shape[1:]).mean(1))
 
 
-def closed_loop_of(signals: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture | None = None) -> ClosedLoop:
+def closed_loop_of(
+    signals: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture | None = None
+) -> ClosedLoop:
     """Closed loop with some values of the parameters, linearised along a log.
 
     Args:
@@ -126,11 +147,18 @@ def closed_loop_of(signals: Signals, drives: DriveSet, values: np.ndarray, postu
     posture = posture or _posture_of(signals)
     gains = np.nan_to_num(subject.gains) * ~subject.passive[:, None]
     coulomb = np.maximum(subject.coulomb + drives.part(values, "friction"), 0.0)
-    dry = coulomb / subject.friction_speed / np.cosh(np.clip(_blocks(signals, signals.velocity) / subject.friction_speed, -30, 30)) ** 2
+    dry = (
+        coulomb
+        / subject.friction_speed
+        / np.cosh(np.clip(_blocks(signals, signals.velocity) / subject.friction_speed, -30, 30))
+        ** 2
+    )
     damping = gains[:, 1] + np.maximum(subject.viscous + drives.part(values, "damping"), 0.0) + dry
     stiffness = posture.slope + np.diag(gains[:, 0] + subject.spring)
     eye = np.eye(len(subject.joints))
-    inertia = posture.inertia + np.diag(np.maximum(drives.part(values, "armature"), -0.9 * np.diag(subject.armature)))
+    inertia = posture.inertia + np.diag(
+        np.maximum(drives.part(values, "armature"), -0.9 * np.diag(subject.armature))
+    )
     whole = inertia + h / 2 * damping[:, :, None] * eye + h * h / 4 * stiffness
     return ClosedLoop(h, np.linalg.inv(whole), damping, stiffness)
 
@@ -151,7 +179,13 @@ def fit_own(signals: Sequence[Signals], drives: DriveSet) -> Fitted:
     values = np.zeros(drives.count)
     history = []
     for _ in range(ROUNDS):
-        slopes, errors = zip(*(_first_order(one, drives, values, posture) for one, posture in zip(signals, postures, strict=True)), strict=True)
+        slopes, errors = zip(
+            *(
+                _first_order(one, drives, values, posture)
+                for one, posture in zip(signals, postures, strict=True)
+            ),
+            strict=True,
+        )
         found = _solved(np.concatenate(slopes), np.concatenate(errors), drives, values)
         moved, values = np.abs(found - values), found
         history.append((time.perf_counter() - begun, values.copy()))
@@ -163,7 +197,10 @@ def fit_own(signals: Sequence[Signals], drives: DriveSet) -> Fitted:
     cost, values = min(tried, key=lambda pair: pair[0])
     evaluations = len(tried)
     for _ in range(STEPS):
-        slopes = [_first_order(one, drives, values, posture)[0] for one, posture in zip(signals, postures, strict=True)]
+        slopes = [
+            _first_order(one, drives, values, posture)[0]
+            for one, posture in zip(signals, postures, strict=True)
+        ]
         errors = [_known_error(rollout, values) for rollout in rollouts]
         goal = _solved(np.concatenate(slopes), np.concatenate(errors), drives, values)
         bettered = False
@@ -178,7 +215,9 @@ def fit_own(signals: Sequence[Signals], drives: DriveSet) -> Fitted:
                 break
         if not bettered:
             break
-    return Fitted("own", values, time.perf_counter() - begun, evaluations, tuple(history), "finished")
+    return Fitted(
+        "own", values, time.perf_counter() - begun, evaluations, tuple(history), "finished"
+    )
 
 
 def _cost(rollouts: Sequence[Rollout], values: np.ndarray) -> float:
@@ -195,25 +234,43 @@ def _known_error(rollout: Rollout, values: np.ndarray) -> np.ndarray:
 
 
 def _known(one: Signals) -> np.ndarray:
-    return np.asarray(_blocks(one, (np.isfinite(residual_of(one)).all(1) & one.valid).astype(float)) == 1)
+    return np.asarray(
+        _blocks(one, (np.isfinite(residual_of(one)).all(1) & one.valid).astype(float)) == 1
+    )
 
 
-def _first_order(one: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture) -> tuple[np.ndarray, np.ndarray]:
-    """Slope of the predicted position by each parameter, in usual calibration errors `(N, P)`, and the error left `(N,)` [rad]."""
+def _first_order(
+    one: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture
+) -> tuple[np.ndarray, np.ndarray]:
+    """Slope of the predicted position by each parameter, in usual calibration errors `(N, P)`, and
+    the error left `(N,)` [rad].
+    """
     columns, rest = _columns(one, drives, values)
     stacked = np.concatenate([columns, rest[..., None]], -1)
     stacked[~np.isfinite(stacked)] = 0.0
-    found = closed_loop_of(one, drives, values, posture).response(_blocks(one, stacked))[_known(one)].reshape(-1, drives.count + 1)
-    # a torque that the model lacks (a positive trace) holds the robot back: position falls behind the prediction
+    found = (
+        closed_loop_of(one, drives, values, posture)
+        .response(_blocks(one, stacked))[_known(one)]
+        .reshape(-1, drives.count + 1)
+    )
+    # a torque that the model lacks (a positive trace) holds the robot back: position falls behind
+    # the prediction
     return -found[:, :-1], -found[:, -1]
 
 
-def _solved(slopes: np.ndarray, errors: np.ndarray, drives: DriveSet, values: np.ndarray) -> np.ndarray:
-    """Values of the least squares within the bounds, with a wide prior for what the logs do not show."""
+def _solved(
+    slopes: np.ndarray, errors: np.ndarray, drives: DriveSet, values: np.ndarray
+) -> np.ndarray:
+    """Values of the least squares within the bounds, with a wide prior for what the logs do not
+    show.
+    """
     from scipy.optimize import lsq_linear
 
     gram, right = slopes.T @ slopes, slopes.T @ errors
-    noise = max(float(errors @ errors - right @ np.linalg.lstsq(gram, right, rcond=1e-9)[0]), 1e-6 * float(errors @ errors)) / len(errors)
+    noise = max(
+        float(errors @ errors - right @ np.linalg.lstsq(gram, right, rcond=1e-9)[0]),
+        1e-6 * float(errors @ errors),
+    ) / len(errors)
     whole = gram + (noise / WIDE**2 + 1e-12 * np.trace(gram) / drives.count) * np.eye(drives.count)
     root = np.linalg.cholesky(whole)
     low, high = (drives.low - values) / drives.spread, (drives.high - values) / drives.spread
@@ -222,7 +279,9 @@ def _solved(slopes: np.ndarray, errors: np.ndarray, drives: DriveSet, values: np
 
 
 def residual_of(one: Signals) -> np.ndarray:
-    """Residual that is fitted: of motion, with the command as the torque, as replays of targets have it `(t, n)` [Nm]."""
+    """Residual that is fitted: of motion, with the command as the torque, as replays of targets
+    have it `(t, n)` [Nm].
+    """
     if one.measured is None:
         return one.residual["motion"]
     assert one.command is not None
@@ -231,7 +290,9 @@ def residual_of(one: Signals) -> np.ndarray:
 
 
 def _columns(one: Signals, drives: DriveSet, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Slope of the traces by each parameter, in usual calibration errors `(t, n, P)`, and the residual less the traces `(t, n)`."""
+    """Slope of the traces by each parameter, in usual calibration errors `(t, n, P)`, and the
+    residual less the traces `(t, n)`.
+    """
     subject = one.subject
     joints = len(subject.joints)
     columns = np.zeros((*one.velocity.shape, drives.count))
@@ -240,7 +301,9 @@ def _columns(one: Signals, drives: DriveSet, values: np.ndarray) -> tuple[np.nda
         columns[:, joint, joint] = drives.spread[joint] * one.acceleration[:, joint]
         for kind, identifier in CATALOGUE.items():
             place = KINDS.index(kind) * joints + joint
-            columns[..., place], trace = _sloped(one, identifier, name, float(values[place]), float(drives.spread[place]))
+            columns[..., place], trace = _sloped(
+                one, identifier, name, float(values[place]), float(drives.spread[place])
+            )
             rest = rest - trace
     late, spread = float(values[-1]), float(drives.spread[-1])
     found = _late_targets(one, np.array([late + spread, late]))
@@ -249,15 +312,21 @@ def _columns(one: Signals, drives: DriveSet, values: np.ndarray) -> tuple[np.nda
 
 
 def _late_targets(one: Signals, delay: np.ndarray) -> np.ndarray:
-    """Trace of targets that come late: what the controller would ask for now, less what it asks for `(k, t, n)` [Nm]."""
+    """Trace of targets that come late: what the controller would ask for now, less what it asks for
+    `(k, t, n)` [Nm].
+    """
     assert one.target is not None
     target = held_targets(one.target, one.subject.default)
     now = np.stack([delayed(column, delay, one.step) for column in target.T], -1)
     return np.nan_to_num(one.subject.gains[:, 0]) * ~one.subject.passive * (target - now)
 
 
-def _sloped(one: Signals, identifier: str, location: str, value: float, spread: float) -> tuple[np.ndarray, np.ndarray]:
-    """Slope over one spread of an effect's trace in the balance of motion, and that trace `(t, n)` each."""
+def _sloped(
+    one: Signals, identifier: str, location: str, value: float, spread: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Slope over one spread of an effect's trace in the balance of motion, and that trace `(t, n)`
+    each.
+    """
     effect = EFFECTS[identifier]
     settings = np.repeat(effect.nulls[None], 2, 0)
     settings[:, 0] += [value + spread, value]

@@ -1,9 +1,11 @@
-"""PACE (arXiv 2509.06342): CMA-ES on the whole-log position error of simulation replays, through the package `cma`.
+"""PACE (arXiv 2509.06342): CMA-ES on the whole-log position error of simulation replays, through
+the package `cma`.
 
-As in its published code: parameters scaled to [-1, 1] between bounds, start in the middle with a step of 0.5, mean squared position
-error as the score, the mean of the search distribution as the answer, and a stop where the best and the worst of a generation
-differ by less than `EPSILON` of the best. It runs 4096 simulations side by side on a GPU; here the population is one for two
-processor cores.
+As in its published code: parameters scaled to [-1, 1] between bounds, start in the middle with a
+step of 0.5, mean squared position error as the score, the mean of the search distribution as the
+answer, and a stop where the best and the worst of a generation differ by less than `EPSILON` of the
+best. It runs 4096 simulations side by side on a GPU; here the population is one for two processor
+cores.
 """
 
 from __future__ import annotations
@@ -45,7 +47,8 @@ def fit_pace(
         signals: conditioned logs with targets and gains, base fixed.
         drives: parameters of the robot.
         seed: of the search.
-        population: simulations a generation; by default 16, or what `cma` takes for so many parameters, whichever is more.
+        population: simulations a generation; by default 16, or what `cma` takes for so many
+            parameters, whichever is more.
         generations: at most.
         seconds: budget; a generation that has begun is finished.
         threads: of MuJoCo.
@@ -56,15 +59,25 @@ def fit_pace(
     try:
         import cma
     except ModuleNotFoundError:
-        raise InputError("baselines", "pace", None, "needs the package cma: install hyperleg-design[baselines]") from None
+        raise InputError(
+            "baselines", "pace", None, "needs the package cma: install hyperleg-design[baselines]"
+        ) from None
     check_logs(signals)
     begun = time.perf_counter()
     size = population or max(16, 4 + int(3 * np.log(drives.count)))
-    options = {"bounds": [-1.0, 1.0], "popsize": size, "seed": seed + 1, "verbose": -9, "maxiter": generations}
+    options = {
+        "bounds": [-1.0, 1.0],
+        "popsize": size,
+        "seed": seed + 1,
+        "verbose": -9,
+        "maxiter": generations,
+    }
     search = cma.CMAEvolutionStrategy(np.zeros(drives.count), SIGMA, options)
 
     def values_of(scaled: np.ndarray) -> np.ndarray:
-        return np.asarray(drives.low + (np.clip(scaled, -1, 1) + 1) / 2 * (drives.high - drives.low))
+        return np.asarray(
+            drives.low + (np.clip(scaled, -1, 1) + 1) / 2 * (drives.high - drives.low)
+        )
 
     history: list[tuple[float, np.ndarray]] = []
     evaluations, stopped = 0, f"{generations} generations"
@@ -83,4 +96,11 @@ def fit_pace(
             break
     else:
         stopped = ", ".join(search.stop())
-    return Fitted("pace", values_of(search.mean), time.perf_counter() - begun, evaluations, tuple(history), stopped)
+    return Fitted(
+        "pace",
+        values_of(search.mean),
+        time.perf_counter() - begun,
+        evaluations,
+        tuple(history),
+        stopped,
+    )

@@ -1,4 +1,6 @@
-"""Whole logs replayed with many sets of `drive_set` parameters side by side, in the simulator of `gap/replay.py`."""
+"""Whole logs replayed with many sets of `drive_set` parameters side by side, in the simulator of
+`gap/replay.py`.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,8 @@ class Drives(Alteration):
     damping: Any
     bias: Any
     width: Any
-    """Velocity at which friction has three quarters of its size: that of the model where some of it is taken away [rad/s]."""
+    """Velocity at which friction has three quarters of its size: that of the model where some of it
+    is taken away [rad/s]."""
 
 
 class _Drives(Live):
@@ -35,13 +38,23 @@ class _Drives(Live):
         return position + self.alteration.bias, velocity
 
     def joint_damping(self, tick: Tick) -> np.ndarray:
-        return resistance(self.alteration.friction, tick.velocity, self.alteration.width) + self.alteration.damping
+        return (
+            resistance(self.alteration.friction, tick.velocity, self.alteration.width)
+            + self.alteration.damping
+        )
 
 
 Drives.live = _Drives
 
 
-def predicted(signals: Signals, drives: DriveSet, values: np.ndarray, *, time_step: float = LONGEST_STEP, threads: int = 1) -> np.ndarray:
+def predicted(
+    signals: Signals,
+    drives: DriveSet,
+    values: np.ndarray,
+    *,
+    time_step: float = LONGEST_STEP,
+    threads: int = 1,
+) -> np.ndarray:
     """Joint positions as encoders tell them over the whole log, first to last valid tick.
 
     Args:
@@ -62,11 +75,17 @@ def predicted(signals: Signals, drives: DriveSet, values: np.ndarray, *, time_st
     substeps = max(int(np.ceil(signals.step / time_step - 1e-9)), 1)
     step = signals.step / substeps
     friction = drives.part(values, "friction")
-    width = np.where(friction < 0, subject.friction_speed, np.minimum(WIDTH, subject.friction_speed))
-    alteration = Drives(friction, drives.part(values, "damping"), drives.part(values, "bias"), width)
+    width = np.where(
+        friction < 0, subject.friction_speed, np.minimum(WIDTH, subject.friction_speed)
+    )
+    alteration = Drives(
+        friction, drives.part(values, "damping"), drives.part(values, "bias"), width
+    )
     plant = Plant(subject, (alteration,), len(values), step, threads)
     joints = len(subject.joints)
-    plant.batch.expand("dof_armature")[:, plant.model.nv - joints :] += drives.part(values, "armature")
+    plant.batch.expand("dof_armature")[:, plant.model.nv - joints :] += drives.part(
+        values, "armature"
+    )
     first = ticks[0]
     start = np.broadcast_to(signals.position[first], (len(values), joints))
     velocity = signals.velocity[first] - step / 2 * signals.acceleration[first]
@@ -79,7 +98,11 @@ def predicted(signals: Signals, drives: DriveSet, values: np.ndarray, *, time_st
         if k == len(ticks) - 1:
             break
         battery = None if signals.voltage is None else np.full(len(values), signals.voltage[tick])
-        temperature = None if signals.temperature is None else np.repeat(signals.temperature[tick][None], len(values), 0)
+        temperature = (
+            None
+            if signals.temperature is None
+            else np.repeat(signals.temperature[tick][None], len(values), 0)
+        )
         for sub in range(substeps):
             now = int(tick) * substeps + sub - whole
             before = target[np.maximum(now - 1, 0) // substeps]
@@ -89,15 +112,23 @@ def predicted(signals: Signals, drives: DriveSet, values: np.ndarray, *, time_st
 
 
 def squared_error(signals: Signals, predicted_position: np.ndarray) -> np.ndarray:
-    """Mean square of the whole-log position error, over ticks and joints, of each set `(k,)` [rad^2]; infinite where one diverged."""
+    """Mean square of the whole-log position error, over ticks and joints, of each set `(k,)`
+    [rad^2]; infinite where one diverged.
+    """
     ticks = whole_log(signals).ticks[0]
-    error = np.where(signals.valid[ticks][:, None], signals.position[ticks] - predicted_position, 0.0)
+    error = np.where(
+        signals.valid[ticks][:, None], signals.position[ticks] - predicted_position, 0.0
+    )
     mean = np.sum(error**2, (1, 2)) / max(signals.valid[ticks].sum() * error.shape[2], 1)
     return np.where(np.isfinite(mean), mean, np.inf)
 
 
-def position_gap(signals: Sequence[Signals], drives: DriveSet, values: np.ndarray, **options: Any) -> np.ndarray:
-    """Root mean square of the whole-log position error over all logs, by set of values `(k,)` [rad]."""
+def position_gap(
+    signals: Sequence[Signals], drives: DriveSet, values: np.ndarray, **options: Any
+) -> np.ndarray:
+    """Root mean square of the whole-log position error over all logs, by set of values `(k,)`
+    [rad].
+    """
     total, weight = np.zeros(len(np.atleast_2d(values))), 0.0
     for one in signals:
         length = one.time[-1] - one.time[0]

@@ -1,4 +1,6 @@
-"""One log replayed by MuJoCo's own servos and rollouts, with parameters of `drive_set` written straight into the compiled model."""
+"""One log replayed by MuJoCo's own servos and rollouts, with parameters of `drive_set` written
+straight into the compiled model.
+"""
 
 from __future__ import annotations
 
@@ -41,15 +43,21 @@ class Rollout:
         self.target = held_targets(signals.target, subject.default)[self.ticks][:, self.driven]
 
     def positions(self, values: np.ndarray) -> np.ndarray:
-        """As encoders tell them, from the first valid tick to the last `(T, n)` [rad]; values `(P,)`."""
+        """As encoders tell them, from the first valid tick to the last `(T, n)` [rad]; values
+        `(P,)`.
+        """
         import mujoco
         from mujoco import rollout
 
         drives, subject = self.drives, self.drives.subject
         model = copy.copy(self.model)
         model.dof_armature[:] += drives.part(values, "armature")
-        model.dof_damping[:] = np.maximum(self.model.dof_damping + drives.part(values, "damping"), 0.0)
-        model.dof_frictionloss[:] = np.maximum(self.model.dof_frictionloss + drives.part(values, "friction"), 0.0)
+        model.dof_damping[:] = np.maximum(
+            self.model.dof_damping + drives.part(values, "damping"), 0.0
+        )
+        model.dof_frictionloss[:] = np.maximum(
+            self.model.dof_frictionloss + drives.part(values, "friction"), 0.0
+        )
         bias = drives.part(values, "bias")
         model.actuator_biasprm[:, 0] = -subject.gains[self.driven, 0] * bias[self.driven]
         mujoco.mj_setConst(model, self.data)
@@ -71,4 +79,8 @@ class Rollout:
 
     def error(self, values: np.ndarray) -> np.ndarray:
         """Logged less predicted positions, zero at ticks not fit for use `(T, n)` [rad]."""
-        return np.where(self.signals.valid[self.ticks][:, None], self.signals.position[self.ticks] - self.positions(values), 0.0)
+        return np.where(
+            self.signals.valid[self.ticks][:, None],
+            self.signals.position[self.ticks] - self.positions(values),
+            0.0,
+        )

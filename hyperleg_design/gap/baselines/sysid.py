@@ -1,8 +1,10 @@
-"""`mujoco.sysid`: Gauss-Newton on whole-log position errors by MuJoCo's own rollouts, on the parameters of `drive_set`.
+"""`mujoco.sysid`: Gauss-Newton on whole-log position errors by MuJoCo's own rollouts, on the
+parameters of `drive_set`.
 
-The tool's own path: `optimize` with `build_residual_fn` on a spec with position servos. Armature, damping, friction and bias are
-modifiers of that spec; the delay shifts the controls in a custom rollout; the bias is added to the sensors in a custom residual,
-which is left in rad as PACE's is. Limits of coupled motors, which no servo at a joint can have, are left out.
+The tool's own path: `optimize` with `build_residual_fn` on a spec with position servos. Armature,
+damping, friction and bias are modifiers of that spec; the delay shifts the controls in a custom
+rollout; the bias is added to the sensors in a custom residual, which is left in rad as PACE's is.
+Limits of coupled motors, which no servo at a joint can have, are left out.
 """
 
 from __future__ import annotations
@@ -29,14 +31,22 @@ if TYPE_CHECKING:
 ITERATIONS = 60
 DELAY = "delay"
 START = 0.02
-"""Distance of the first values from bounds they lie on, over the range: the optimizer stalls on bounds."""
+"""Distance of the first values from bounds they lie on, over the range: the optimizer stalls on
+bounds."""
 
 
 class _Enough(Exception):
     """The budget is used up."""
 
 
-def fit_sysid(signals: Sequence[Signals], drives: DriveSet, *, iterations: int = ITERATIONS, seconds: float = np.inf, threads: int = 1) -> Fitted:
+def fit_sysid(
+    signals: Sequence[Signals],
+    drives: DriveSet,
+    *,
+    iterations: int = ITERATIONS,
+    seconds: float = np.inf,
+    threads: int = 1,
+) -> Fitted:
     """Fit the parameters by `mujoco.sysid.optimize`.
 
     Args:
@@ -60,28 +70,56 @@ def fit_sysid(signals: Sequence[Signals], drives: DriveSet, *, iterations: int =
     for i, name in enumerate(names):
         margin = START * (upper[i] - lower[i])
         params.add(
-            sysid.Parameter(name, nominal=float(np.clip(0.0, lower[i] + margin, upper[i] - margin)), min_value=float(lower[i]),
-                            max_value=float(upper[i]), modifier=_modifier(name, scale[i], subject))
-        )  # fmt: skip
+            sysid.Parameter(
+                name,
+                nominal=float(np.clip(0.0, lower[i] + margin, upper[i] - margin)),
+                min_value=float(lower[i]),
+                max_value=float(upper[i]),
+                modifier=_modifier(name, scale[i], subject),
+            )
+        )
     sequences = [_sequence(sysid, one, drives, number) for number, one in enumerate(signals)]
     history: list[tuple[float, np.ndarray]] = []
     evaluations = 0
     best = np.inf
 
-    def custom_residual(given: Any, predicted: Any, measured: Any, model: Any, everything: bool, **_: Any) -> tuple[np.ndarray, Any, Any]:
-        bias = np.array([given[f"bias_{j}"].value[0] for j in subject.joints]) * drives.part(scale, "bias")
+    def custom_residual(
+        given: Any, predicted: Any, measured: Any, model: Any, everything: bool, **_: Any
+    ) -> tuple[np.ndarray, Any, Any]:
+        bias = np.array([given[f"bias_{j}"].value[0] for j in subject.joints]) * drives.part(
+            scale, "bias"
+        )
         sampled = predicted.resample(measured.times)
         return sampled.data + bias - measured.data, sampled, measured
 
-    def custom_rollout(models: Any, datas: Any, control_signal: Any, initial_states: Any, param_dicts: Any, **mapping: Any) -> Any:
+    def custom_rollout(
+        models: Any,
+        datas: Any,
+        control_signal: Any,
+        initial_states: Any,
+        param_dicts: Any,
+        **mapping: Any,
+    ) -> Any:
         per = len(models) // len(param_dicts)
         late = [param_dicts[i // per][DELAY].value[0] * scale[-1] for i in range(len(models))]
-        shifted = [_shifted(sysid, control, delay) for control, delay in zip(control_signal, late, strict=True)]
-        return sysid.sysid_rollout(models=models, datas=datas, control_signal=shifted, initial_states=initial_states, **mapping)
+        shifted = [
+            _shifted(sysid, control, delay)
+            for control, delay in zip(control_signal, late, strict=True)
+        ]
+        return sysid.sysid_rollout(
+            models=models,
+            datas=datas,
+            control_signal=shifted,
+            initial_states=initial_states,
+            **mapping,
+        )
 
     inner = sysid.build_residual_fn(
-        models_sequences=sequences, modify_residual=custom_residual, custom_rollout=custom_rollout, n_threads=threads
-    )  # fmt: skip
+        models_sequences=sequences,
+        modify_residual=custom_residual,
+        custom_rollout=custom_rollout,
+        n_threads=threads,
+    )
 
     def residual(x: np.ndarray, given: Any, **options: Any) -> Any:
         nonlocal evaluations, best
@@ -98,13 +136,26 @@ def fit_sysid(signals: Sequence[Signals], drives: DriveSet, *, iterations: int =
 
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # the optimizer prints its iterations
-            sysid.optimize(initial_params=params, residual_fn=residual, optimizer="mujoco", verbose=False, max_iters=iterations)
+            sysid.optimize(
+                initial_params=params,
+                residual_fn=residual,
+                optimizer="mujoco",
+                verbose=False,
+                max_iters=iterations,
+            )
         stopped = "finished"
     except _Enough:
         stopped = f"{seconds:g} s"
     taken = time.perf_counter() - begun
     values = history[-1][1] if history else np.zeros(drives.count)
-    return Fitted("sysid", np.clip(values, drives.low, drives.high), taken, evaluations, tuple(history), stopped)
+    return Fitted(
+        "sysid",
+        np.clip(values, drives.low, drives.high),
+        taken,
+        evaluations,
+        tuple(history),
+        stopped,
+    )
 
 
 def _toolbox() -> Any:
@@ -113,7 +164,9 @@ def _toolbox() -> Any:
     except ImportError:
         sysid = None
     if not hasattr(sysid, "optimize"):
-        raise InputError("baselines", "sysid", None, "needs mujoco[sysid]: install hyperleg-design[baselines]")
+        raise InputError(
+            "baselines", "sysid", None, "needs mujoco[sysid]: install hyperleg-design[baselines]"
+        )
     return sysid
 
 
@@ -123,7 +176,11 @@ def _modifier(name: str, scale: float, subject: Any) -> Any:
         return None
     kind, _, joint = name.partition("_")
     at = subject.joints.index(joint)
-    own = {"friction": subject.coulomb[at], "damping": subject.viscous[at], "armature": subject.armature[at, at] if subject.one_to_one else 0.0}
+    own = {
+        "friction": subject.coulomb[at],
+        "damping": subject.viscous[at],
+        "armature": subject.armature[at, at] if subject.one_to_one else 0.0,
+    }
 
     def change(spec: Any, parameter: Any) -> None:
         value = float(parameter.value[0]) * scale
@@ -149,19 +206,30 @@ def _sequence(sysid: Any, signals: Signals, drives: DriveSet, number: int) -> An
     ticks = whole_log(signals).ticks[0]
     times = signals.time[ticks] - signals.time[ticks[0]]
     driven = [i for i in range(len(subject.joints)) if not subject.passive[i]]
-    # A controller holds a target until the next one: the toolbox interpolates, so each is given twice.
+    # A controller holds a target until the next one: the toolbox interpolates, so each is given
+    # twice.
     held = held_targets(signals.target, subject.default)[ticks][:, driven]
     edge = 1e-6
     when = np.concatenate([[times[0]], np.stack([times[1:] - edge, times[1:]], -1).ravel()])
-    control = np.concatenate([held[:1], np.stack([held[:-1], held[1:]], 1).reshape(-1, held.shape[1])])
-    state = sysid.create_initial_state(model, signals.position[ticks[0]], signals.velocity[ticks[0]])
+    control = np.concatenate(
+        [held[:1], np.stack([held[:-1], held[1:]], 1).reshape(-1, held.shape[1])]
+    )
+    state = sysid.create_initial_state(
+        model, signals.position[ticks[0]], signals.velocity[ticks[0]]
+    )
     inside = np.flatnonzero(signals.valid[ticks])[1:]
-    positions = sysid.TimeSeries.from_names(times[inside], signals.position[ticks][inside], model, [SENSOR + j for j in subject.joints])
-    return sysid.ModelSequences(f"log_{number}", spec, f"log_{number}", state, sysid.TimeSeries(when, control), positions)
+    positions = sysid.TimeSeries.from_names(
+        times[inside], signals.position[ticks][inside], model, [SENSOR + j for j in subject.joints]
+    )
+    return sysid.ModelSequences(
+        f"log_{number}", spec, f"log_{number}", state, sysid.TimeSeries(when, control), positions
+    )
 
 
 def _shifted(sysid: Any, control: Any, delay: float) -> Any:
     """Controls that come later, held at the first before."""
     times = control.times
-    late = np.stack([np.interp(times - max(delay, 0.0), times, column) for column in control.data.T], -1)
+    late = np.stack(
+        [np.interp(times - max(delay, 0.0), times, column) for column in control.data.T], -1
+    )
     return sysid.TimeSeries(times, late, control.signal_mapping)

@@ -1,9 +1,12 @@
-"""Other tools on the cases of a blind trial: the gap each closes on a held-out log, the cause each would name, and its time.
+"""Other tools on the cases of a blind trial: the gap each closes on a held-out log, the cause each
+would name, and its time.
 
-Every method fits `drive_set`'s parameters to all logs of a case but the last, which is replayed afterwards. The gap is the RMS of the
-whole-log position error there, in one simulator (`population`); the floor is that of reference logs where a case has some, else 0.
-A fixed set names the parameter that it changed most, over its usual calibration error, and nothing below `NAMED`. Cases with a
-floating base or without targets and gains are outside what these methods do, and are listed as such.
+Every method fits `drive_set`'s parameters to all logs of a case but the last, which is replayed
+afterwards. The gap is the RMS of the whole-log position error there, in one simulator
+(`population`); the floor is that of reference logs where a case has some, else 0. A fixed set names
+the parameter that it changed most, over its usual calibration error, and nothing below `NAMED`.
+Cases with a floating base or without targets and gains are outside what these methods do, and are
+listed as such.
 """
 
 from __future__ import annotations
@@ -34,7 +37,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals import Signals
 
 METHODS = ("diagnosis", "own", "sysid", "pace")
-"""`diagnosis` is what the trial's folder already holds; `own` fits the same parameters as the other two."""
+"""`diagnosis` is what the trial's folder already holds; `own` fits the same parameters as the other
+two."""
 FIXED = ("own", "sysid", "pace")
 NAMED = 3.0
 """Usual calibration errors from which a fixed set names a cause."""
@@ -61,7 +65,8 @@ class Entry:
     stopped: str
     """Why a fit ended, or why there is none."""
     right: bool | None = None
-    """Whether the cause named is one that acts (none, where none acts); None while the trial's key is sealed."""
+    """Whether the cause named is one that acts (none, where none acts); None while the trial's key
+    is sealed."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +79,9 @@ class Table:
     """Kind and effects of each case; empty while the key is sealed."""
 
     def rows(self) -> list[dict[str, Any]]:
-        """One summary a method: cases, median and quartiles of the gap closed, share of right causes, median time."""
+        """One summary a method: cases, median and quartiles of the gap closed, share of right
+        causes, median time.
+        """
         found = []
         for method in METHODS:
             mine = [e for e in self.entries if e.method == method]
@@ -83,28 +90,46 @@ class Table:
                 continue
             closed = np.array([e.closed for e in done if e.closed is not None])
             judged = [e.right for e in done if e.right is not None]
-            found.append({
-                "method": method, "cases": len(mine), "done": len(done),
-                "closed": [float(v) for v in np.percentile(closed, [25, 50, 75])] if len(closed) else None,
-                "right": float(np.mean(judged)) if judged else None, "judged": len(judged),
-                "seconds": float(np.median([e.seconds for e in done])) if done else None,
-                "out_of_time": sum(e.stopped.endswith(" s") for e in done),
-            })  # fmt: skip
+            found.append(
+                {
+                    "method": method,
+                    "cases": len(mine),
+                    "done": len(done),
+                    "closed": [float(v) for v in np.percentile(closed, [25, 50, 75])]
+                    if len(closed)
+                    else None,
+                    "right": float(np.mean(judged)) if judged else None,
+                    "judged": len(judged),
+                    "seconds": float(np.median([e.seconds for e in done])) if done else None,
+                    "out_of_time": sum(e.stopped.endswith(" s") for e in done),
+                }
+            )
         return found
 
     def markdown(self) -> str:
         """Summary and every case."""
         lines = [
-            "| method | cases | gap closed on held-out logs, median (quartiles) | right cause | time, median | out of time |",
+            "| method | cases | gap closed on held-out logs, median (quartiles) | right cause | "
+            "time, median | out of time |",
             "|---|---|---|---|---|---|",
         ]
         for row in self.rows():
             closed = (
-                "-" if row["closed"] is None else f"{100 * row['closed'][1]:.0f} % ({100 * row['closed'][0]:.0f} .. {100 * row['closed'][2]:.0f})"
+                "-"
+                if row["closed"] is None
+                else f"{100 * row['closed'][1]:.0f} % ({100 * row['closed'][0]:.0f} .. "
+                f"{100 * row['closed'][2]:.0f})"
             )
-            right = "sealed" if row["right"] is None else f"{100 * row['right']:.0f} % of {row['judged']}"
+            right = (
+                "sealed"
+                if row["right"] is None
+                else f"{100 * row['right']:.0f} % of {row['judged']}"
+            )
             taken = "-" if row["seconds"] is None else f"{row['seconds']:.1f} s"
-            lines.append(f"| {row['method']} | {row['done']} of {row['cases']} | {closed} | {right} | {taken} | {row['out_of_time']} |")
+            lines.append(
+                f"| {row['method']} | {row['done']} of {row['cases']} | {closed} | {right} | "
+                f"{taken} | {row['out_of_time']} |"
+            )
         truth = dict(self.truth)
         lines += [
             "",
@@ -119,16 +144,24 @@ class Table:
             gap = "-" if e.before is None or e.after is None else f"{e.before:.3g}, {e.after:.3g}"
             mark = "" if e.right is None else "right" if e.right else "wrong"
             lines.append(
-                f"| {e.case} | {truth.get(e.case, 'sealed')} | {e.method} | {named if e.seconds is not None else '-'} | {closed} | {gap} "
+                f"| {e.case} | {truth.get(e.case, 'sealed')} | {e.method} | "
+                f"{named if e.seconds is not None else '-'} | {closed} | {gap} "
                 f"| {'-' if e.seconds is None else f'{e.seconds:.1f} s'} | {mark} {e.stopped} |"
             )
         return "\n".join(lines) + "\n"
 
 
 def baselines_table(
-    folder: str | os.PathLike[str], out: str | os.PathLike[str] | None = None, *, methods: Sequence[str] = METHODS, cases: Sequence[str] = (),
-    budget: float = BUDGET, seed: int = 0, threads: int = 1, progress: bool = False,
-) -> Table:  # fmt: skip
+    folder: str | os.PathLike[str],
+    out: str | os.PathLike[str] | None = None,
+    *,
+    methods: Sequence[str] = METHODS,
+    cases: Sequence[str] = (),
+    budget: float = BUDGET,
+    seed: int = 0,
+    threads: int = 1,
+    progress: bool = False,
+) -> Table:
     """Run the methods on the cases of a trial, and write `baselines.json` and `baselines.md`.
 
     Right causes are told once the trial has been scored: before, its key stays sealed.
@@ -153,21 +186,38 @@ def baselines_table(
     known = [f"{i:03d}" for i in range(seal.cases)]
     unknown = [m for m in methods if m not in METHODS] or [c for c in cases if c not in known]
     if unknown or not methods:
-        raise InputError("baselines", "methods or cases", unknown, f"expects methods of {', '.join(METHODS)} and cases of {known[0]} .. {known[-1]}")
+        raise InputError(
+            "baselines",
+            "methods or cases",
+            unknown,
+            f"expects methods of {', '.join(METHODS)} and cases of {known[0]} .. {known[-1]}",
+        )
     truths = {t["case"]: t for t in open_key(folder)} if (folder / SCORED).is_file() else {}
     entries: list[Entry] = []
     for name in tqdm(list(cases) or known, desc="baselines", disable=not progress):
-        entries += case_entries(folder, name, methods, budget=budget, seed=seed, threads=threads, truth=truths.get(name))
+        entries += case_entries(
+            folder, name, methods, budget=budget, seed=seed, threads=threads, truth=truths.get(name)
+        )
     told = tuple((name, _told(truths[name])) for name in (list(cases) or known) if name in truths)
     table = Table(tuple(entries), budget, told)
     place = folder if out is None else Path(out)
-    write_json(place / "baselines.json", {"budget": budget, "summary": table.rows(), "entries": [asdict(e) for e in entries]})
+    write_json(
+        place / "baselines.json",
+        {"budget": budget, "summary": table.rows(), "entries": [asdict(e) for e in entries]},
+    )
     write_text(place / "baselines.md", table.markdown())
     return table
 
 
 def case_entries(
-    folder: Path, name: str, methods: Sequence[str], *, budget: float, seed: int = 0, threads: int = 1, truth: dict[str, Any] | None = None
+    folder: Path,
+    name: str,
+    methods: Sequence[str],
+    *,
+    budget: float,
+    seed: int = 0,
+    threads: int = 1,
+    truth: dict[str, Any] | None = None,
 ) -> list[Entry]:
     """All methods on one case."""
     entries = [_of_diagnosis(folder, name, truth)] if "diagnosis" in methods else []
@@ -178,9 +228,13 @@ def case_entries(
         train, held, healthy, drives = open_case(folder / CASES / name)
         nothing = np.zeros(drives.count)
         before = float(position_gap(held, drives, nothing, threads=threads)[0])
-        floor = float(position_gap(healthy, drives, nothing, threads=threads)[0]) if healthy else 0.0
+        floor = (
+            float(position_gap(healthy, drives, nothing, threads=threads)[0]) if healthy else 0.0
+        )
     except HyperlegError as error:
-        return entries + [Entry(name, m, "", "", None, None, None, None, None, str(error)) for m in fixed]
+        return entries + [
+            Entry(name, m, "", "", None, None, None, None, None, str(error)) for m in fixed
+        ]
     for method in fixed:
         try:
             found = _fit(method)(train, drives, budget, seed, threads)
@@ -194,22 +248,38 @@ def case_entries(
         excess = before - floor
         closed = (before - after) / excess if excess > 0 and np.isfinite(after) else None
         entries.append(
-            Entry(name, method, effect, location, before, after if np.isfinite(after) else None, floor, closed, found.seconds, found.stopped,
-                  _right(effect, location, truth))
-        )  # fmt: skip
+            Entry(
+                name,
+                method,
+                effect,
+                location,
+                before,
+                after if np.isfinite(after) else None,
+                floor,
+                closed,
+                found.seconds,
+                found.stopped,
+                _right(effect, location, truth),
+            )
+        )
     return entries
 
 
 def _fit(method: str) -> Callable[[Sequence[Signals], DriveSet, float, int, int], Fitted]:
     return {
         "own": lambda train, drives, budget, seed, threads: fit_own(train, drives),
-        "sysid": lambda train, drives, budget, seed, threads: fit_sysid(train, drives, seconds=budget, threads=threads),
-        "pace": lambda train, drives, budget, seed, threads: fit_pace(train, drives, seed=seed, seconds=budget, threads=threads),
-    }[method]  # fmt: skip
+        "sysid": lambda train, drives, budget, seed, threads: fit_sysid(
+            train, drives, seconds=budget, threads=threads
+        ),
+        "pace": lambda train, drives, budget, seed, threads: fit_pace(
+            train, drives, seed=seed, seconds=budget, threads=threads
+        ),
+    }[method]
 
 
 def open_case(case: Path) -> tuple[list[Signals], list[Signals], list[Signals], DriveSet]:
-    """Logs to fit, the held-out one, references, and the parameters of the robot of one case of a trial.
+    """Logs to fit, the held-out one, references, and the parameters of the robot of one case of a
+    trial.
 
     Raises:
         InputError: a robot or logs that these methods cannot take.
@@ -223,7 +293,9 @@ def open_case(case: Path) -> tuple[list[Signals], list[Signals], list[Signals], 
     drives = drive_set(signals[0].subject, signals[0].step)
     check_logs(signals)
     if len(signals) < 2:
-        raise InputError(case.name, "logs", len(signals), "expects at least two logs: one is held out")
+        raise InputError(
+            case.name, "logs", len(signals), "expects at least two logs: one is held out"
+        )
     return signals[:-1], signals[-1:], [condition(log, subject) for log in references], drives
 
 
@@ -234,12 +306,40 @@ def _of_diagnosis(folder: Path, name: str, truth: dict[str, Any] | None) -> Entr
         seconds = float(json.loads((place / "seconds.json").read_text())["seconds"])
         gap = found["gap"]
     except (OSError, ValueError, KeyError, TypeError):
-        return Entry(name, "diagnosis", "", "", None, None, None, None, None, "no diagnosis in the trial's folder")
+        return Entry(
+            name,
+            "diagnosis",
+            "",
+            "",
+            None,
+            None,
+            None,
+            None,
+            None,
+            "no diagnosis in the trial's folder",
+        )
     causes = found.get("causes") or []
-    effect, location = (str(causes[0]["effect"]), str(causes[0]["location"])) if causes else ("", "")
-    before, after, floor, closed = (None if gap.get(k) is None else float(gap[k]) for k in ("before", "after", "floor", "closed"))
+    effect, location = (
+        (str(causes[0]["effect"]), str(causes[0]["location"])) if causes else ("", "")
+    )
+    before, after, floor, closed = (
+        None if gap.get(k) is None else float(gap[k])
+        for k in ("before", "after", "floor", "closed")
+    )
     right = _right(effect, location, truth)
-    return Entry(name, "diagnosis", effect, location, before, after, floor, closed, seconds, str(found["verdict"]), right)
+    return Entry(
+        name,
+        "diagnosis",
+        effect,
+        location,
+        before,
+        after,
+        floor,
+        closed,
+        seconds,
+        str(found["verdict"]),
+        right,
+    )
 
 
 def _right(effect: str, location: str, truth: dict[str, Any] | None) -> bool | None:
@@ -253,5 +353,7 @@ def _right(effect: str, location: str, truth: dict[str, Any] | None) -> bool | N
 
 
 def _told(truth: dict[str, Any]) -> str:
-    wrongs = ", ".join(f"{w['effect']} at {w['location']} {w['multiple']:.1f}x" for w in truth["wrongs"])
+    wrongs = ", ".join(
+        f"{w['effect']} at {w['location']} {w['multiple']:.1f}x" for w in truth["wrongs"]
+    )
     return f"{truth['kind']}: {wrongs}" if wrongs else str(truth["kind"])

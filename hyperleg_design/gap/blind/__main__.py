@@ -1,4 +1,6 @@
-"""The process that makes a trial: `python -m hyperleg_design.gap.blind --cases N --seed S --out DIR`; prints the key's SHA-256."""
+"""The process that makes a trial: `python -m hyperleg_design.gap.blind --cases N --seed S --out
+DIR`; prints the key's SHA-256.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,10 @@ from hyperleg_design.gap.blind.trial import make_here
 
 def main() -> int:
     """Read the options and make the trial."""
-    parser = argparse.ArgumentParser(prog="python -m hyperleg_design.gap.blind", description="Make a blind trial and seal its truth.")
+    parser = argparse.ArgumentParser(
+        prog="python -m hyperleg_design.gap.blind",
+        description="Make a blind trial and seal its truth.",
+    )
     parser.add_argument("--cases", type=int, required=True)
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--out", type=Path, required=True)
@@ -29,9 +34,15 @@ def main() -> int:
 
     try:
         make_here(
-            options.cases, options.seed, options.out, plants=options.plants, workers=options.workers, progress=options.progress,
-            duration=(options.duration[0], options.duration[1]), say=say,
-        )  # fmt: skip
+            options.cases,
+            options.seed,
+            options.out,
+            plants=options.plants,
+            workers=options.workers,
+            progress=options.progress,
+            duration=(options.duration[0], options.duration[1]),
+            say=say,
+        )
     except HyperlegError as error:
         sys.stderr.write(f"{error}\n")
         return 2

@@ -1,4 +1,6 @@
-"""Two fixed-base robots as somebody else would write them: a seven-joint arm of torque motors behind gears, and one position servo."""
+"""Two fixed-base robots as somebody else would write them: a seven-joint arm of torque motors
+behind gears, and one position servo.
+"""
 
 from __future__ import annotations
 
@@ -54,7 +56,7 @@ ARM_MJCF = """<mujoco model="bench_arm">
     <motor class="small" name="flange_turn" joint="flange_turn"/>
   </actuator>
 </mujoco>
-"""
+"""  # noqa: E501
 """Rotor inertia stands on the joints as `armature`, already multiplied by the squared ratio."""
 
 SERVO_MJCF = """<mujoco model="servo_pendulum">
@@ -74,4 +76,4 @@ SERVO_MJCF = """<mujoco model="servo_pendulum">
     <position name="swing" joint="swing" kp="6" kv="0.15" forcerange="-2.4 2.4"/>
   </actuator>
 </mujoco>
-"""
+"""  # noqa: E501

@@ -1,6 +1,8 @@
-"""Robots that the rigs hold: a tree of hinges in Pinocchio, its motors and what its data sheet says of them.
+"""Robots that the rigs hold: a tree of hinges in Pinocchio, its motors and what its data sheet says
+of them.
 
-Masses and frames are read from the compiled MJCF, which is the robot's published description; the dynamics are Pinocchio's.
+Masses and frames are read from the compiled MJCF, which is the robot's published description; the
+dynamics are Pinocchio's.
 """
 
 from __future__ import annotations
@@ -21,7 +23,15 @@ ROBOTS = ("hyperleg", "leg", "arm", "servo")
 
 ROBOT_FILE = "robot.xml"
 """Name of the MJCF that lies beside the logs of a robot that is no design."""
-RIG_POSTURE = {"hip_yaw": -0.1, "hip_roll": 0.3, "hip_pitch": -0.3, "knee": 0.9, "ankle_pitch": 0.0, "ankle_roll": 0.0, "toe": -0.35}
+RIG_POSTURE = {
+    "hip_yaw": -0.1,
+    "hip_roll": 0.3,
+    "hip_pitch": -0.3,
+    "knee": 0.9,
+    "ankle_pitch": 0.0,
+    "ankle_roll": 0.0,
+    "toe": -0.35,
+}
 """Middle of the motions of a leg in the air [rad]: away from every limit."""
 GRAVITY = np.array([0.0, 0.0, -9.81])
 
@@ -96,7 +106,9 @@ class Chain:
     def diagonal(self) -> bool:
         """Whether motors and joints are one to one."""
         n, m = self.joint_from_motor.shape
-        return n == m and not np.any(self.joint_from_motor - np.diag(np.diag(self.joint_from_motor)))
+        return n == m and not np.any(
+            self.joint_from_motor - np.diag(np.diag(self.joint_from_motor))
+        )
 
     def depth_mass(self) -> np.ndarray:
         """Mass that each joint carries `(n,)` [kg]."""
@@ -108,14 +120,23 @@ class Chain:
 
     def with_link(self, name: str, **values: Any) -> Chain:
         """Copy with other values of one link."""
-        return replace(self, links=tuple(replace(link, **values) if link.name == name else link for link in self.links))
+        return replace(
+            self,
+            links=tuple(
+                replace(link, **values) if link.name == name else link for link in self.links
+            ),
+        )
 
     def with_point_mass(self, name: str, mass: float, com: np.ndarray) -> Chain:
         """Copy with a point mass [kg] fixed to a link at `com` of its joint frame [m]."""
         link = next(link for link in self.links if link.name == name)
         total = link.mass + mass
         middle = (link.mass * link.com + mass * np.asarray(com)) / total
-        inertia = link.inertia + steiner(link.mass, link.com - middle) + steiner(mass, np.asarray(com) - middle)
+        inertia = (
+            link.inertia
+            + steiner(link.mass, link.com - middle)
+            + steiner(mass, np.asarray(com) - middle)
+        )
         return self.with_link(name, mass=total, com=middle, inertia=inertia)
 
     def pinocchio(self, gravity: np.ndarray = GRAVITY) -> pinocchio.Model:
@@ -127,8 +148,17 @@ class Chain:
         ids: list[int] = []
         for link in self.links:
             parent = ids[link.parent] if link.parent >= 0 else 0
-            ids.append(model.addJoint(parent, pin.JointModelRevoluteUnaligned(link.axis), pin.SE3(link.rotation, link.place), link.joint))
-            model.appendBodyToJoint(ids[-1], pin.Inertia(link.mass, link.com, link.inertia), pin.SE3.Identity())
+            ids.append(
+                model.addJoint(
+                    parent,
+                    pin.JointModelRevoluteUnaligned(link.axis),
+                    pin.SE3(link.rotation, link.place),
+                    link.joint,
+                )
+            )
+            model.appendBodyToJoint(
+                ids[-1], pin.Inertia(link.mass, link.com, link.inertia), pin.SE3.Identity()
+            )
         model.gravity.linear = np.asarray(gravity, float)
         return model
 
@@ -180,17 +210,28 @@ def _design(name: str) -> Chain:
         return np.tile(np.asarray(values, float)[:columns], 2)
 
     return Chain(
-        name=name, links=links, motors=tuple(f"{side}_{motor}" for side in SIDES for motor in names), joint_from_motor=both,
-        rotor_inertia=twice(constants.rotor_inertia), coulomb=np.tile([j.coulomb for j in of_joints], 2),
+        name=name,
+        links=links,
+        motors=tuple(f"{side}_{motor}" for side in SIDES for motor in names),
+        joint_from_motor=both,
+        rotor_inertia=twice(constants.rotor_inertia),
+        coulomb=np.tile([j.coulomb for j in of_joints], 2),
         viscous=np.tile([j.viscous for j in of_joints], 2),
-        stiffness=np.tile([j.stiffness for j in of_joints], 2), damping=np.tile([j.damping for j in of_joints], 2),
-        peak_torque=twice(constants.peak_torque), stall_torque=twice(constants.stall_torque), no_load_speed=twice(constants.no_load_speed),
-        # No data sheet of the design's motors is at hand for this: a winding of 48 V at its no-load speed (assumed).
+        stiffness=np.tile([j.stiffness for j in of_joints], 2),
+        damping=np.tile([j.damping for j in of_joints], 2),
+        peak_torque=twice(constants.peak_torque),
+        stall_torque=twice(constants.stall_torque),
+        no_load_speed=twice(constants.no_load_speed),
+        # No data sheet of the design's motors is at hand for this: a winding of 48 V at its no-load
+        # speed (assumed).
         torque_constant=twice(48.0 / constants.no_load_speed),
-        low=np.tile(np.radians([j.lower_deg for j in of_joints]), 2), high=np.tile(np.radians([j.upper_deg for j in of_joints]), 2),
+        low=np.tile(np.radians([j.lower_deg for j in of_joints]), 2),
+        high=np.tile(np.radians([j.upper_deg for j in of_joints]), 2),
         rest=np.tile([RIG_POSTURE[joint] for joint in transmission.joint_names(design)], 2),
-        voltage=48.0, mjcf=None, robot=name,
-    )  # fmt: skip
+        voltage=48.0,
+        mjcf=None,
+        robot=name,
+    )
 
 
 def _half(both: Chain) -> Chain:
@@ -201,7 +242,13 @@ def _half(both: Chain) -> Chain:
         for key, value in cut.items()
         if isinstance(value, np.ndarray) and value.ndim == 1
     }
-    return replace(both, links=both.links[:n], motors=both.motors[:m], joint_from_motor=both.joint_from_motor[:n, :m], **halves)
+    return replace(
+        both,
+        links=both.links[:n],
+        motors=both.motors[:m],
+        joint_from_motor=both.joint_from_motor[:n, :m],
+        **halves,
+    )
 
 
 _OF_MOTORS = ("rotor_inertia", "peak_torque", "stall_torque", "no_load_speed", "torque_constant")
@@ -213,16 +260,29 @@ def _arm() -> Chain:
     model = mujoco.MjModel.from_xml_string(ARM_MJCF)
     gear = model.actuator_gear[:, 0]
     peak = model.actuator_ctrlrange[:, 1] * gear
-    # Drive modules speak of their output: torque, speed and inertia behind the gear, amperes of the motor.
+    # Drive modules speak of their output: torque, speed and inertia behind the gear, amperes of the
+    # motor.
     return Chain(
-        name="arm", links=tree_links(model), motors=tuple(model.actuator(i).name for i in range(model.nu)), joint_from_motor=np.eye(model.nu),
-        rotor_inertia=model.dof_armature.copy(), coulomb=model.dof_frictionloss.copy(), viscous=model.dof_damping.copy(),
-        stiffness=np.array([900.0, 1200.0, 400.0, 500.0, 90.0, 90.0, 60.0]), damping=np.array([40.0, 50.0, 14.0, 16.0, 2.5, 2.5, 1.8]),
-        peak_torque=peak, stall_torque=3.0 * peak, no_load_speed=np.array([9.0, 9.0, 9.0, 9.0, 13.0, 13.0, 13.0]),
+        name="arm",
+        links=tree_links(model),
+        motors=tuple(model.actuator(i).name for i in range(model.nu)),
+        joint_from_motor=np.eye(model.nu),
+        rotor_inertia=model.dof_armature.copy(),
+        coulomb=model.dof_frictionloss.copy(),
+        viscous=model.dof_damping.copy(),
+        stiffness=np.array([900.0, 1200.0, 400.0, 500.0, 90.0, 90.0, 60.0]),
+        damping=np.array([40.0, 50.0, 14.0, 16.0, 2.5, 2.5, 1.8]),
+        peak_torque=peak,
+        stall_torque=3.0 * peak,
+        no_load_speed=np.array([9.0, 9.0, 9.0, 9.0, 13.0, 13.0, 13.0]),
         torque_constant=np.array([0.11, 0.11, 0.10, 0.10, 0.06, 0.06, 0.06]) * gear,
-        low=model.jnt_range[:, 0].copy(), high=model.jnt_range[:, 1].copy(),
-        rest=np.array([0.1, -0.5, 0.2, 0.7, 0.1, 0.4, 0.0]), voltage=48.0, mjcf=ARM_MJCF, robot=ROBOT_FILE,
-    )  # fmt: skip
+        low=model.jnt_range[:, 0].copy(),
+        high=model.jnt_range[:, 1].copy(),
+        rest=np.array([0.1, -0.5, 0.2, 0.7, 0.1, 0.4, 0.0]),
+        voltage=48.0,
+        mjcf=ARM_MJCF,
+        robot=ROBOT_FILE,
+    )
 
 
 def _servo() -> Chain:
@@ -230,15 +290,31 @@ def _servo() -> Chain:
 
     model = mujoco.MjModel.from_xml_string(SERVO_MJCF)
     return Chain(
-        name="servo", links=tree_links(model), motors=("swing",), joint_from_motor=np.eye(1), rotor_inertia=model.dof_armature.copy(),
-        coulomb=model.dof_frictionloss.copy(), viscous=model.dof_damping.copy(), stiffness=np.array([6.0]), damping=np.array([0.15]),
-        peak_torque=np.array([2.4]), stall_torque=np.array([2.8]), no_load_speed=np.array([14.0]), torque_constant=np.array([1.1]),
-        low=model.jnt_range[:, 0].copy(), high=model.jnt_range[:, 1].copy(), rest=np.array([0.2]), voltage=12.0, mjcf=SERVO_MJCF, robot=ROBOT_FILE,
-    )  # fmt: skip
+        name="servo",
+        links=tree_links(model),
+        motors=("swing",),
+        joint_from_motor=np.eye(1),
+        rotor_inertia=model.dof_armature.copy(),
+        coulomb=model.dof_frictionloss.copy(),
+        viscous=model.dof_damping.copy(),
+        stiffness=np.array([6.0]),
+        damping=np.array([0.15]),
+        peak_torque=np.array([2.4]),
+        stall_torque=np.array([2.8]),
+        no_load_speed=np.array([14.0]),
+        torque_constant=np.array([1.1]),
+        low=model.jnt_range[:, 0].copy(),
+        high=model.jnt_range[:, 1].copy(),
+        rest=np.array([0.2]),
+        voltage=12.0,
+        mjcf=SERVO_MJCF,
+        robot=ROBOT_FILE,
+    )
 
 
 def tree_links(model: Any) -> tuple[Link, ...]:
-    """The hinges of a compiled MuJoCo model and the bodies on them; bodies without a joint go to the one that carries them.
+    """The hinges of a compiled MuJoCo model and the bodies on them; bodies without a joint go to
+    the one that carries them.
 
     A free joint is left out: its body is the fixed base.
 
@@ -248,7 +324,9 @@ def tree_links(model: Any) -> tuple[Link, ...]:
     import mujoco
 
     links: list[Link] = []
-    home: dict[int, tuple[int, np.ndarray, np.ndarray]] = {0: (-1, np.eye(3), np.zeros(3))}  # link, its frame's rotation and place of the body
+    home: dict[int, tuple[int, np.ndarray, np.ndarray]] = {
+        0: (-1, np.eye(3), np.zeros(3))
+    }  # link, its frame's rotation and place of the body
     for body in range(1, model.nbody):
         index, rotation, place = home[int(model.body_parentid[body])]
         turned = rotation @ matrix(model.body_quat[body])
@@ -262,14 +340,28 @@ def tree_links(model: Any) -> tuple[Link, ...]:
         elif not joints:
             home[body] = (index, turned, moved)
             if index >= 0 and model.body_mass[body] > 0:
-                links[index] = _joined(links[index], float(model.body_mass[body]), moved + turned @ com, turned @ inertia @ turned.T)
+                links[index] = _joined(
+                    links[index],
+                    float(model.body_mass[body]),
+                    moved + turned @ com,
+                    turned @ inertia @ turned.T,
+                )
         elif len(joints) == 1 and kinds == {int(mujoco.mjtJoint.mjJNT_HINGE)}:
             anchor = model.jnt_pos[joints[0]]
             home[body] = (len(links), np.eye(3), -anchor)
-            links.append(Link(
-                model.body(body).name, model.joint(joints[0]).name, index, turned, moved + turned @ anchor, model.jnt_axis[joints[0]].copy(),
-                float(model.body_mass[body]), com - anchor, inertia,
-            ))  # fmt: skip
+            links.append(
+                Link(
+                    model.body(body).name,
+                    model.joint(joints[0]).name,
+                    index,
+                    turned,
+                    moved + turned @ anchor,
+                    model.jnt_axis[joints[0]].copy(),
+                    float(model.body_mass[body]),
+                    com - anchor,
+                    inertia,
+                )
+            )
         else:
             raise ValueError(f"body {model.body(body).name}: one hinge a body is what this reads")
     return tuple(links)
@@ -278,7 +370,15 @@ def tree_links(model: Any) -> tuple[Link, ...]:
 def _joined(link: Link, mass: float, com: np.ndarray, inertia: np.ndarray) -> Link:
     total = link.mass + mass
     middle = (link.mass * link.com + mass * com) / total
-    return replace(link, mass=total, com=middle, inertia=link.inertia + inertia + steiner(link.mass, link.com - middle) + steiner(mass, com - middle))
+    return replace(
+        link,
+        mass=total,
+        com=middle,
+        inertia=link.inertia
+        + inertia
+        + steiner(link.mass, link.com - middle)
+        + steiner(mass, com - middle),
+    )
 
 
 def matrix(quaternion: np.ndarray) -> np.ndarray:

@@ -1,4 +1,6 @@
-"""Motions that the rigs' operators ran: written for the plants, apart from the ones that the diagnosis recommends."""
+"""Motions that the rigs' operators ran: written for the plants, apart from the ones that the
+diagnosis recommends.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +14,11 @@ OTHER = ("multisine", "triangles", "steps", "sweep")
 """Motions of the second's."""
 
 
-def motion(kind: str, chain: Chain, duration: float, rate: float, rng: np.random.Generator) -> np.ndarray:
-    """Position targets `(ticks, n)` [rad] that start at the rest posture and stay inside the limits.
+def motion(
+    kind: str, chain: Chain, duration: float, rate: float, rng: np.random.Generator
+) -> np.ndarray:
+    """Position targets `(ticks, n)` [rad] that start at the rest posture and stay inside the
+    limits.
 
     Args:
         kind: one of `RIG` or `OTHER`.
@@ -44,14 +49,18 @@ def _chirp(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator) ->
         growth = np.log(fast / slow)
         phase = 2 * np.pi * slow * total / growth * np.expm1(growth * time / total)
         frequency = slow * np.exp(growth * time / total)
-        shrink = np.minimum(1.0, np.sqrt(0.5 / frequency)) * np.minimum(1.0, 2.5 / (2 * np.pi * frequency * size))
+        shrink = np.minimum(1.0, np.sqrt(0.5 / frequency)) * np.minimum(
+            1.0, 2.5 / (2 * np.pi * frequency * size)
+        )
         columns.append(size * shrink * np.sin(rng.choice([-1, 1]) * phase))
     return np.stack(columns, -1)
 
 
 def _ramps(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Slow triangles, each joint at its own constant speed."""
-    return np.stack([size * _triangle(time / rng.uniform(3.0, 7.0) + rng.uniform()) for size in amplitude], -1)
+    return np.stack(
+        [size * _triangle(time / rng.uniform(3.0, 7.0) + rng.uniform()) for size in amplitude], -1
+    )
 
 
 def _holds(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -72,7 +81,8 @@ def _reversals(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator
     for size in amplitude:
         quick = rng.uniform(0.9, 2.2)
         columns.append(
-            0.65 * size * np.sin(2 * np.pi * (time * rng.uniform(0.07, 0.16) + rng.uniform())) + 0.3 * size * np.sin(2 * np.pi * quick * time)
+            0.65 * size * np.sin(2 * np.pi * (time * rng.uniform(0.07, 0.16) + rng.uniform()))
+            + 0.3 * size * np.sin(2 * np.pi * quick * time)
         )
     return np.stack(columns, -1)
 
@@ -84,7 +94,9 @@ def _multisine(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator
     columns = []
     for size in amplitude:
         own = frequency * rng.uniform(0.93, 1.07, 9)
-        wave = (weight * np.sin(2 * np.pi * np.outer(time, own) + rng.uniform(0, 2 * np.pi, 9))).sum(-1)
+        wave = (
+            weight * np.sin(2 * np.pi * np.outer(time, own) + rng.uniform(0, 2 * np.pi, 9))
+        ).sum(-1)
         columns.append(size * wave / np.abs(wave).max())
     return np.stack(columns, -1)
 
@@ -92,7 +104,9 @@ def _multisine(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator
 def _triangles(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Triangles that grow from small to full, one joint after the other leading."""
     grow = np.linspace(0.25, 1.0, time.size)[:, None]
-    return grow * np.stack([size * _triangle(time / rng.uniform(1.2, 4.0) + rng.uniform()) for size in amplitude], -1)
+    return grow * np.stack(
+        [size * _triangle(time / rng.uniform(1.2, 4.0) + rng.uniform()) for size in amplitude], -1
+    )
 
 
 def _steps(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -116,7 +130,9 @@ def _sweep(time: np.ndarray, amplitude: np.ndarray, rng: np.random.Generator) ->
     for size in amplitude:
         frequency = rng.permutation(np.geomspace(0.2, 4.5, 10))[stages]
         phase = 2 * np.pi * np.cumsum(frequency) * (time[1] - time[0])
-        weight = uniform_filter1d(np.minimum(1.0, 0.4 / frequency) ** 1.3, max(1, round(0.4 / (time[1] - time[0]))))
+        weight = uniform_filter1d(
+            np.minimum(1.0, 0.4 / frequency) ** 1.3, max(1, round(0.4 / (time[1] - time[0])))
+        )
         columns.append(size * weight * np.sin(phase))
     return np.stack(columns, -1)
 
@@ -126,6 +142,12 @@ def _triangle(turns: np.ndarray) -> np.ndarray:
 
 
 _SHAPES = {
-    "chirp": _chirp, "ramps": _ramps, "holds": _holds, "reversals": _reversals, "multisine": _multisine, "triangles": _triangles, "steps": _steps,
+    "chirp": _chirp,
+    "ramps": _ramps,
+    "holds": _holds,
+    "reversals": _reversals,
+    "multisine": _multisine,
+    "triangles": _triangles,
+    "steps": _steps,
     "sweep": _sweep,
-}  # fmt: skip
+}

@@ -1,4 +1,6 @@
-"""What nobody gets right: the few per cent by which a robot differs from its data sheet, and from itself on another day."""
+"""What nobody gets right: the few per cent by which a robot differs from its data sheet, and from
+itself on another day.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,21 @@ def perfect(chain: Chain) -> Nuisance:
     """Nothing off, belts as stiff as belts are."""
     n, m = chain.joint_from_motor.shape
     one, ones = np.ones(n), np.ones(m)
-    return Nuisance(one, np.zeros((n, 3)), one, ones, one, one, ones, np.zeros(n), one, np.full(m, 120.0), 0.0, 0.0, 25.0)
+    return Nuisance(
+        one,
+        np.zeros((n, 3)),
+        one,
+        ones,
+        one,
+        one,
+        ones,
+        np.zeros(n),
+        one,
+        np.full(m, 120.0),
+        0.0,
+        0.0,
+        25.0,
+    )
 
 
 def of_robot(chain: Chain, rng: np.random.Generator) -> Nuisance:
@@ -60,12 +76,20 @@ def of_robot(chain: Chain, rng: np.random.Generator) -> Nuisance:
 
     lengths = np.maximum(np.abs([link.com for link in chain.links]).max(-1), 0.02)
     return Nuisance(
-        mass=factor(n, 0.02), com=np.clip(rng.standard_normal((n, 3)), -2, 2) * 0.02 * lengths[:, None], inertia=factor(n, 0.04), rotor=factor(m,
-        0.04),
-        coulomb=factor(n, 0.06), viscous=factor(n, 0.08), torque=factor(m, 0.012), offset=0.0015 * np.clip(rng.standard_normal(n), -2, 2),
-        breakaway=np.asarray(1.0 + rng.uniform(0.02, 0.08, n)), resonance=np.asarray(rng.uniform(90.0, 150.0, m)), lag=rng.uniform(0.0005, 0.0012),
-        delay=rng.uniform(0.0002, 0.0008), air=25.0,
-    )  # fmt: skip
+        mass=factor(n, 0.02),
+        com=np.clip(rng.standard_normal((n, 3)), -2, 2) * 0.02 * lengths[:, None],
+        inertia=factor(n, 0.04),
+        rotor=factor(m, 0.04),
+        coulomb=factor(n, 0.06),
+        viscous=factor(n, 0.08),
+        torque=factor(m, 0.012),
+        offset=0.0015 * np.clip(rng.standard_normal(n), -2, 2),
+        breakaway=np.asarray(1.0 + rng.uniform(0.02, 0.08, n)),
+        resonance=np.asarray(rng.uniform(90.0, 150.0, m)),
+        lag=rng.uniform(0.0005, 0.0012),
+        delay=rng.uniform(0.0002, 0.0008),
+        air=25.0,
+    )
 
 
 def of_day(chain: Chain, robot: Nuisance, rng: np.random.Generator) -> Nuisance:
@@ -73,11 +97,13 @@ def of_day(chain: Chain, robot: Nuisance, rng: np.random.Generator) -> Nuisance:
     n, m = chain.joint_from_motor.shape
     friction = 1.0 + 0.03 * np.clip(rng.standard_normal(), -2, 2)
     return replace(
-        robot, coulomb=robot.coulomb * friction * (1 + 0.02 * np.clip(rng.standard_normal(n), -2, 2)),
+        robot,
+        coulomb=robot.coulomb * friction * (1 + 0.02 * np.clip(rng.standard_normal(n), -2, 2)),
         viscous=robot.viscous * friction * (1 + 0.03 * np.clip(rng.standard_normal(n), -2, 2)),
         torque=robot.torque * (1 + 0.006 * np.clip(rng.standard_normal(m), -2, 2)),
-        offset=robot.offset + 0.0007 * np.clip(rng.standard_normal(n), -2, 2), air=rng.uniform(20.0, 38.0),
-    )  # fmt: skip
+        offset=robot.offset + 0.0007 * np.clip(rng.standard_normal(n), -2, 2),
+        air=rng.uniform(20.0, 38.0),
+    )
 
 
 def built(chain: Chain, nuisance: Nuisance) -> Chain:
@@ -85,7 +111,12 @@ def built(chain: Chain, nuisance: Nuisance) -> Chain:
     from dataclasses import replace as changed
 
     links = tuple(
-        changed(link, mass=link.mass * nuisance.mass[i], com=link.com + nuisance.com[i], inertia=link.inertia * nuisance.inertia[i])
+        changed(
+            link,
+            mass=link.mass * nuisance.mass[i],
+            com=link.com + nuisance.com[i],
+            inertia=link.inertia * nuisance.inertia[i],
+        )
         for i, link in enumerate(chain.links)
     )
     return changed(chain, links=links)

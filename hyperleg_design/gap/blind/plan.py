@@ -1,4 +1,6 @@
-"""What a trial holds: how many cases of each kind, on which plants and robots, with which effects; all drawn from one seed."""
+"""What a trial holds: how many cases of each kind, on which plants and robots, with which effects;
+all drawn from one seed.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +31,19 @@ ONE_JOINT_CANNOT = ("link_mass", "link_com", "cross_coupling", "tilted_gravity")
 NEED_DRIVES = ("thermal_derating", "voltage_sag")
 """Effects whose cause, a temperature or a voltage, is then logged."""
 WALKING_ONES = (
-    "coulomb_friction", "viscous_friction", "torque_constant", "command_delay", "encoder_offset", "controller_gain", "payload", "link_mass",
-    "imu_bias", "ground_friction", "ground_compliance", "joint_spring",
-)  # fmt: skip
+    "coulomb_friction",
+    "viscous_friction",
+    "torque_constant",
+    "command_delay",
+    "encoder_offset",
+    "controller_gain",
+    "payload",
+    "link_mass",
+    "imu_bias",
+    "ground_friction",
+    "ground_compliance",
+    "joint_spring",
+)
 """Effects that walking logs are drawn with."""
 WALKING_ODD = ("tilted_gravity", "periodic_push", "packet_loss", "sensor_drift")
 """Oddities that walking logs are drawn with."""
@@ -60,7 +72,13 @@ class Plan:
     """Of everything else in the case."""
 
 
-def plan_cases(count: int, seed: int, *, plants: Sequence[str] = tuple(PLANTS), duration: tuple[float, float] = (10.0, 14.0)) -> list[Plan]:
+def plan_cases(
+    count: int,
+    seed: int,
+    *,
+    plants: Sequence[str] = tuple(PLANTS),
+    duration: tuple[float, float] = (10.0, 14.0),
+) -> list[Plan]:
     """Draw a trial's cases; the same seed gives the same cases, whatever else is made beside them.
 
     Effects go round the catalogue, so that each comes about equally often.
@@ -82,15 +100,21 @@ def plan_cases(count: int, seed: int, *, plants: Sequence[str] = tuple(PLANTS), 
     share = {p: PLANTS[p] for p in plants}
     where = _apportioned(share, count, rng)
     rounds = {
-        "rig": _Round([e for e in CATALOGUE if e not in WALKING_ONLY], rng), "odd": _Round(ODDITIES, rng),
-        "walking": _Round(WALKING_ONES, rng), "walking odd": _Round(WALKING_ODD, rng),
-    }  # fmt: skip
+        "rig": _Round([e for e in CATALOGUE if e not in WALKING_ONLY], rng),
+        "odd": _Round(ODDITIES, rng),
+        "walking": _Round(WALKING_ONES, rng),
+        "walking odd": _Round(WALKING_ODD, rng),
+    }
     plans = []
     for index, (kind, plant) in enumerate(zip(kinds, where, strict=True)):
         walking = plant == "walking"
         own = np.random.default_rng([seed, 1, index])
         robot = "hyperleg" if walking else _one(RIG_ROBOTS, own)
-        source = rounds[("walking" if walking else "rig") if kind != "outside" else ("walking odd" if walking else "odd")]
+        source = rounds[
+            ("walking" if walking else "rig")
+            if kind != "outside"
+            else ("walking odd" if walking else "odd")
+        ]
         effects = tuple(source.take({"null": 0, "compound": 2}.get(kind, 1)))
         if plant != "walking" and robot == "servo" and any(e in ONE_JOINT_CANNOT for e in effects):
             robot = "arm"
@@ -99,16 +123,31 @@ def plan_cases(count: int, seed: int, *, plants: Sequence[str] = tuple(PLANTS), 
             effects = tuple("payload" if e in ONE_JOINT_CANNOT else e for e in effects)
         low, high = MULTIPLES if kind == "single" else (2.0, MULTIPLES[1])
         plan = Plan(
-            index=index, kind=kind, plant=plant, robot=robot, effects=effects,
-            multiples=tuple(float(own.uniform(low, high)) for _ in effects), references=bool(own.random() < REFERENCES),
+            index=index,
+            kind=kind,
+            plant=plant,
+            robot=robot,
+            effects=effects,
+            multiples=tuple(float(own.uniform(low, high)) for _ in effects),
+            references=bool(own.random() < REFERENCES),
             recorder=Recorder(
-                rate=200.0 if walking else float(own.choice([200.0, 250.0, 100.0], p=[0.6, 0.25, 0.15])), jitter=float(own.uniform(0.05e-3, 0.4e-3)),
-                dropped=float(own.choice([0.0, 0.002, 0.01], p=[0.4, 0.4, 0.2])), torque=_one(TORQUES, own) if not walking else "motor_torque",
-                velocity=bool(own.random() < 0.8), drives=bool(own.random() < 0.6) or bool(set(effects) & set(NEED_DRIVES)),
+                rate=200.0
+                if walking
+                else float(own.choice([200.0, 250.0, 100.0], p=[0.6, 0.25, 0.15])),
+                jitter=float(own.uniform(0.05e-3, 0.4e-3)),
+                dropped=float(own.choice([0.0, 0.002, 0.01], p=[0.4, 0.4, 0.2])),
+                torque=_one(TORQUES, own) if not walking else "motor_torque",
+                velocity=bool(own.random() < 0.8),
+                drives=bool(own.random() < 0.6) or bool(set(effects) & set(NEED_DRIVES)),
             ),
-            duration=round(float(own.uniform(*duration)), 1), seed=(seed, index),
-        )  # fmt: skip
-        plans.append(plan if walking else replace(plan, recorder=replace(plan.recorder, rotors=bool(own.random() < ROTORS))))
+            duration=round(float(own.uniform(*duration)), 1),
+            seed=(seed, index),
+        )
+        plans.append(
+            plan
+            if walking
+            else replace(plan, recorder=replace(plan.recorder, rotors=bool(own.random() < ROTORS)))
+        )
     return plans
 
 

@@ -1,8 +1,10 @@
-"""First rig plant: rotors and joints as two masses on belts, LuGre friction, torque drives; Pinocchio's ABA, semi-implicit Euler at 0.25 ms.
+"""First rig plant: rotors and joints as two masses on belts, LuGre friction, torque drives;
+Pinocchio's ABA, semi-implicit Euler at 0.25 ms.
 
-Coordinates of a robot are its `m` motors, then its `n` joints, `c` in all. With `C = [I; -M]` the belts stretch by `C^T x`; each
-pulls `C (stiffness stretch + damping rate)` on the coordinates. Rotors follow `J w' = drive - friction - pull`, the joints ABA
-with pull less friction. Several logs run side by side; only the rigid bodies are taken one by one.
+Coordinates of a robot are its `m` motors, then its `n` joints, `c` in all. With `C = [I; -M]` the
+belts stretch by `C^T x`; each pulls `C (stiffness stretch + damping rate)` on the coordinates.
+Rotors follow `J w' = drive - friction - pull`, the joints ABA with pull less friction. Several logs
+run side by side; only the rigid bodies are taken one by one.
 """
 
 from __future__ import annotations
@@ -150,15 +152,24 @@ class Trace:
     voltage: np.ndarray
     """`(k,)` [V]"""
     energy: np.ndarray
-    """Kinetic and elastic energy of rotors and belts, potential and kinetic of the bodies `(k,)` [J]; NaN unless asked for."""
+    """Kinetic and elastic energy of rotors and belts, potential and kinetic of the bodies `(k,)`
+    [J]; NaN unless asked for."""
 
 
-def simulate(plants: Sequence[RigPlant], targets: np.ndarray, rate: float, *, seeds: Sequence[int], energy: bool = False) -> list[Trace]:
+def simulate(
+    plants: Sequence[RigPlant],
+    targets: np.ndarray,
+    rate: float,
+    *,
+    seeds: Sequence[int],
+    energy: bool = False,
+) -> list[Trace]:
     """Run rigs side by side.
 
     Args:
         plants: `b` rigs of the same robot.
-        targets: position targets `(b, ticks, n)` [rad] at the host's rate; the drives interpolate between its ticks.
+        targets: position targets `(b, ticks, n)` [rad] at the host's rate; the drives interpolate
+            between its ticks.
         rate: of the host [Hz]; divides 1 kHz.
         seeds: of what is random inside the plant (lost packets), one a rig.
         energy: also compute the energy, for checks.
@@ -193,8 +204,16 @@ def simulate(plants: Sequence[RigPlant], targets: np.ndarray, rate: float, *, se
     cogging, order, phase = stack("cogging"), stack("cogging_order"), stack("cogging_phase")
     scale, derating = stack("torque_scale"), stack("derating")
     peak, stall, fastest = stack("peak_torque"), stack("stall_torque"), stack("no_load_speed")
-    nominal, supply, resistance = stack("voltage")[:, None], stack("supply")[:, None], stack("supply_resistance")[:, None]
-    heat, thermal_resistance, thermal_time = stack("power_constant"), stack("thermal_resistance"), stack("thermal_time")
+    nominal, supply, resistance = (
+        stack("voltage")[:, None],
+        stack("supply")[:, None],
+        stack("supply_resistance")[:, None],
+    )
+    heat, thermal_resistance, thermal_time = (
+        stack("power_constant"),
+        stack("thermal_resistance"),
+        stack("thermal_time"),
+    )
     temperature = stack("start_temperature")
     delay = stack("delay") / control
     whole = np.floor(delay).astype(int)
@@ -203,8 +222,18 @@ def simulate(plants: Sequence[RigPlant], targets: np.ndarray, rate: float, *, se
     kp, kd = stack("stiffness"), stack("damping")
     offset, resolution, drift = stack("offset"), stack("resolution"), stack("drift")
     smooth = -np.expm1(-2 * np.pi * stack("velocity_bandwidth")[:, None] * control)
-    ripple, patch, patch_middle, hysteresis = stack("ripple"), stack("patch"), stack("patch_middle"), stack("hysteresis")
-    push, beat, hardening, coupling = stack("push"), stack("push_frequency")[:, None], stack("hardening"), stack("coupling")
+    ripple, patch, patch_middle, hysteresis = (
+        stack("ripple"),
+        stack("patch"),
+        stack("patch_middle"),
+        stack("hysteresis"),
+    )
+    push, beat, hardening, coupling = (
+        stack("push"),
+        stack("push_frequency")[:, None],
+        stack("hardening"),
+        stack("coupling"),
+    )
     drag, eccentricity, rest = stack("drag"), stack("eccentricity"), stack("rest")
     lost = _lost(stack("loss"), lead + count, control, seeds)
 
@@ -234,7 +263,9 @@ def simulate(plants: Sequence[RigPlant], targets: np.ndarray, rate: float, *, se
     energies = np.full((count, b), np.nan)
     for tick in range(-lead, count):
         row, within = divmod(max(tick, 0), hold)
-        target = targets[:, row] + (targets[:, min(row + 1, ticks - 1)] - targets[:, row]) * (within / hold)
+        target = targets[:, row] + (targets[:, min(row + 1, ticks - 1)] - targets[:, row]) * (
+            within / hold
+        )
         angle = x[:, m:]
         encoder = angle + offset
         if tick > 0 and drift.any():
@@ -248,14 +279,20 @@ def simulate(plants: Sequence[RigPlant], targets: np.ndarray, rate: float, *, se
         place = tick % _HISTORY
         history[place] = np.where(lost[:, tick + lead, None], history[place - 1], fresh)
         late = (place - whole) % _HISTORY
-        wanted = (1 - part) * history[late, lines, columns] + part * history[late - 1, lines, columns]
+        wanted = (1 - part) * history[late, lines, columns] + part * history[
+            late - 1, lines, columns
+        ]
         # The drives' limits: current, and the voltage that is there against the rotor's back-EMF.
         available = stall * (bus / nominal)
         back_emf = droop * v[:, :m]
         wanted = np.clip(np.clip(wanted, -available - back_emf, available - back_emf), -peak, peak)
         power = np.maximum((given * v[:, :m] + heat * given * given).sum(1, keepdims=True), 0.0)
         bus = supply - resistance * power / supply
-        temperature += control / thermal_time * (thermal_resistance * heat * given * given - (temperature - 25.0))
+        temperature += (
+            control
+            / thermal_time
+            * (thermal_resistance * heat * given * given - (temperature - 25.0))
+        )
         strength = scale * (1.0 - derating * np.maximum(temperature - 25.0, 0.0))
         if tick >= 0:
             kept["position"][tick], kept["velocity"][tick] = angle, v[:, m:]
@@ -303,9 +340,13 @@ def simulate(plants: Sequence[RigPlant], targets: np.ndarray, rate: float, *, se
                 memory = (memory + 4.0 * h * qd) / (1.0 + 4.0 * h * np.abs(qd))
                 thrust = push * (np.maximum(np.sin(2 * np.pi * beat * (tick * control)), 0.0) ** 6)
                 force[:, m:] += (
-                    thrust - spring * (q - spring_rest) - hysteresis * memory - hardening * bent**3 - (coupling @ bent[:, :, None])[:, :, 0]
+                    thrust
+                    - spring * (q - spring_rest)
+                    - hysteresis * memory
+                    - hardening * bent**3
+                    - (coupling @ bent[:, :, None])[:, :, 0]
                     - drag * qd * np.abs(qd)
-                )  # fmt: skip
+                )
             force[:, :m] += given
             if has_motor_extra:
                 turned = x[:, :m]
@@ -323,20 +364,33 @@ def simulate(plants: Sequence[RigPlant], targets: np.ndarray, rate: float, *, se
             kept["pull"][tick] = -(pull[:, None] @ back)[:, 0][:, m:]
             if energy:
                 energies[tick] = [
-                    pin.computeMechanicalEnergy(models[i], datas[i], x[i, m:], v[i, m:]) + 0.5 * (v[i, :m] ** 2 / inverse_rotor[i]).sum()
-                    + 0.5 * (stiff[i] * (x[i] @ split[i]) ** 2).sum() for i in range(b)
-                ]  # fmt: skip
+                    pin.computeMechanicalEnergy(models[i], datas[i], x[i, m:], v[i, m:])
+                    + 0.5 * (v[i, :m] ** 2 / inverse_rotor[i]).sum()
+                    + 0.5 * (stiff[i] * (x[i] @ split[i]) ** 2).sum()
+                    for i in range(b)
+                ]
     time = np.arange(count) * control
     return [
-        Trace(time=time, energy=energies[:, i], voltage=kept["voltage"][:, i, 0], **{k: a[:, i] for k, a in kept.items() if k != "voltage"})
+        Trace(
+            time=time,
+            energy=energies[:, i],
+            voltage=kept["voltage"][:, i, 0],
+            **{k: a[:, i] for k, a in kept.items() if k != "voltage"},
+        )
         for i in range(b)
-    ]  # fmt: skip
+    ]
 
 
 def _stiff_belts(
-    plants: Sequence[RigPlant], stiff: np.ndarray, damp: np.ndarray, inverse_rotor: np.ndarray, matrix: np.ndarray
+    plants: Sequence[RigPlant],
+    stiff: np.ndarray,
+    damp: np.ndarray,
+    inverse_rotor: np.ndarray,
+    matrix: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Of belts whose resonance the step cannot follow, a linearly implicit pull: time ahead [s] and factor, `(b, m)` each."""
+    """Of belts whose resonance the step cannot follow, a linearly implicit pull: time ahead [s] and
+    factor, `(b, m)` each.
+    """
     import pinocchio as pin
 
     mobility = inverse_rotor.copy()
@@ -345,14 +399,24 @@ def _stiff_belts(
         full = half + np.triu(half, 1).T
         mobility[row] += np.einsum("im,ij,jm->m", matrix[row], full, matrix[row])
     fast = (STEP * np.sqrt(stiff * mobility) > 0.35) | (STEP * damp * mobility > 0.2)
-    return np.where(fast, STEP, 0.0), np.where(fast, 1.0 / (1.0 + STEP * (damp + STEP * stiff) * mobility), 1.0)
+    return np.where(fast, STEP, 0.0), np.where(
+        fast, 1.0 / (1.0 + STEP * (damp + STEP * stiff) * mobility), 1.0
+    )
 
 
 def _WIDTHS(n: int, m: int) -> dict[str, int]:
     return {
-        "position": n, "velocity": n, "encoder": n, "speed": n, "motor_velocity": m, "command": m, "drive_torque": m, "pull": n, "temperature": m,
+        "position": n,
+        "velocity": n,
+        "encoder": n,
+        "speed": n,
+        "motor_velocity": m,
+        "command": m,
+        "drive_torque": m,
+        "pull": n,
+        "temperature": m,
         "voltage": 1,
-    }  # fmt: skip
+    }
 
 
 def _lost(share: np.ndarray, count: int, tick: float, seeds: Sequence[int]) -> np.ndarray:

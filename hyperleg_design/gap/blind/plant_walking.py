@@ -1,8 +1,10 @@
-"""Plant for a robot on its feet: MuJoCo's contact with another step, integrator, cone and contact law than the simulator's, drives of two masses.
+"""Plant for a robot on its feet: MuJoCo's contact with another step, integrator, cone and contact
+law than the simulator's, drives of two masses.
 
-The body is MuJoCo's without friction and rotors; those, belts and drives are integrated here at 0.25 ms and act as applied joint
-torques, as in `plant_rig`. Targets come from `Stand`: squats, sways, twists and rocking on both feet, with the ankle strategy of
-a balance controller that sees the body's tilt. No walking policy drives it.
+The body is MuJoCo's without friction and rotors; those, belts and drives are integrated here at
+0.25 ms and act as applied joint torques, as in `plant_rig`. Targets come from `Stand`: squats,
+sways, twists and rocking on both feet, with the ankle strategy of a balance controller that sees
+the body's tilt. No walking policy drives it.
 """
 
 from __future__ import annotations
@@ -22,7 +24,8 @@ CONTROL_STEPS = 4
 SETTLING = 1.0
 """Time of standing before the recording begins [s]."""
 ANKLE_STRATEGY = (9.0, 2.6)
-"""Change of the ankles' targets over the way [rad/m] and the speed [rad s/m] of the centre of mass."""
+"""Change of the ankles' targets over the way [rad/m] and the speed [rad s/m] of the centre of
+mass."""
 AHEAD = 0.04
 """Where the balance controller holds the centre of mass, before the ankles [m]."""
 FALLEN = 0.45
@@ -58,7 +61,9 @@ class WalkingPlant:
 
 @dataclass(frozen=True, eq=False)
 class WalkingTrace:
-    """What truly happened at the drives' ticks, `k` of them, and the targets that the host sent, `t` ticks."""
+    """What truly happened at the drives' ticks, `k` of them, and the targets that the host sent,
+    `t` ticks.
+    """
 
     time: np.ndarray
     targets: np.ndarray
@@ -83,8 +88,12 @@ class WalkingTrace:
     fell: bool
 
 
-def walking_model(chain: Chain, masses: Chain, ground: Ground, pelvis: float, gravity: np.ndarray) -> Any:
-    """The robot on its ground in MuJoCo; `masses` has the true links, `pelvis` the factor on the pelvis' mass."""
+def walking_model(
+    chain: Chain, masses: Chain, ground: Ground, pelvis: float, gravity: np.ndarray
+) -> Any:
+    """The robot on its ground in MuJoCo; `masses` has the true links, `pelvis` the factor on the
+    pelvis' mass.
+    """
     import mujoco
 
     from hyperleg_design.robot.design import load_design
@@ -110,7 +119,11 @@ def walking_model(chain: Chain, masses: Chain, ground: Ground, pelvis: float, gr
         values, axes = np.linalg.eigh(link.inertia)
         if np.linalg.det(axes) < 0:
             axes[:, 0] *= -1
-        model.body_mass[body], model.body_ipos[body], model.body_inertia[body] = link.mass, link.com, values
+        model.body_mass[body], model.body_ipos[body], model.body_inertia[body] = (
+            link.mass,
+            link.com,
+            values,
+        )
         quaternion = np.empty(4)
         mujoco.mju_mat2Quat(quaternion, axes.ravel())
         model.body_iquat[body] = quaternion
@@ -149,7 +162,15 @@ class Stand:
     lean: float = 0.05
     """Legs' inclination that brings the weight over the middle of the feet [rad]."""
 
-    def targets(self, time: float, ahead: float, speed: float, roll: float, roll_rate: float, sides: np.ndarray) -> np.ndarray:
+    def targets(
+        self,
+        time: float,
+        ahead: float,
+        speed: float,
+        roll: float,
+        roll_rate: float,
+        sides: np.ndarray,
+    ) -> np.ndarray:
         """Position targets `(14,)` [rad], left leg first, hip yaw .. toe.
 
         Args:
@@ -165,17 +186,30 @@ class Stand:
         knee = self.knee + self.squat * wave[0]
         # Thigh 0.37 m and shank 0.345 m: the hip stays above the ankle.
         hip = np.arctan2(0.345 * np.sin(knee), 0.37 + 0.345 * np.cos(knee))
-        ankle = hip - knee - self.lean + ANKLE_STRATEGY[0] * (ahead - AHEAD - self.rock * wave[3]) + ANKLE_STRATEGY[1] * speed
+        ankle = (
+            hip
+            - knee
+            - self.lean
+            + ANKLE_STRATEGY[0] * (ahead - AHEAD - self.rock * wave[3])
+            + ANKLE_STRATEGY[1] * speed
+        )
         sway = self.sway * wave[1]
         legs = []
         for side, out in zip(sides, (1.0, -1.0), strict=True):
-            yaw, apart = self.twist * wave[2] + self.turn * out * wave[4], self.spread * out * wave[4]
+            yaw, apart = (
+                self.twist * wave[2] + self.turn * out * wave[4],
+                self.spread * out * wave[4],
+            )
             level = -side[2] * (sway - 0.5 * roll - 0.04 * roll_rate)
-            legs.append([side[0] * yaw, side[1] * (sway + apart), -hip + self.lean, knee, ankle, level, 0.0])
+            legs.append(
+                [side[0] * yaw, side[1] * (sway + apart), -hip + self.lean, knee, ankle, level, 0.0]
+            )
         return np.concatenate(legs)
 
 
-def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: float, rate: float, seed: int) -> WalkingTrace:
+def simulate_walking(
+    plant: WalkingPlant, chain: Chain, stand: Stand, duration: float, rate: float, seed: int
+) -> WalkingTrace:
     """Run one robot.
 
     Args:
@@ -202,7 +236,9 @@ def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: 
     count = ticks * hold
     matrix, allot = p.joint_from_motor, np.linalg.pinv(p.declared)
     inverse_rotor = 1.0 / p.rotor_inertia
-    friction = {k: getattr(p, k)[m:] for k in ("coulomb", "static", "stribeck_speed", "viscous", "bristle")}
+    friction = {
+        k: getattr(p, k)[m:] for k in ("coulomb", "static", "stribeck_speed", "viscous", "bristle")
+    }
     size = np.maximum(friction["static"], 1e-9)
     lag, late = -np.expm1(-h / np.maximum(p.lag, 1e-6)), p.delay / control
     whole = np.floor(late).astype(int)
@@ -224,10 +260,20 @@ def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: 
     pad_of = {g: i for i, g in enumerate(pads)}
     previous = fresh_target = first
     ankles = [model.body(f"{side}_foot").id for side in ("left", "right")]
-    kept = {k: np.zeros((count, w)) for k, w in (
-        ("encoder", n), ("speed", n), ("motor_velocity", m), ("command", m), ("drive_torque", m), ("temperature", m), ("base", 10), ("gyro", 3),
-        ("accelerometer", 3),
-    )}  # fmt: skip
+    kept = {
+        k: np.zeros((count, w))
+        for k, w in (
+            ("encoder", n),
+            ("speed", n),
+            ("motor_velocity", m),
+            ("command", m),
+            ("drive_torque", m),
+            ("temperature", m),
+            ("base", 10),
+            ("gyro", 3),
+            ("accelerometer", 3),
+        )
+    }
     contact, targets = np.zeros((count, len(pads), 3)), np.zeros((ticks, n))
     gyro = model.sensor("gyro").adr[0]
     accelerometer = model.sensor("accelerometer").adr[0]
@@ -236,14 +282,25 @@ def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: 
     for tick in range(-lead, count):
         row, within = divmod(tick, hold)
         if within == 0:
-            ahead = data.subtree_com[root, 0] - 0.5 * (data.xpos[ankles[0], 0] + data.xpos[ankles[1], 0])
+            ahead = data.subtree_com[root, 0] - 0.5 * (
+                data.xpos[ankles[0], 0] + data.xpos[ankles[1], 0]
+            )
             mujoco.mj_subtreeVel(model, data)
-            previous, fresh_target = fresh_target, stand.targets(
-                row / rate, ahead, data.subtree_linvel[root, 0], _roll(data.qpos[3:7]), data.qvel[3], sides
-            )  # fmt: skip
+            previous, fresh_target = (
+                fresh_target,
+                stand.targets(
+                    row / rate,
+                    ahead,
+                    data.subtree_linvel[root, 0],
+                    _roll(data.qpos[3:7]),
+                    data.qvel[3],
+                    sides,
+                ),
+            )
             if tick >= 0:
                 targets[row] = previous
-        # The drives run from one target to the next, which smooths the steps between the host's ticks.
+        # The drives run from one target to the next, which smooths the steps between the host's
+        # ticks.
         target = previous + (fresh_target - previous) * (within / hold)
         encoder = data.qpos[7:] + p.offset + p.drift * max(tick * control, 0.0)
         encoder = np.round(encoder / p.resolution) * p.resolution
@@ -254,15 +311,29 @@ def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: 
         history[tick % 128] = history[(tick - 1) % 128] if silent else fresh
         silent = max(silent - 1, 0)
         index = (tick - whole) % 128
-        wanted = np.clip((1 - part) * history[index, columns] + part * history[index - 1, columns], -p.peak_torque, p.peak_torque)
+        wanted = np.clip(
+            (1 - part) * history[index, columns] + part * history[index - 1, columns],
+            -p.peak_torque,
+            p.peak_torque,
+        )
         thrust = max(np.sin(2 * np.pi * p.push_frequency * tick * control), 0.0) ** 6
         data.xfrc_applied[root, :3] = plant.push * thrust
         if tick >= 0:
-            kept["encoder"][tick], kept["speed"][tick], kept["motor_velocity"][tick] = encoder, speed, spin
-            kept["command"][tick], kept["drive_torque"][tick], kept["temperature"][tick] = fresh, current, p.start_temperature
+            kept["encoder"][tick], kept["speed"][tick], kept["motor_velocity"][tick] = (
+                encoder,
+                speed,
+                spin,
+            )
+            kept["command"][tick], kept["drive_torque"][tick], kept["temperature"][tick] = (
+                fresh,
+                current,
+                p.start_temperature,
+            )
             kept["base"][tick, :7], kept["base"][tick, 7:] = data.qpos[:7], data.qvel[:3]
             kept["gyro"][tick] = data.sensordata[gyro : gyro + 3] + plant.gyro_bias
-            kept["accelerometer"][tick] = data.sensordata[accelerometer : accelerometer + 3] + plant.accelerometer_bias
+            kept["accelerometer"][tick] = (
+                data.sensordata[accelerometer : accelerometer + 3] + plant.accelerometer_bias
+            )
             for number in range(data.ncon):
                 touch = data.contact[number]
                 pad = pad_of.get(touch.geom2, pad_of.get(touch.geom1))
@@ -275,8 +346,15 @@ def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: 
             q, qd = data.qpos[7:], data.qvel[6:]
             taut = rotor - q @ matrix
             pull = p.belt_stiffness * taut + p.belt_damping * (spin - qd @ matrix)
-            capacity = friction["coulomb"] + (friction["static"] - friction["coulomb"]) * np.exp(-((qd / friction["stribeck_speed"]) ** 2)) + 1e-12
-            new = (bristles + h * qd / friction["bristle"]) / (1 + h * np.abs(qd) * size / (friction["bristle"] * capacity))
+            capacity = (
+                friction["coulomb"]
+                + (friction["static"] - friction["coulomb"])
+                * np.exp(-((qd / friction["stribeck_speed"]) ** 2))
+                + 1e-12
+            )
+            new = (bristles + h * qd / friction["bristle"]) / (
+                1 + h * np.abs(qd) * size / (friction["bristle"] * capacity)
+            )
             held = size * (new + BRISTLE_DAMPING / h * (new - bristles)) + friction["viscous"] * qd
             bristles = new
             data.qfrc_applied[6:] = matrix @ pull - held - p.spring * (q - p.spring_rest)
@@ -287,7 +365,14 @@ def simulate_walking(plant: WalkingPlant, chain: Chain, stand: Stand, duration: 
             fell = True
             break
     time = np.arange(count) * control
-    return WalkingTrace(time=time, targets=targets, contact=contact, voltage=np.full(count, p.voltage), fell=fell, **kept)
+    return WalkingTrace(
+        time=time,
+        targets=targets,
+        contact=contact,
+        voltage=np.full(count, p.voltage),
+        fell=fell,
+        **kept,
+    )
 
 
 def _roll(quaternion: np.ndarray) -> float:
@@ -297,7 +382,9 @@ def _roll(quaternion: np.ndarray) -> float:
 
 
 def _sides(model: Any, chain: Chain) -> np.ndarray:
-    """Signs of hip yaw (both feet turn the same way), hip roll and ankle roll (both legs lean the same way) `(2, 3)`."""
+    """Signs of hip yaw (both feet turn the same way), hip roll and ankle roll (both legs lean the
+    same way) `(2, 3)`.
+    """
     half = len(chain.joints) // 2
     rows = []
     for leg in range(2):

@@ -1,4 +1,6 @@
-"""From what truly happened to a log: a clock that jitters, rows that get lost, quantised and noisy signals, some of them absent."""
+"""From what truly happened to a log: a clock that jitters, rows that get lost, quantised and noisy
+signals, some of them absent.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,16 @@ class Recorder:
     """Of the rotors' speeds [rad/s]."""
 
 
-def record(trace: Any, targets: np.ndarray, chain: Chain, recorder: Recorder, rng: np.random.Generator, *, name: str, **metadata: Any) -> Log:
+def record(
+    trace: Any,
+    targets: np.ndarray,
+    chain: Chain,
+    recorder: Recorder,
+    rng: np.random.Generator,
+    *,
+    name: str,
+    **metadata: Any,
+) -> Log:
     """A log of one run.
 
     Args:
@@ -80,11 +91,16 @@ def record(trace: Any, targets: np.ndarray, chain: Chain, recorder: Recorder, rn
     signals: dict[str, np.ndarray] = {}
 
     def put(kind: str, names: tuple[str, ...], values: np.ndarray) -> None:
-        signals.update({f"{kind}/{name}": values[keep, column] for column, name in enumerate(names)})
+        signals.update(
+            {f"{kind}/{name}": values[keep, column] for column, name in enumerate(names)}
+        )
 
     put("position_target", chain.joints, targets)
     put("position", chain.joints, noisy(at(trace.encoder), recorder.position_noise))
-    speed, drive = noisy(at(trace.speed), recorder.velocity_noise), noisy(at(trace.drive_torque), recorder.torque_noise * chain.peak_torque)
+    speed, drive = (
+        noisy(at(trace.speed), recorder.velocity_noise),
+        noisy(at(trace.drive_torque), recorder.torque_noise * chain.peak_torque),
+    )
     if recorder.velocity:
         put("velocity", chain.joints, speed)
     if recorder.torque == "motor_current":
@@ -95,12 +111,20 @@ def record(trace: Any, targets: np.ndarray, chain: Chain, recorder: Recorder, rn
         put("motor_torque_command", chain.motors, trace.command[below])
     if recorder.drives:
         put("motor_temperature", chain.motors, np.round(at(trace.temperature)))
-        signals["battery_voltage"] = np.round(noisy(at(trace.voltage[:, None])[:, 0], 0.02)[keep], 2)
+        signals["battery_voltage"] = np.round(
+            noisy(at(trace.voltage[:, None])[:, 0], 0.02)[keep], 2
+        )
     if recorder.rotors:
         put("motor_velocity", chain.motors, noisy(at(trace.motor_velocity), recorder.rotor_noise))
     known: dict[str, Any] = {
-        "base": "fixed", "gains": {j: (float(k), float(d)) for j, k, d in zip(chain.joints, chain.stiffness, chain.damping, strict=True)},
-    }  # fmt: skip
+        "base": "fixed",
+        "gains": {
+            j: (float(k), float(d))
+            for j, k, d in zip(chain.joints, chain.stiffness, chain.damping, strict=True)
+        },
+    }
     if recorder.torque == "motor_current":
-        known["torque_constant"] = dict(zip(chain.motors, chain.torque_constant.tolist(), strict=True))
+        known["torque_constant"] = dict(
+            zip(chain.motors, chain.torque_constant.tolist(), strict=True)
+        )
     return Log(name, written[keep], signals, Metadata(**{**known, **metadata}))

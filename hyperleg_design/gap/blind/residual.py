@@ -1,4 +1,5 @@
-"""How large a gap is, by the plainest means: what a log's torques leave over against the data sheet's inverse dynamics.
+"""How large a gap is, by the plainest means: what a log's torques leave over against the data
+sheet's inverse dynamics.
 
 Only sizes the cases of a trial; the diagnosis has its own, better ways.
 """
@@ -27,10 +28,11 @@ EDGE = 0.4
 
 
 def residual(log: Log, chain: Chain) -> np.ndarray:
-    """What nominal model and drives leave over `(t, n)` or `(t, n + m)` [Nm], filtered, without the ends; NaN where a joint may stick.
+    """What nominal model and drives leave over `(t, n)` or `(t, n + m)` [Nm], filtered, without the
+    ends; NaN where a joint may stick.
 
-    Motion: believed joint torque less what the logged motion needs; drives, where torques are measured: measured motor torque
-    less what targets and gains ask for.
+    Motion: believed joint torque less what the logged motion needs; drives, where torques are
+    measured: measured motor torque less what targets and gains ask for.
     """
     import pinocchio as pin
     from scipy.ndimage import minimum_filter1d
@@ -60,11 +62,20 @@ def residual(log: Log, chain: Chain) -> np.ndarray:
         measured = even("motor_current", motors) * chain.torque_constant
     elif log.has("motor_torque", motors[0]):
         measured = even("motor_torque", motors)
-    believed = np.clip(command, -chain.peak_torque, chain.peak_torque) if measured is None else measured
+    believed = (
+        np.clip(command, -chain.peak_torque, chain.peak_torque) if measured is None else measured
+    )
     model = chain.pinocchio()
     data = model.createData()
-    needed = np.stack([pin.rnea(model, data, q, v, a) for q, v, a in zip(position, velocity, acceleration, strict=True)])
-    needed += acceleration @ (chain.joint_from_motor * chain.rotor_inertia @ chain.joint_from_motor.T)
+    needed = np.stack(
+        [
+            pin.rnea(model, data, q, v, a)
+            for q, v, a in zip(position, velocity, acceleration, strict=True)
+        ]
+    )
+    needed += acceleration @ (
+        chain.joint_from_motor * chain.rotor_inertia @ chain.joint_from_motor.T
+    )
     needed += chain.coulomb * np.tanh(velocity / SOFT) + chain.viscous * velocity
     motion = smooth(believed @ chain.joint_from_motor.T - needed)
     # A joint that sticks holds any torque up to its friction: no balance there.
@@ -77,7 +88,9 @@ def residual(log: Log, chain: Chain) -> np.ndarray:
 
 
 def multiple(with_effect: list[np.ndarray], clean: list[np.ndarray]) -> float:
-    """Largest ratio over the rows of the effect's share to the clean log's residual, root mean square each, of a case's logs."""
+    """Largest ratio over the rows of the effect's share to the clean log's residual, root mean
+    square each, of a case's logs.
+    """
     difference = np.concatenate([a - b for a, b in zip(with_effect, clean, strict=True)])
     floor = np.concatenate(clean)
     enough = np.isfinite(difference).mean(0) > 0.02

@@ -35,7 +35,9 @@ class Reach:
     """Largest motor speed `(m,)` [rad/s]."""
 
 
-def build_rig(chain: Chain, nuisance: Nuisance, wrongs: Sequence[Wrong] = (), reach: Reach | None = None) -> RigPlant:
+def build_rig(
+    chain: Chain, nuisance: Nuisance, wrongs: Sequence[Wrong] = (), reach: Reach | None = None
+) -> RigPlant:
     """The plant; `reach` is needed by effects that are limits."""
     n, m = chain.joint_from_motor.shape
     true = built(chain, nuisance)
@@ -45,25 +47,56 @@ def build_rig(chain: Chain, nuisance: Nuisance, wrongs: Sequence[Wrong] = (), re
     rotor = chain.rotor_inertia * nuisance.rotor
     zeros_n, zeros_m = np.zeros(n), np.zeros(m)
     values: dict[str, Any] = {
-        "joint_from_motor": matrix.copy(), "declared": matrix, "rotor_inertia": rotor,
-        "belt_stiffness": rotor * (2 * np.pi * nuisance.resonance) ** 2, "belt_damping": 2 * BELT_DAMPING * rotor * 2 * np.pi * nuisance.resonance,
-        "backlash": zeros_m.copy(), "coulomb": np.r_[zeros_m, chain.coulomb * nuisance.coulomb],
+        "joint_from_motor": matrix.copy(),
+        "declared": matrix,
+        "rotor_inertia": rotor,
+        "belt_stiffness": rotor * (2 * np.pi * nuisance.resonance) ** 2,
+        "belt_damping": 2 * BELT_DAMPING * rotor * 2 * np.pi * nuisance.resonance,
+        "backlash": zeros_m.copy(),
+        "coulomb": np.r_[zeros_m, chain.coulomb * nuisance.coulomb],
         "static": np.r_[zeros_m, chain.coulomb * nuisance.coulomb * nuisance.breakaway],
-        "stribeck_speed": np.r_[STRIBECK_SPEED * ratio, np.full(n, STRIBECK_SPEED)], "viscous": np.r_[zeros_m, chain.viscous * nuisance.viscous],
-        "bristle": np.r_[BRISTLE * ratio, np.full(n, BRISTLE)], "load_friction": np.zeros(m + n), "spring": zeros_n.copy(),
+        "stribeck_speed": np.r_[STRIBECK_SPEED * ratio, np.full(n, STRIBECK_SPEED)],
+        "viscous": np.r_[zeros_m, chain.viscous * nuisance.viscous],
+        "bristle": np.r_[BRISTLE * ratio, np.full(n, BRISTLE)],
+        "load_friction": np.zeros(m + n),
+        "spring": zeros_n.copy(),
         "spring_rest": chain.rest.copy(),
-        "cogging": zeros_m.copy(), "cogging_order": zeros_m.copy(), "cogging_phase": zeros_m.copy(), "torque_scale": nuisance.torque.copy(),
-        "peak_torque": chain.peak_torque.copy(), "stall_torque": chain.stall_torque.copy(), "no_load_speed": chain.no_load_speed.copy(),
-        "voltage": chain.voltage, "supply": chain.voltage, "supply_resistance": 0.01, "power_constant": np.full(m, 20.0) / chain.peak_torque**2,
-        "thermal_resistance": np.full(m, 1.5), "thermal_time": np.full(m, 90.0), "start_temperature": np.full(m, nuisance.air),
+        "cogging": zeros_m.copy(),
+        "cogging_order": zeros_m.copy(),
+        "cogging_phase": zeros_m.copy(),
+        "torque_scale": nuisance.torque.copy(),
+        "peak_torque": chain.peak_torque.copy(),
+        "stall_torque": chain.stall_torque.copy(),
+        "no_load_speed": chain.no_load_speed.copy(),
+        "voltage": chain.voltage,
+        "supply": chain.voltage,
+        "supply_resistance": 0.01,
+        "power_constant": np.full(m, 20.0) / chain.peak_torque**2,
+        "thermal_resistance": np.full(m, 1.5),
+        "thermal_time": np.full(m, 90.0),
+        "start_temperature": np.full(m, nuisance.air),
         "derating": zeros_m.copy(),
-        "delay": np.full(m, nuisance.delay), "lag": np.full(m, nuisance.lag), "stiffness": chain.stiffness.copy(), "damping": chain.damping.copy(),
-        "offset": nuisance.offset.copy(), "resolution": np.full(n, ENCODER), "velocity_bandwidth": 120.0, "ripple": zeros_m.copy(),
+        "delay": np.full(m, nuisance.delay),
+        "lag": np.full(m, nuisance.lag),
+        "stiffness": chain.stiffness.copy(),
+        "damping": chain.damping.copy(),
+        "offset": nuisance.offset.copy(),
+        "resolution": np.full(n, ENCODER),
+        "velocity_bandwidth": 120.0,
+        "ripple": zeros_m.copy(),
         "patch": zeros_n.copy(),
-        "patch_middle": chain.rest.copy(), "hysteresis": zeros_n.copy(), "loss": 0.0, "push": zeros_n.copy(), "push_frequency": 1.0,
-        "hardening": zeros_n.copy(), "coupling": np.zeros((n, n)), "drift": zeros_n.copy(), "drag": zeros_n.copy(), "eccentricity": zeros_n.copy(),
+        "patch_middle": chain.rest.copy(),
+        "hysteresis": zeros_n.copy(),
+        "loss": 0.0,
+        "push": zeros_n.copy(),
+        "push_frequency": 1.0,
+        "hardening": zeros_n.copy(),
+        "coupling": np.zeros((n, n)),
+        "drift": zeros_n.copy(),
+        "drag": zeros_n.copy(),
+        "eccentricity": zeros_n.copy(),
         "rest": chain.rest,
-    }  # fmt: skip
+    }
     gravity = GRAVITY.copy()
     for wrong in wrongs:
         place = _Place(chain, wrong.location, peak)
@@ -104,7 +137,9 @@ class _Place:
     def coordinate(self) -> int:
         """Of the friction: the joint's, or the motor's where it sits at a motor of coupled ones."""
         m = len(self.chain.motors)
-        return m + self.joint if self.name in self.chain.joints else self.chain.motors.index(self.name)
+        return (
+            m + self.joint if self.name in self.chain.joints else self.chain.motors.index(self.name)
+        )
 
     @property
     def peak(self) -> float:
@@ -134,7 +169,11 @@ def _load(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
 
 def _gear(at: _Place) -> float:
     """Speed of the coordinate over that of a joint."""
-    return 1.0 if at.name in at.chain.joints else float(np.abs(at.chain.joint_from_motor[:, at.chain.motors.index(at.name)]).max())
+    return (
+        1.0
+        if at.name in at.chain.joints
+        else float(np.abs(at.chain.joint_from_motor[:, at.chain.motors.index(at.name)]).max())
+    )
 
 
 def _torque_constant(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
@@ -143,7 +182,9 @@ def _torque_constant(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | Non
 
 def _saturation(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
     assert reach is not None
-    v["peak_torque"][at.motor] = np.minimum(v["peak_torque"][at.motor], (1.0 - w.size) * reach.command[at.motor])
+    v["peak_torque"][at.motor] = np.minimum(
+        v["peak_torque"][at.motor], (1.0 - w.size) * reach.command[at.motor]
+    )
 
 
 def _derating(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
@@ -204,7 +245,10 @@ def _ripple(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> Non
 
 
 def _patch(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["patch"][at.joint], v["patch_middle"][at.joint] = w.size * at.peak, at.chain.rest[at.joint] + w.shape["shift"]
+    v["patch"][at.joint], v["patch_middle"][at.joint] = (
+        w.size * at.peak,
+        at.chain.rest[at.joint] + w.shape["shift"],
+    )
 
 
 def _hysteresis(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
@@ -240,28 +284,53 @@ def _eccentricity(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) 
 
 
 def _payload(chain: Chain, wrong: Wrong) -> Chain:
-    return chain.with_point_mass(wrong.location, wrong.size, np.array([wrong.shape[a] for a in "xyz"]))
+    return chain.with_point_mass(
+        wrong.location, wrong.size, np.array([wrong.shape[a] for a in "xyz"])
+    )
 
 
 def _link_mass(chain: Chain, wrong: Wrong) -> Chain:
     link = next(link for link in chain.links if link.name == wrong.location)
-    return chain.with_link(link.name, mass=link.mass * (1 + wrong.size), inertia=link.inertia * (1 + wrong.size))
+    return chain.with_link(
+        link.name, mass=link.mass * (1 + wrong.size), inertia=link.inertia * (1 + wrong.size)
+    )
 
 
 def _link_com(chain: Chain, wrong: Wrong) -> Chain:
     link = next(link for link in chain.links if link.name == wrong.location)
-    return chain.with_link(link.name, com=link.com + wrong.size * np.array([wrong.shape[a] for a in "xyz"]))
+    return chain.with_link(
+        link.name, com=link.com + wrong.size * np.array([wrong.shape[a] for a in "xyz"])
+    )
 
 
 _RIGID = {"payload": _payload, "link_mass": _link_mass, "link_com": _link_com}
 _CHANGES = {
-    "coulomb_friction": _coulomb, "viscous_friction": _viscous, "stribeck_friction": _stribeck, "load_dependent_friction": _load,
-    "torque_constant": _torque_constant, "torque_saturation": _saturation, "thermal_derating": _derating, "voltage_sag": _sag,
+    "coulomb_friction": _coulomb,
+    "viscous_friction": _viscous,
+    "stribeck_friction": _stribeck,
+    "load_dependent_friction": _load,
+    "torque_constant": _torque_constant,
+    "torque_saturation": _saturation,
+    "thermal_derating": _derating,
+    "voltage_sag": _sag,
     "command_delay": _delay,
-    "actuator_bandwidth": _bandwidth, "rotor_inertia": _rotor, "transmission_elasticity": _elasticity, "backlash": _backlash,
+    "actuator_bandwidth": _bandwidth,
+    "rotor_inertia": _rotor,
+    "transmission_elasticity": _elasticity,
+    "backlash": _backlash,
     "transmission_ratio": _ratio,
-    "encoder_offset": _offset, "controller_gain": _gain, "cogging": _cogging, "joint_spring": _spring, "torque_ripple": _ripple,
+    "encoder_offset": _offset,
+    "controller_gain": _gain,
+    "cogging": _cogging,
+    "joint_spring": _spring,
+    "torque_ripple": _ripple,
     "friction_patch": _patch,
-    "hysteresis": _hysteresis, "packet_loss": _loss, "periodic_push": _push, "hardening_spring": _hardening, "cross_coupling": _coupling,
-    "sensor_drift": _drift, "fluid_drag": _drag, "encoder_eccentricity": _eccentricity,
-}  # fmt: skip
+    "hysteresis": _hysteresis,
+    "packet_loss": _loss,
+    "periodic_push": _push,
+    "hardening_spring": _hardening,
+    "cross_coupling": _coupling,
+    "sensor_drift": _drift,
+    "fluid_drag": _drag,
+    "encoder_eccentricity": _eccentricity,
+}

@@ -1,11 +1,12 @@
-"""A trial: cases made and sealed by a process of their own, then diagnosed one by one; either part goes on where it was stopped.
+"""A trial: cases made and sealed by a process of their own, then diagnosed one by one; either part
+goes on where it was stopped.
 
 | in the folder | |
 |---|---|
 | `seal.json` | SHA-256 of the key, written before any case can be seen |
 | `key.zip` | the truth; nothing but the scoring opens it |
-| `cases/000/` | `case.json`, `robot.xml` where the robot is no design, `logs/*.parquet`, `references/*.parquet` |
-| `diagnoses/000/` | `diagnosis.json`, `seconds.json` |
+| `cases/000/` | `case.json`, `robot.xml` where the robot is no design, `logs/*.parquet`,
+`references/*.parquet` | | `diagnoses/000/` | `diagnosis.json`, `seconds.json` |
 """
 
 from __future__ import annotations
@@ -51,9 +52,15 @@ class Seal:
 
 
 def make_trial(
-    cases: int, seed: int, out: str | os.PathLike[str], *, plants: Sequence[str] = tuple(PLANTS), workers: int = 1, progress: bool = False,
+    cases: int,
+    seed: int,
+    out: str | os.PathLike[str],
+    *,
+    plants: Sequence[str] = tuple(PLANTS),
+    workers: int = 1,
+    progress: bool = False,
     duration: tuple[float, float] = (10.0, 14.0),
-) -> Seal:  # fmt: skip
+) -> Seal:
     """Make a trial in a process of its own and return its seal; one that was stopped goes on.
 
     Args:
@@ -74,8 +81,26 @@ def make_trial(
     unknown = [p for p in plants if p not in PLANTS]
     if unknown or not plants:
         raise InputError("blind", "plants", list(plants), f"choose of {', '.join(PLANTS)}")
-    command = [sys.executable, "-m", "hyperleg_design.gap.blind", "--cases", str(cases), "--seed", str(seed), "--out", str(Path(out).resolve())]
-    command += ["--workers", str(workers), "--plants", *plants, "--duration", *(str(d) for d in duration), *(["--progress"] if progress else [])]
+    command = [
+        sys.executable,
+        "-m",
+        "hyperleg_design.gap.blind",
+        "--cases",
+        str(cases),
+        "--seed",
+        str(seed),
+        "--out",
+        str(Path(out).resolve()),
+    ]
+    command += [
+        "--workers",
+        str(workers),
+        "--plants",
+        *plants,
+        "--duration",
+        *(str(d) for d in duration),
+        *(["--progress"] if progress else []),
+    ]
     run = subprocess.run(
         command,
         env={**os.environ, **ONE_THREAD},
@@ -85,7 +110,10 @@ def make_trial(
     )
     if run.returncode:
         said = (run.stderr or b"").decode(errors="replace").strip().splitlines()
-        raise OutputError(f"{out}: the trial could not be made ({said[-1] if said else f'exit status {run.returncode}'})")
+        raise OutputError(
+            f"{out}: the trial could not be made "
+            f"({said[-1] if said else f'exit status {run.returncode}'})"
+        )
     return read_seal(out)
 
 
@@ -98,21 +126,46 @@ def read_seal(folder: str | os.PathLike[str]) -> Seal:
     path = Path(folder) / SEAL
     try:
         content = json.loads(path.read_text())
-        return Seal(content["sha256"], content["cases"], content["seed"], tuple(content["plants"]), tuple(content["duration"]))
+        return Seal(
+            content["sha256"],
+            content["cases"],
+            content["seed"],
+            tuple(content["plants"]),
+            tuple(content["duration"]),
+        )
     except (OSError, ValueError, KeyError, TypeError):
-        raise InputError(str(folder), "", None, f"holds no finished trial ({SEAL} is missing or unreadable)") from None
+        raise InputError(
+            str(folder), "", None, f"holds no finished trial ({SEAL} is missing or unreadable)"
+        ) from None
 
 
 def make_here(
-    cases: int, seed: int, out: Path, *, plants: Sequence[str], workers: int, duration: tuple[float, float], progress: bool = False,
+    cases: int,
+    seed: int,
+    out: Path,
+    *,
+    plants: Sequence[str],
+    workers: int,
+    duration: tuple[float, float],
+    progress: bool = False,
     say: Callable[[str], None] | None = None,
-) -> Seal:  # fmt: skip
-    """What the separate process does: simulate, seal, and only then show the cases. Arguments as `make_trial`; `say` is told the hash."""
+) -> Seal:
+    """What the separate process does: simulate, seal, and only then show the cases. Arguments as
+    `make_trial`; `say` is told the hash.
+    """
     asked = {"cases": cases, "seed": seed, "plants": list(plants), "duration": list(duration)}
     if (out / SEAL).is_file():
         seal = read_seal(out)
-        if (seal.cases, seal.seed, list(seal.plants), list(seal.duration)) != (cases, seed, list(plants), list(duration)):
-            raise OutputError(f"{out}: holds another trial ({seal.cases} cases, seed {seal.seed}); choose another folder")
+        if (seal.cases, seal.seed, list(seal.plants), list(seal.duration)) != (
+            cases,
+            seed,
+            list(plants),
+            list(duration),
+        ):
+            raise OutputError(
+                f"{out}: holds another trial ({seal.cases} cases, seed {seal.seed}); choose "
+                f"another folder"
+            )
         if (out / CASES).is_dir():
             return seal
     making = out / MAKING
@@ -122,14 +175,18 @@ def make_here(
         (making / "truth").mkdir()
         write_json(making / "asked.json", asked)
     elif json.loads((making / "asked.json").read_text()) != asked:
-        raise OutputError(f"{out}: holds the beginning of another trial; choose another folder or remove it")
+        raise OutputError(
+            f"{out}: holds the beginning of another trial; choose another folder or remove it"
+        )
     (out / ".hyperleg").write_text("a blind trial\n")
     plans = plan_cases(cases, seed, plants=plants, duration=duration)
     waiting = [p for p in plans if not (making / CASES / _name(p)).is_dir()]
     with _bar(cases, cases - len(waiting), "cases", progress) as bar:
         for _ in _spread(_make_one, [(p, str(making)) for p in waiting], workers):
             bar.update()
-    key = sealed([json.loads((making / "truth" / f"{_name(p)}.json").read_text()) for p in plans], asked)
+    key = sealed(
+        [json.loads((making / "truth" / f"{_name(p)}.json").read_text()) for p in plans], asked
+    )
     digest = hashlib.sha256(key).hexdigest()
     if say is not None:
         say(digest)
@@ -146,7 +203,9 @@ def sealed(truths: list[dict[str, Any]], asked: dict[str, Any]) -> bytes:
     content = json.dumps({"trial": asked, "cases": truths}, indent=1, allow_nan=False).encode()
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr(zipfile.ZipInfo("key.json", (1980, 1, 1, 0, 0, 0)), content, zipfile.ZIP_DEFLATED)
+        archive.writestr(
+            zipfile.ZipInfo("key.json", (1980, 1, 1, 0, 0, 0)), content, zipfile.ZIP_DEFLATED
+        )
     return buffer.getvalue()
 
 
@@ -179,7 +238,12 @@ def _make_one(plan: Plan, making: str) -> str:
 
 
 def diagnose_trial(
-    folder: str | os.PathLike[str], *, seed: int = 0, workers: int = 1, progress: bool = False, diagnose: Callable[..., Any] | None = None
+    folder: str | os.PathLike[str],
+    *,
+    seed: int = 0,
+    workers: int = 1,
+    progress: bool = False,
+    diagnose: Callable[..., Any] | None = None,
 ) -> int:
     """Diagnose every case that has no diagnosis yet; a stopped run goes on.
 
@@ -188,7 +252,8 @@ def diagnose_trial(
         seed: given to every diagnosis.
         workers: processes, each on one thread.
         progress: show a bar.
-        diagnose: `diagnose(robot, logs, reference, seed=, threads=)`, by default the room's own; an object that can be pickled.
+        diagnose: `diagnose(robot, logs, reference, seed=, threads=)`, by default the room's own; an
+            object that can be pickled.
 
     Returns:
         Number of cases diagnosed now.
@@ -201,7 +266,14 @@ def diagnose_trial(
     names = [f"{i:03d}" for i in range(seal.cases)]
     waiting = [n for n in names if not (folder / DIAGNOSES / n / "seconds.json").is_file()]
     with _bar(len(names), len(names) - len(waiting), "diagnoses", progress) as bar:
-        for _ in _spread(_diagnose_one, [(str(folder / CASES / n), str(folder / DIAGNOSES / n), seed, diagnose) for n in waiting], workers):
+        for _ in _spread(
+            _diagnose_one,
+            [
+                (str(folder / CASES / n), str(folder / DIAGNOSES / n), seed, diagnose)
+                for n in waiting
+            ],
+            workers,
+        ):
             bar.update()
     return len(waiting)
 
@@ -219,10 +291,20 @@ def _diagnose_one(case: str, out: str, seed: int, diagnose: Callable[..., Any] |
     try:
         logs = [read_log(Path(case) / p) for p in entry["logs"]]
         references = [read_log(Path(case) / p) for p in entry["references"]]
-        found = as_mapping(diagnose(str(robot) if robot.is_file() else entry["robot"], logs, references, seed=seed, threads=1))
+        found = as_mapping(
+            diagnose(
+                str(robot) if robot.is_file() else entry["robot"],
+                logs,
+                references,
+                seed=seed,
+                threads=1,
+            )
+        )
     except HyperlegError as error:
         found = {"schema": 1, "verdict": FAILED, "message": str(error)}
-    except Exception as error:  # one case that breaks the diagnosis is a miss, not the end of a trial
+    except (
+        Exception
+    ) as error:  # one case that breaks the diagnosis is a miss, not the end of a trial
         found = {"schema": 1, "verdict": FAILED, "message": f"{type(error).__name__}: {error}"}
     seconds = time.perf_counter() - begun
     write_json(Path(out) / "diagnosis.json", found)
@@ -237,8 +319,12 @@ def as_mapping(diagnosis: Any) -> dict[str, Any]:
     return content
 
 
-def _spread(job: Callable[..., Any], arguments: list[tuple[Any, ...]], workers: int) -> Iterable[Any]:
-    """Results as they come, of processes that start afresh; in this process where there is one worker."""
+def _spread(
+    job: Callable[..., Any], arguments: list[tuple[Any, ...]], workers: int
+) -> Iterable[Any]:
+    """Results as they come, of processes that start afresh; in this process where there is one
+    worker.
+    """
     if workers <= 1 or len(arguments) < 2:
         for one in arguments:
             yield job(*one)

@@ -1,4 +1,6 @@
-"""The truth in the catalogue's words: where effects sit, which names count as the place, and sizes in the catalogue's parameters."""
+"""The truth in the catalogue's words: where effects sit, which names count as the place, and sizes
+in the catalogue's parameters.
+"""
 
 from __future__ import annotations
 
@@ -10,19 +12,49 @@ from hyperleg_design.gap.blind.rig_build import Reach
 from hyperleg_design.gap.blind.wrong import Wrong
 
 KIND = {
-    "coulomb_friction": "joint", "viscous_friction": "joint", "stribeck_friction": "joint", "load_dependent_friction": "joint",
-    "torque_constant": "motor", "torque_saturation": "motor", "thermal_derating": "motor", "voltage_sag": "battery", "command_delay": "robot",
-    "actuator_bandwidth": "motor", "rotor_inertia": "motor", "transmission_elasticity": "motor", "backlash": "motor", "transmission_ratio": "motor",
-    "encoder_offset": "joint", "controller_gain": "joint", "payload": "link", "link_mass": "link", "link_com": "link", "cogging": "motor",
-    "joint_spring": "joint", "torque_ripple": "motor", "friction_patch": "joint", "hysteresis": "joint", "packet_loss": "robot",
-    "tilted_gravity": "robot", "periodic_push": "joint", "hardening_spring": "joint", "cross_coupling": "joint", "sensor_drift": "joint",
-    "fluid_drag": "joint", "encoder_eccentricity": "joint", "imu_bias": "sensor", "ground_friction": "foot", "ground_compliance": "foot",
-}  # fmt: skip
+    "coulomb_friction": "joint",
+    "viscous_friction": "joint",
+    "stribeck_friction": "joint",
+    "load_dependent_friction": "joint",
+    "torque_constant": "motor",
+    "torque_saturation": "motor",
+    "thermal_derating": "motor",
+    "voltage_sag": "battery",
+    "command_delay": "robot",
+    "actuator_bandwidth": "motor",
+    "rotor_inertia": "motor",
+    "transmission_elasticity": "motor",
+    "backlash": "motor",
+    "transmission_ratio": "motor",
+    "encoder_offset": "joint",
+    "controller_gain": "joint",
+    "payload": "link",
+    "link_mass": "link",
+    "link_com": "link",
+    "cogging": "motor",
+    "joint_spring": "joint",
+    "torque_ripple": "motor",
+    "friction_patch": "joint",
+    "hysteresis": "joint",
+    "packet_loss": "robot",
+    "tilted_gravity": "robot",
+    "periodic_push": "joint",
+    "hardening_spring": "joint",
+    "cross_coupling": "joint",
+    "sensor_drift": "joint",
+    "fluid_drag": "joint",
+    "encoder_eccentricity": "joint",
+    "imu_bias": "sensor",
+    "ground_friction": "foot",
+    "ground_compliance": "foot",
+}
 """Kind of place at which the plants put each effect."""
 
 
 def places(wrong: Wrong, robot: Chain) -> tuple[str, ...]:
-    """Names that count as the place of an effect: links and the joints that carry them are one place, as are a single drive and its joint."""
+    """Names that count as the place of an effect: links and the joints that carry them are one
+    place, as are a single drive and its joint.
+    """
     names = [wrong.location]
     for link in robot.links:
         if wrong.location in (link.name, link.joint) and KIND[wrong.effect] == "link":
@@ -34,7 +66,9 @@ def places(wrong: Wrong, robot: Chain) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names))
 
 
-def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None, *, belts: float = 1.0) -> dict[str, float]:
+def parameters(
+    wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None, *, belts: float = 1.0
+) -> dict[str, float]:
     """What was put in, by the catalogue's names and units; effects outside it, none.
 
     Args:
@@ -64,11 +98,16 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None, *
             return {"scale": 1.0 - wrong.size}
         case "torque_saturation":
             assert reach is not None
-            return {"limit": float(min((1.0 - wrong.size) * reach.command[motor], robot.peak_torque[motor]))}
+            return {
+                "limit": float(
+                    min((1.0 - wrong.size) * reach.command[motor], robot.peak_torque[motor])
+                )
+            }
         case "thermal_derating":
             return {"coefficient": wrong.size / 100.0}
         case "voltage_sag":
-            # Of a robot whose file tells no speed-torque line, `limits` is how near that line is, which depends on the unknown voltage.
+            # Of a robot whose file tells no speed-torque line, `limits` is how near that line is,
+            # which depends on the unknown voltage.
             return {"limits": 1.0} if robot.mjcf is None else {}
         case "command_delay":
             return {"delay": wrong.size}
@@ -78,7 +117,11 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None, *
             return {"inertia": float(wrong.size * robot.rotor_inertia[motor])}
         case "transmission_elasticity":
             rotor = robot.rotor_inertia[motor] * day.rotor[motor]
-            return {"compliance": float(wrong.size / (belts * rotor * (2 * np.pi * day.resonance[motor]) ** 2))}
+            return {
+                "compliance": float(
+                    wrong.size / (belts * rotor * (2 * np.pi * day.resonance[motor]) ** 2)
+                )
+            }
         case "backlash":
             return {"angle": wrong.size}
         case "transmission_ratio":
@@ -90,14 +133,23 @@ def parameters(wrong: Wrong, robot: Chain, day: Nuisance, reach: Reach | None, *
         case "payload":
             return {"mass": wrong.size}
         case "link_mass":
-            return {"mass": float(wrong.size * next(link.mass for link in robot.links if link.name == wrong.location))}
+            return {
+                "mass": float(
+                    wrong.size
+                    * next(link.mass for link in robot.links if link.name == wrong.location)
+                )
+            }
         case "link_com":
             return {axis: wrong.size * wrong.shape[axis] for axis in "xyz"}
         case "cogging":
             # The catalogue counts torque against the motor, cosine and sine of the angle.
             size = -float(wrong.size * robot.peak_torque[motor])
             phase = wrong.shape["phase"]
-            return {"cosine": float(size * np.sin(phase)), "sine": float(size * np.cos(phase)), "order": wrong.shape["order"]}
+            return {
+                "cosine": float(size * np.sin(phase)),
+                "sine": float(size * np.cos(phase)),
+                "order": wrong.shape["order"],
+            }
         case "joint_spring":
             return {"stiffness": torque, "preload": -torque * wrong.shape["rest"]}
     return {}

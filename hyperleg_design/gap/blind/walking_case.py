@@ -1,4 +1,6 @@
-"""One case of a robot on its feet: draw robot and day, size the effect, record with an estimator's base, an IMU and loaded soles."""
+"""One case of a robot on its feet: draw robot and day, size the effect, record with an estimator's
+base, an IMU and loaded soles.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,15 @@ import numpy as np
 from hyperleg_design.gap.blind.chain import GRAVITY, Chain, chain
 from hyperleg_design.gap.blind.nuisance import Nuisance, built, of_day, of_robot
 from hyperleg_design.gap.blind.plan import Plan
-from hyperleg_design.gap.blind.plant_walking import Ground, Stand, WalkingPlant, WalkingTrace, pad_names, simulate_walking, walking_model
+from hyperleg_design.gap.blind.plant_walking import (
+    Ground,
+    Stand,
+    WalkingPlant,
+    WalkingTrace,
+    pad_names,
+    simulate_walking,
+    walking_model,
+)
 from hyperleg_design.gap.blind.recorder import Recorder
 from hyperleg_design.gap.blind.residual import CUTOFF, EDGE, SLOW, SOFT, multiple
 from hyperleg_design.gap.blind.rig_build import build_rig, tilted
@@ -32,7 +42,8 @@ PROBED = 3
 ATTEMPTS = 3
 """Places tried."""
 MILDER, MOTIONS = 3, 4
-"""Times that an effect which fells the robot is made milder; sets of motions tried, as some are near a fall without any."""
+"""Times that an effect which fells the robot is made milder; sets of motions tried, as some are
+near a fall without any."""
 FORCE_NOISE = 0.6
 """Of a pad's load cell [N]."""
 ESTIMATE = (4e-4, 3e-4, 4e-3)
@@ -40,12 +51,14 @@ ESTIMATE = (4e-4, 3e-4, 4e-3)
 INERTIAL = (2e-3, 0.04)
 """Noise of gyro [rad/s] and accelerometer [m/s^2]."""
 GROUND_SIZES = {
-    "imu_bias": Size("of 1 rad/s (gyro) or 10 m/s^2 (accelerometer)", 0.003, 0.12), "ground_friction": Size("1 - true friction / nominal", 0.5, 0.9),
+    "imu_bias": Size("of 1 rad/s (gyro) or 10 m/s^2 (accelerometer)", 0.003, 0.12),
+    "ground_friction": Size("1 - true friction / nominal", 0.5, 0.9),
     "ground_compliance": Size("nominal stiffness over true", 3.0, 60.0),
-}  # fmt: skip
+}
 """As `wrong.SIZES`, of the effects that only a robot on its feet shows."""
 NOMINAL_GROUND = (2.5e4, 230.0)
-"""Stiffness [1/s^2] and damping [1/s] of the plant's own contact; about as deep as the simulator's at rest."""
+"""Stiffness [1/s^2] and damping [1/s] of the plant's own contact; about as deep as the simulator's
+at rest."""
 
 
 def walking_case(plan: Plan) -> Case:
@@ -55,7 +68,11 @@ def walking_case(plan: Plan) -> Case:
     rng = np.random.default_rng([*plan.seed, 3])
     robot = chain("hyperleg")
     life = of_robot(robot, rng)
-    floor = Floor(float(rng.uniform(0.92, 1.08)), float(rng.uniform(0.8, 1.25)), float(rng.uniform(0.98, 1.02)))
+    floor = Floor(
+        float(rng.uniform(0.92, 1.08)),
+        float(rng.uniform(0.8, 1.25)),
+        float(rng.uniform(0.98, 1.02)),
+    )
     walker = _Walker(robot, of_day(robot, life, rng), floor, plan.recorder)
     wrongs: list[Wrong] = []
     for effect, wanted in zip(plan.effects, plan.multiples, strict=True):
@@ -71,20 +88,44 @@ def walking_case(plan: Plan) -> Case:
     if plan.references:
         walker = replace(walker, day=of_day(robot, life, rng))
         seed = int(rng.integers(2**31))
-        log = walker.log(walker.trace((), drawn_stand(rng), plan.duration, seed), seed, "before_0", session="before", role="reference")
+        log = walker.log(
+            walker.trace((), drawn_stand(rng), plan.duration, seed),
+            seed,
+            "before_0",
+            session="before",
+            role="reference",
+        )
         references = [log] if log is not None else []
     return Case(
-        plan=plan, robot=robot.robot, mjcf=None, logs=tuple(logs), references=tuple(references), wrongs=tuple(wrongs), multiples=reached,
-        parameters=tuple(_ground_parameters(w) if w.effect in WALKING_ONLY else parameters(w, robot, walker.day, None) for w in wrongs),
-        also=tuple((BASE, "robot") if w.location == BASE else (*places(w, robot), *_FEET) if w.location in _FEET else places(w,
-        robot) for w in wrongs),
-    )  # fmt: skip
+        plan=plan,
+        robot=robot.robot,
+        mjcf=None,
+        logs=tuple(logs),
+        references=tuple(references),
+        wrongs=tuple(wrongs),
+        multiples=reached,
+        parameters=tuple(
+            _ground_parameters(w)
+            if w.effect in WALKING_ONLY
+            else parameters(w, robot, walker.day, None)
+            for w in wrongs
+        ),
+        also=tuple(
+            (BASE, "robot")
+            if w.location == BASE
+            else (*places(w, robot), *_FEET)
+            if w.location in _FEET
+            else places(w, robot)
+            for w in wrongs
+        ),
+    )
 
 
 def _recorded(
     walker: _Walker, plan: Plan, wrongs: Sequence[Wrong], rng: np.random.Generator
 ) -> tuple[list[Log], list[Wrong], tuple[float, ...]] | None:
-    """Logs of motions in which the robot stands, without and with the effects, these as large as that allows, and their multiples.
+    """Logs of motions in which the robot stands, without and with the effects, these as large as
+    that allows, and their multiples.
 
     None where it falls with the mildest.
     """
@@ -94,7 +135,12 @@ def _recorded(
         if len(clean) == RECORDINGS:
             break
         stand, seed = drawn_stand(rng), int(rng.integers(2**31))
-        upright = walker.log(walker.trace((), stand, plan.duration, seed), seed, f"today_{len(clean)}", session="today")
+        upright = walker.log(
+            walker.trace((), stand, plan.duration, seed),
+            seed,
+            f"today_{len(clean)}",
+            session="today",
+        )
         if upright is not None:
             runs.append((stand, seed))
             clean.append(upright)
@@ -106,7 +152,12 @@ def _recorded(
     def run(given: Sequence[Wrong]) -> list[Log] | None:
         logs: list[Log] = []
         for number, (stand, seed) in enumerate(runs):
-            log = walker.log(walker.trace(given, stand, plan.duration, seed), seed, f"today_{number}", session="today")
+            log = walker.log(
+                walker.trace(given, stand, plan.duration, seed),
+                seed,
+                f"today_{number}",
+                session="today",
+            )
             if log is None:
                 return None
             logs.append(log)
@@ -115,9 +166,18 @@ def _recorded(
     given = list(wrongs)
     for _ in range(1 + MILDER):  # sized on short runs, an effect may fell the robot in a long one
         logs = run(given)
-        alone = [logs] if len(given) == 1 else [run((w,)) for w in given] if logs is not None else []
+        alone = (
+            [logs] if len(given) == 1 else [run((w,)) for w in given] if logs is not None else []
+        )
         if logs is not None and all(own is not None for own in alone):
-            return logs, given, tuple(shown(w.effect, own or [], clean, walker.chain) for w, own in zip(given, alone, strict=True))
+            return (
+                logs,
+                given,
+                tuple(
+                    shown(w.effect, own or [], clean, walker.chain)
+                    for w, own in zip(given, alone, strict=True)
+                ),
+            )
         given = [replace(w, size=_milder(w)) for w in given]
     return None
 
@@ -126,7 +186,9 @@ _FEET = ("ground", "left_foot", "right_foot", "robot")
 
 
 def _milder(wrong: Wrong) -> float:
-    return 1.0 + 0.4 * (wrong.size - 1.0) if wrong.effect == "ground_compliance" else 0.4 * wrong.size
+    return (
+        1.0 + 0.4 * (wrong.size - 1.0) if wrong.effect == "ground_compliance" else 0.4 * wrong.size
+    )
 
 
 @dataclass(frozen=True)
@@ -159,7 +221,10 @@ class _Walker:
             elif w.effect == "periodic_push":
                 push, frequency = 400.0 * w.size * np.array([0.5, 1.0, 0.0]), w.shape["frequency"]
             elif w.effect == "imu_bias":
-                gyro, accelerometer = w.shape["gyro"] * w.size * axis, (1 - w.shape["gyro"]) * 10.0 * w.size * axis
+                gyro, accelerometer = (
+                    w.shape["gyro"] * w.size * axis,
+                    (1 - w.shape["gyro"]) * 10.0 * w.size * axis,
+                )
             elif w.effect == "ground_friction":
                 friction *= 1.0 - w.size
             elif w.effect == "ground_compliance":
@@ -169,23 +234,45 @@ class _Walker:
             elif w.effect == "link_mass":
                 link = next(link for link in self.chain.links if link.name == w.location)
                 own = next(link for link in masses.links if link.name == w.location)
-                masses = masses.with_link(link.name, mass=own.mass + w.size * link.mass, inertia=own.inertia * (1 + w.size))
+                masses = masses.with_link(
+                    link.name,
+                    mass=own.mass + w.size * link.mass,
+                    inertia=own.inertia * (1 + w.size),
+                )
             else:
                 drives.append(w)
-        ground = Ground(friction, NOMINAL_GROUND[0] * stiffness, NOMINAL_GROUND[1] * np.sqrt(stiffness))
+        ground = Ground(
+            friction, NOMINAL_GROUND[0] * stiffness, NOMINAL_GROUND[1] * np.sqrt(stiffness)
+        )
         model = walking_model(self.chain, masses, ground, self.floor.pelvis, gravity)
         for mass, place in loads:
             _hang(model, mass, place)
-        return WalkingPlant(model, replace(build_rig(self.chain, self.day, drives), push_frequency=frequency), gyro, accelerometer, push)
+        return WalkingPlant(
+            model,
+            replace(build_rig(self.chain, self.day, drives), push_frequency=frequency),
+            gyro,
+            accelerometer,
+            push,
+        )
 
-    def trace(self, wrongs: Sequence[Wrong], stand: Stand, duration: float, seed: int) -> tuple[WalkingPlant, WalkingTrace]:
+    def trace(
+        self, wrongs: Sequence[Wrong], stand: Stand, duration: float, seed: int
+    ) -> tuple[WalkingPlant, WalkingTrace]:
         plant = self.plant(wrongs)
         return plant, simulate_walking(plant, self.chain, stand, duration, self.recorder.rate, seed)
 
-    def log(self, made: tuple[WalkingPlant, WalkingTrace], seed: int, name: str, **metadata: Any) -> Log | None:
+    def log(
+        self, made: tuple[WalkingPlant, WalkingTrace], seed: int, name: str, **metadata: Any
+    ) -> Log | None:
         """A log, or None where the robot fell."""
         plant, trace = made
-        return None if trace.fell else _record(plant, trace, self.chain, self.recorder, np.random.default_rng(seed), name, metadata)
+        return (
+            None
+            if trace.fell
+            else _record(
+                plant, trace, self.chain, self.recorder, np.random.default_rng(seed), name, metadata
+            )
+        )
 
 
 def _hang(model: Any, mass: float, place: np.ndarray) -> None:
@@ -195,29 +282,49 @@ def _hang(model: Any, mass: float, place: np.ndarray) -> None:
     from hyperleg_design.gap.blind.chain import matrix, steiner
 
     body = model.body(BASE).id
-    own, com, axes = float(model.body_mass[body]), model.body_ipos[body].copy(), matrix(model.body_iquat[body])
+    own, com, axes = (
+        float(model.body_mass[body]),
+        model.body_ipos[body].copy(),
+        matrix(model.body_iquat[body]),
+    )
     total = own + mass
     middle = (own * com + mass * place) / total
-    inertia = axes @ np.diag(model.body_inertia[body]) @ axes.T + steiner(own, com - middle) + steiner(mass, place - middle)
+    inertia = (
+        axes @ np.diag(model.body_inertia[body]) @ axes.T
+        + steiner(own, com - middle)
+        + steiner(mass, place - middle)
+    )
     values, turned = np.linalg.eigh(inertia)
     if np.linalg.det(turned) < 0:
         turned[:, 0] *= -1
     quaternion = np.empty(4)
     mujoco.mju_mat2Quat(quaternion, turned.ravel())
-    model.body_mass[body], model.body_ipos[body], model.body_inertia[body], model.body_iquat[body] = total, middle, values, quaternion
+    (
+        model.body_mass[body],
+        model.body_ipos[body],
+        model.body_inertia[body],
+        model.body_iquat[body],
+    ) = total, middle, values, quaternion
     mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
 def drawn_stand(rng: np.random.Generator) -> Stand:
     """A motion on both feet."""
     return Stand(
-        squat=rng.uniform(0.18, 0.3), sway=rng.uniform(0.03, 0.06), twist=rng.uniform(0.03, 0.06), rock=rng.uniform(0.005, 0.012),
-        frequency=rng.uniform([0.35, 0.3, 0.4, 0.3, 0.25], [0.7, 0.5, 0.8, 0.6, 0.5]), knee=rng.uniform(0.65, 0.85), spread=rng.uniform(0.10, 0.22),
+        squat=rng.uniform(0.18, 0.3),
+        sway=rng.uniform(0.03, 0.06),
+        twist=rng.uniform(0.03, 0.06),
+        rock=rng.uniform(0.005, 0.012),
+        frequency=rng.uniform([0.35, 0.3, 0.4, 0.3, 0.25], [0.7, 0.5, 0.8, 0.6, 0.5]),
+        knee=rng.uniform(0.65, 0.85),
+        spread=rng.uniform(0.10, 0.22),
         turn=rng.uniform(0.08, 0.18),
-    )  # fmt: skip
+    )
 
 
-def _sized(walker: _Walker, effect: str, wanted: float, rng: np.random.Generator, taken: Sequence[str]) -> Wrong:
+def _sized(
+    walker: _Walker, effect: str, wanted: float, rng: np.random.Generator, taken: Sequence[str]
+) -> Wrong:
     limits = {**SIZES, **GROUND_SIZES}[effect]
     best: tuple[float, Wrong] | None = None
     for _ in range(ATTEMPTS):
@@ -228,7 +335,11 @@ def _sized(walker: _Walker, effect: str, wanted: float, rng: np.random.Generator
             continue
         sizes, ratios = np.geomspace(limits.smallest, limits.largest, PROBED), []
         for size in sizes:
-            log = walker.log(walker.trace((replace(draft, size=float(size * draft.size)),), stand, PROBE, seed), seed, "probe")
+            log = walker.log(
+                walker.trace((replace(draft, size=float(size * draft.size)),), stand, PROBE, seed),
+                seed,
+                "probe",
+            )
             ratios.append(np.inf if log is None else shown(effect, [log], [clean], walker.chain))
             if ratios[-1] > wanted:
                 break
@@ -250,7 +361,14 @@ def _draft(robot: Chain, effect: str, rng: np.random.Generator, taken: Sequence[
     if effect in WALKING_ONLY:
         return Wrong(effect, "ground", 1.0, {})
     if effect == "payload":
-        return Wrong(effect, BASE, 1.0, dict(zip("xyz", rng.uniform([-0.1, -0.08, 0.05], [0.1, 0.08, 0.3]).tolist(), strict=True)))
+        return Wrong(
+            effect,
+            BASE,
+            1.0,
+            dict(
+                zip("xyz", rng.uniform([-0.1, -0.08, 0.05], [0.1, 0.08, 0.3]).tolist(), strict=True)
+            ),
+        )
     if effect == "periodic_push":
         return Wrong(effect, "robot", 1.0, {"frequency": float(rng.uniform(0.4, 1.2))})
     return draw(robot, effect, rng, taken)
@@ -266,8 +384,14 @@ def _ground_parameters(wrong: Wrong) -> dict[str, float]:
 
 
 def _record(
-    plant: WalkingPlant, trace: WalkingTrace, robot: Chain, recorder: Recorder, rng: np.random.Generator, name: str, metadata: dict[str, Any]
-) -> Log:  # fmt: skip
+    plant: WalkingPlant,
+    trace: WalkingTrace,
+    robot: Chain,
+    recorder: Recorder,
+    rng: np.random.Generator,
+    name: str,
+    metadata: dict[str, Any],
+) -> Log:
     from hyperleg_design.gap.log import Log
     from hyperleg_design.gap.metadata import Metadata
 
@@ -298,29 +422,49 @@ def _record(
     put("base_velocity", "xyz", trace.base[:, 7:], ESTIMATE[2])
     for k, pad in enumerate(pad_names(plant.model)):
         put("contact_force", [f"{pad}_{a}" for a in "xyz"], trace.contact[:, k], FORCE_NOISE)
-    signals.update({f"position_target/{j}": trace.targets[keep, k] for k, j in enumerate(robot.joints)})
+    signals.update(
+        {f"position_target/{j}": trace.targets[keep, k] for k, j in enumerate(robot.joints)}
+    )
     length = np.sqrt(sum(signals[f"base_orientation/{a}"] ** 2 for a in "wxyz"))
     for a in "wxyz":
         signals[f"base_orientation/{a}"] = signals[f"base_orientation/{a}"] / length
     known: dict[str, Any] = {
-        "robot": robot.robot, "base": "floating", "gains": {j: (float(k), float(d)) for j, k, d in zip(robot.joints, robot.stiffness,
-        robot.damping, strict=True)},
-    }  # fmt: skip
+        "robot": robot.robot,
+        "base": "floating",
+        "gains": {
+            j: (float(k), float(d))
+            for j, k, d in zip(robot.joints, robot.stiffness, robot.damping, strict=True)
+        },
+    }
     return Log(name, written[keep], signals, Metadata(**{**known, **metadata}))
 
 
 def shown(effect: str, with_effect: Sequence[Log], clean: Sequence[Log], robot: Chain) -> float:
-    """How many times over the floor an effect shows: in the balances, or, of the ground, in where the base stands and how pads are loaded."""
+    """How many times over the floor an effect shows: in the balances, or, of the ground, in where
+    the base stands and how pads are loaded.
+    """
     if effect in ("ground_friction", "ground_compliance"):
         levels = []
-        for kind, noise in (("base_position", 2 * ESTIMATE[0]), ("base_orientation", 2 * ESTIMATE[1])):
+        for kind, noise in (
+            ("base_position", 2 * ESTIMATE[0]),
+            ("base_orientation", 2 * ESTIMATE[1]),
+        ):
             for a in "wxyz" if kind == "base_orientation" else "xyz":
-                gaps = [np.interp(c.time, w.time, w.column(f"{kind}/{a}")) - c.column(f"{kind}/{a}") for w, c in zip(with_effect, clean, strict=True)]
+                gaps = [
+                    np.interp(c.time, w.time, w.column(f"{kind}/{a}")) - c.column(f"{kind}/{a}")
+                    for w, c in zip(with_effect, clean, strict=True)
+                ]
                 levels.append(np.sqrt(np.mean(np.concatenate(gaps) ** 2)) / noise / 3.0)
         return float(max(levels))
-    ours, theirs = [walking_residual(w, robot) for w in with_effect], [walking_residual(c, robot) for c in clean]
+    ours, theirs = (
+        [walking_residual(w, robot) for w in with_effect],
+        [walking_residual(c, robot) for c in clean],
+    )
     lengths = [min(len(a), len(b)) for a, b in zip(ours, theirs, strict=True)]
-    return multiple([a[:k] for a, k in zip(ours, lengths, strict=True)], [b[:k] for b, k in zip(theirs, lengths, strict=True)])
+    return multiple(
+        [a[:k] for a, k in zip(ours, lengths, strict=True)],
+        [b[:k] for b, k in zip(theirs, lengths, strict=True)],
+    )
 
 
 @cache
@@ -332,12 +476,17 @@ def _nominal() -> tuple[Any, list[tuple[str, str, np.ndarray]]]:
 
     design = load_design("hyperleg")
     model = mujoco_model(design)
-    pads = [(p, model.body(int(model.geom(p).bodyid[0])).name, model.geom(p).pos.copy()) for p in pad_names(model)]
+    pads = [
+        (p, model.body(int(model.geom(p).bodyid[0])).name, model.geom(p).pos.copy())
+        for p in pad_names(model)
+    ]
     return rigid_body_model(design), pads
 
 
 def walking_residual(log: Log, robot: Chain) -> np.ndarray:
-    """What the nominal model leaves over: base, joints and drives `(t, 6 + n + m)` [N, Nm], filtered; NaN where a joint may stick."""
+    """What the nominal model leaves over: base, joints and drives `(t, 6 + n + m)` [N, Nm],
+    filtered; NaN where a joint may stick.
+    """
     import pinocchio as pin
     from scipy.signal import butter, sosfiltfilt
 
@@ -353,40 +502,66 @@ def walking_residual(log: Log, robot: Chain) -> np.ndarray:
         return np.asarray(sosfiltfilt(sos, values, axis=0))
 
     raw = even("position", robot.joints)
-    position, turning, force = smooth(raw), smooth(even("gyro", "xyz")), smooth(even("accelerometer", "xyz"))
+    position, turning, force = (
+        smooth(raw),
+        smooth(even("gyro", "xyz")),
+        smooth(even("accelerometer", "xyz")),
+    )
     velocity = smooth(np.gradient(position, step, axis=0))
-    acceleration, spin = smooth(np.gradient(velocity, step, axis=0)), np.gradient(turning, step, axis=0)
+    acceleration, spin = (
+        smooth(np.gradient(velocity, step, axis=0)),
+        np.gradient(turning, step, axis=0),
+    )
     quaternion = smooth(even("base_orientation", "wxyz"))
     measured = even("motor_torque", robot.motors)
     command = even("motor_torque_command", robot.motors)
-    loads = smooth(even("contact_force", [f"{p}_{a}" for p, *_ in pads for a in "xyz"])).reshape(len(time), len(pads), 3)
+    loads = smooth(even("contact_force", [f"{p}_{a}" for p, *_ in pads for a in "xyz"])).reshape(
+        len(time), len(pads), 3
+    )
     links = list(dict.fromkeys(link for _, link, _ in pads))
     gravity = rigid.model.gravity.linear.copy()
     needed = np.empty((len(time), 6 + len(robot.joints)))
     try:
-        rigid.model.gravity.linear = np.zeros(3)  # the accelerometer's specific force has gravity in it
+        rigid.model.gravity.linear = np.zeros(
+            3
+        )  # the accelerometer's specific force has gravity in it
         for k in range(len(time)):
             w, x, y, z = quaternion[k] / np.linalg.norm(quaternion[k])
             world = pin.Quaternion(w, x, y, z).toRotationMatrix()
             q = np.concatenate([np.zeros(3), [0, 0, 0, 1], position[k]])
             row = rigid.inverse_dynamics(
-                q, np.concatenate([np.zeros(3), turning[k], velocity[k]]), np.concatenate([force[k], spin[k], acceleration[k]])
-            )  # fmt: skip
+                q,
+                np.concatenate([np.zeros(3), turning[k], velocity[k]]),
+                np.concatenate([force[k], spin[k], acceleration[k]]),
+            )
             for link in links:
                 jacobian = rigid.frame_jacobian(q, link)
                 frame = rigid.data.oMf[rigid.model.getFrameId(link)].rotation
                 for number, (_, owner, place) in enumerate(pads):
                     if owner == link:
                         push = world.T @ loads[k, number]
-                        row = row - jacobian.T @ np.concatenate([push, np.cross(frame @ place, push)])
+                        row = row - jacobian.T @ np.concatenate(
+                            [push, np.cross(frame @ place, push)]
+                        )
             needed[k] = row
     finally:
         rigid.model.gravity.linear = gravity
     slow = np.abs(velocity) < SLOW
-    joints = measured @ robot.joint_from_motor.T - needed[:, 6:] - robot.coulomb * np.tanh(velocity / SOFT) - robot.viscous * velocity
-    asked = (robot.stiffness * (even("position_target", robot.joints) - raw) - robot.damping * even("velocity", robot.joints)) @ np.linalg.pinv(
-        robot.joint_from_motor
-    ).T
-    rows = [smooth(-needed[:, :6]), np.where(slow, np.nan, smooth(joints)), smooth(measured - asked), smooth(command - asked)[:, :0]]
+    joints = (
+        measured @ robot.joint_from_motor.T
+        - needed[:, 6:]
+        - robot.coulomb * np.tanh(velocity / SOFT)
+        - robot.viscous * velocity
+    )
+    asked = (
+        robot.stiffness * (even("position_target", robot.joints) - raw)
+        - robot.damping * even("velocity", robot.joints)
+    ) @ np.linalg.pinv(robot.joint_from_motor).T
+    rows = [
+        smooth(-needed[:, :6]),
+        np.where(slow, np.nan, smooth(joints)),
+        smooth(measured - asked),
+        smooth(command - asked)[:, :0],
+    ]
     cut = round(EDGE / step)
     return np.concatenate(rows, -1)[cut:-cut]

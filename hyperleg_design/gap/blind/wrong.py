@@ -1,4 +1,6 @@
-"""What is wrong with a plant: an effect of the catalogue or an oddity outside it, its place and its size in the plant's own terms."""
+"""What is wrong with a plant: an effect of the catalogue or an oddity outside it, its place and its
+size in the plant's own terms.
+"""
 
 from __future__ import annotations
 
@@ -6,20 +8,50 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 CATALOGUE = (
-    "coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction", "torque_constant", "torque_saturation",
-    "thermal_derating", "voltage_sag", "command_delay", "actuator_bandwidth", "rotor_inertia", "transmission_elasticity", "backlash",
-    "transmission_ratio", "encoder_offset", "controller_gain", "payload", "link_mass", "link_com", "cogging", "joint_spring", "imu_bias",
-    "ground_friction", "ground_compliance",
-)  # fmt: skip
-"""Identifiers of the effects that a diagnosis knows; written out here, not imported, so that the trial checks them."""
+    "coulomb_friction",
+    "viscous_friction",
+    "stribeck_friction",
+    "load_dependent_friction",
+    "torque_constant",
+    "torque_saturation",
+    "thermal_derating",
+    "voltage_sag",
+    "command_delay",
+    "actuator_bandwidth",
+    "rotor_inertia",
+    "transmission_elasticity",
+    "backlash",
+    "transmission_ratio",
+    "encoder_offset",
+    "controller_gain",
+    "payload",
+    "link_mass",
+    "link_com",
+    "cogging",
+    "joint_spring",
+    "imu_bias",
+    "ground_friction",
+    "ground_compliance",
+)
+"""Identifiers of the effects that a diagnosis knows; written out here, not imported, so that the
+trial checks them."""
 
 WALKING_ONLY = ("imu_bias", "ground_friction", "ground_compliance")
 """Effects that a fixed base cannot show."""
 
 ODDITIES = (
-    "torque_ripple", "friction_patch", "hysteresis", "packet_loss", "tilted_gravity", "periodic_push", "hardening_spring", "cross_coupling",
-    "sensor_drift", "fluid_drag", "encoder_eccentricity",
-)  # fmt: skip
+    "torque_ripple",
+    "friction_patch",
+    "hysteresis",
+    "packet_loss",
+    "tilted_gravity",
+    "periodic_push",
+    "hardening_spring",
+    "cross_coupling",
+    "sensor_drift",
+    "fluid_drag",
+    "encoder_eccentricity",
+)
 """Effects outside the catalogue; a diagnosis that names one of its own for them is wrong."""
 
 
@@ -50,7 +82,8 @@ class Size:
     smallest: float
     largest: float
     relative: str = ""
-    """Nominal value of the place that the size multiplies, such as `coulomb` of the joint; empty where absolute."""
+    """Nominal value of the place that the size multiplies, such as `coulomb` of the joint; empty
+    where absolute."""
 
 
 SIZES: dict[str, Size] = {
@@ -62,7 +95,9 @@ SIZES: dict[str, Size] = {
     "torque_constant": Size("1 - true torque / declared", 0.03, 0.35),
     "torque_saturation": Size("1 - true limit / the log's own largest torque", 0.02, 0.75),
     "thermal_derating": Size("1 / (100 K)", 0.05, 0.9),
-    "voltage_sag": Size("share of the voltage lost at the log's largest power, and at rest", 0.03, 0.75),
+    "voltage_sag": Size(
+        "share of the voltage lost at the log's largest power, and at rest", 0.03, 0.75
+    ),
     "command_delay": Size("s", 0.001, 0.030),
     "actuator_bandwidth": Size("time constant, s", 0.001, 0.040),
     "rotor_inertia": Size("share of the nominal rotor's", 0.1, 3.0),

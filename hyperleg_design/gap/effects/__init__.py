@@ -15,7 +15,12 @@ def _found() -> dict[str, Effect]:
     found = {}
     for module in sorted(m.name for m in pkgutil.iter_modules(__path__)):
         for kind in vars(importlib.import_module(f"{__name__}.{module}")).values():
-            if inspect.isclass(kind) and issubclass(kind, Effect) and not inspect.isabstract(kind) and kind.__module__.endswith(f".{module}"):
+            if (
+                inspect.isclass(kind)
+                and issubclass(kind, Effect)
+                and not inspect.isabstract(kind)
+                and kind.__module__.endswith(f".{module}")
+            ):
                 found[kind.identifier] = kind()
     return found
 
@@ -33,4 +38,9 @@ def effect(identifier: str) -> Effect:
     if identifier in EFFECTS:
         return EFFECTS[identifier]
     near = difflib.get_close_matches(identifier, EFFECTS, n=1)
-    raise InputError("effect", "", identifier, f"did you mean {near[0]}?" if near else f"expects one of {', '.join(EFFECTS)}")
+    raise InputError(
+        "effect",
+        "",
+        identifier,
+        f"did you mean {near[0]}?" if near else f"expects one of {', '.join(EFFECTS)}",
+    )

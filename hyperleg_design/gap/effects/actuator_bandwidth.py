@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, limited
+from hyperleg_design.gap.effects.placing import (
+    before_measurement,
+    commanded,
+    driven_motors,
+    is_commanded,
+    limited,
+)
 from hyperleg_design.gap.effects.series import lagged
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
@@ -18,7 +24,8 @@ if TYPE_CHECKING:
 
 
 class ActuatorBandwidth(Effect):
-    """A drive's torque follows the command within its limits through a first-order lag, T tau' = command - tau.
+    """A drive's torque follows the command within its limits through a first-order lag, T tau' =
+    command - tau.
 
     Trace, by the rule of `placing`: the lagged command minus the command.
     """
@@ -27,7 +34,15 @@ class ActuatorBandwidth(Effect):
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a drive's torque follows its command through a first-order lag"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("time_constant", "s", 0.0, 0.0, 0.1, 0.005, "torque loops of 15-100 Hz, 2-10 ms, on series-elastic and servo drives (assumed)"),
+        Parameter(
+            "time_constant",
+            "s",
+            0.0,
+            0.0,
+            0.1,
+            0.005,
+            "torque loops of 15-100 Hz, 2-10 ms, on series-elastic and servo drives (assumed)",
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -54,7 +69,9 @@ class ActuatorBandwidth(Effect):
 
 @dataclass(frozen=True, eq=False)
 class LaggingTorque(Alteration):
-    """A motor's torque follows its command with a lag; exact for a command that is held for a simulation step."""
+    """A motor's torque follows its command with a lag; exact for a command that is held for a
+    simulation step.
+    """
 
     motor: str
     time_constant: Any

@@ -23,15 +23,18 @@ COASTING = ("a rotor that the load carries over", "a rotor that crosses by itsel
 class Backlash(Effect):
     """A motor turns freely through a small angle before its joints follow; see `belt`.
 
-    The angle is the whole width of the dead zone, at the joint that the motor moves most. While the teeth cross it the belt
-    gives no torque and the rotor is caught up with; with encoders at the rotors (`side` 1) the joint lags by half the angle.
+    The angle is the whole width of the dead zone, at the joint that the motor moves most. While the
+    teeth cross it the belt gives no torque and the rotor is caught up with; with encoders at the
+    rotors (`side` 1) the joint lags by half the angle.
     """
 
     identifier: ClassVar[str] = "backlash"
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a motor turns freely through a small angle before its joint follows"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("angle", "rad", 0.0, 0.0, 0.1, 0.006, "0.1-1 deg at the joint (engineering estimate)"),
+        Parameter(
+            "angle", "rad", 0.0, 0.0, 0.1, 0.006, "0.1-1 deg at the joint (engineering estimate)"
+        ),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
         Parameter("coasting", "", 1.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=COASTING),
         Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
@@ -45,24 +48,48 @@ class Backlash(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         angle, side, coasting, behind = np.atleast_2d(np.asarray(values, float)).T
-        moved = belt.slack(signals, motor, angle * belt.moved_most(signals.subject, motor), side, coasting, behind)
+        moved = belt.slack(
+            signals, motor, angle * belt.moved_most(signals.subject, motor), side, coasting, behind
+        )
         return belt.trace(signals, motor, moved, side, behind=behind)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; its ends are as hard as simulations resolve, and damped to bounce as in the trace."""
+        """See `Effect.alteration`; its ends are as hard as simulations resolve, and damped to
+        bounce as in the trace.
+        """
         motor = subject.motors.index(location)
         bounce = np.log(belt.RESTITUTION)
-        damping = 2 * abs(bounce) / np.hypot(np.pi, bounce) * belt.rotor(subject, motor) * 2 * np.pi * STIFFEST
+        damping = (
+            2
+            * abs(bounce)
+            / np.hypot(np.pi, bounce)
+            * belt.rotor(subject, motor)
+            * 2
+            * np.pi
+            * STIFFEST
+        )
         values = np.asarray(values, float)
-        return Belt(location, play=values[..., 0] * belt.moved_most(subject, motor), damping=float(damping), side=values[..., 1])
+        return Belt(
+            location,
+            play=values[..., 0] * belt.moved_most(subject, motor),
+            damping=float(damping),
+            side=values[..., 1],
+        )
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Where encoders sit and joints rub; encoders on the rotors, joints always move by themselves."""
+        """Where encoders sit and joints rub; encoders on the rotors, joints always move by
+        themselves.
+        """
         return np.array([False, True, values[1] >= belt.CHOSEN, True])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Small and large angles, with encoders on either side, or carried over; where ends are met depends on the angle."""
+        """Small and large angles, with encoders on either side, or carried over; where ends are met
+        depends on the angle.
+        """
         rotors = [[angle, 0.0, 1.0, 0.0] for angle in (0.003, 0.01, 0.03)]
-        joints = [[angle, 1.0, 1.0, 0.0] for angle in (0.003, 0.006, 0.011, 0.018, 0.026, 0.036, 0.048, 0.062)]
+        joints = [
+            [angle, 1.0, 1.0, 0.0]
+            for angle in (0.003, 0.006, 0.011, 0.018, 0.026, 0.036, 0.048, 0.062)
+        ]
         rubbing = [[angle, 1.0, 1.0, 1.0] for angle in (0.006, 0.015, 0.03, 0.05)]
         return np.array([*rotors, *joints, *rubbing, [0.01, 0.0, 0.0, 0.0], [0.04, 0.0, 0.0, 0.0]])

@@ -1,24 +1,29 @@
-"""What belts that stretch or have play leave in a log: motor and joint as two masses, the motion of one of them known.
+"""What belts that stretch or have play leave in a log: motor and joint as two masses, the motion of
+one of them known.
 
-The rotor turns by M^T q + s. Where positions are the joints' own (`side` 0) the rotor's inertia J takes J s'' beyond a rigid
-belt's torque, and a rotor whose own speed is logged turns s' faster than its joints. Where they are those of the rotors, taken for
-the joints' (`side` 1), the joints stand s / M behind, and need another torque for that. Between, encoders on both sides are mixed.
+The rotor turns by M^T q + s. Where positions are the joints' own (`side` 0) the rotor's inertia J
+takes J s'' beyond a rigid belt's torque, and a rotor whose own speed is logged turns s' faster than
+its joints. Where they are those of the rotors, taken for the joints' (`side` 1), the joints stand s
+/ M behind, and need another torque for that. Between, encoders on both sides are mixed.
 
-A belt that gives is stretched by what the joints need through it, u = [M^-1 (needed torque less the rotors')]: s = compliance u,
-filtered by the belt's damping; one that stiffens, k (1 + (stiffening s)^2) s = u with `stiffening` at the joint that it moves most.
-Friction of gears acts on the rotor, before the belt; that of joints behind it (`behind` 1). With encoders on the rotors the two differ:
-joints that rub behind a soft belt stay where they are while the rotor turns round, and turn round themselves later, so that the belt is
-stretched by what the motor gives it, and friction follows the joint's own way; friction before it stretches no belt. In a dead
-zone of width w nothing is transmitted, and s moves by itself,
+A belt that gives is stretched by what the joints need through it, u = [M^-1 (needed torque less the
+rotors')]: s = compliance u, filtered by the belt's damping; one that stiffens, k (1 + (stiffening
+s)^2) s = u with `stiffening` at the joint that it moves most. Friction of gears acts on the rotor,
+before the belt; that of joints behind it (`behind` 1). With encoders on the rotors the two differ:
+joints that rub behind a soft belt stay where they are while the rotor turns round, and turn round
+themselves later, so that the belt is stretched by what the motor gives it, and friction follows the
+joint's own way; friction before it stretches no belt. In a dead zone of width w nothing is
+transmitted, and s moves by itself,
 
     side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque
     side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need, its own
                                             friction along where it rubs itself
 
-until it meets +-w/2, where a rotor bounces a little (`RESTITUTION`), and stays while pushed. Both are limited to the band that a log
-resolves. A rotor that rubs, or whose torque is not known well, does not coast like that: then it lies at the end that the load
-pushes it to, and crosses over as the load turns round, s = w / 2 tanh(u / (c rms u)); `coasting` mixes the two.
-"""
+until it meets +-w/2, where a rotor bounces a little (`RESTITUTION`), and stays while pushed. Both
+are limited to the band that a log resolves. A rotor that rubs, or whose torque is not known well,
+does not coast like that: then it lies at the end that the load pushes it to, and crosses over as
+the load turns round, s = w / 2 tanh(u / (c rms u)); `coasting` mixes the two.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -31,7 +36,12 @@ import numpy as np
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.placing import at_motor, motor_velocity
-from hyperleg_design.gap.effects.series import band_limited, first_derivative, lagged, second_derivative
+from hyperleg_design.gap.effects.series import (
+    band_limited,
+    first_derivative,
+    lagged,
+    second_derivative,
+)
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.two_mass import LIGHTEST
 
@@ -42,20 +52,24 @@ if TYPE_CHECKING:
 BAND = 0.2
 """Of the transmitted torque that stretches a belt, over the log's rate: 40 Hz at 200 Hz."""
 RESTITUTION = 0.3
-"""Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords under load hardly bounce. Joints, which
-hit a rotor that is held, do not."""
+"""Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords
+under load hardly bounce. Joints, which hit a rotor that is held, do not."""
 CROSSING, CROSSING_BAND = 0.8, 0.15
-"""c, the load below which a rotor that does not coast is on its way across; band of its crossing, over the log's rate (assumed)."""
+"""c, the load below which a rotor that does not coast is on its way across; band of its crossing,
+over the log's rate (assumed)."""
 
 CHOSEN = 0.5
 """From which a choice between 0 and 1 is 1."""
 BEHIND_BAND = 15.0
-"""Of what stretches a belt whose joint rubs behind it [Hz]; above, noise of the torque would make a joint at rest turn round (assumed)."""
+"""Of what stretches a belt whose joint rubs behind it [Hz]; above, noise of the torque would make a
+joint at rest turn round (assumed)."""
 BRISTLES = 3e-3
-"""Way over which a joint behind its belt turns its friction over [rad]; assumed: as well as its place is known."""
+"""Way over which a joint behind its belt turns its friction over [rad]; assumed: as well as its
+place is known."""
 
 RUBBING = ("joints rub before the belt", "joints rub behind the belt")
-"""Choices of the parameter `behind`: where the friction of joints acts; behind, positions are those of the rotors."""
+"""Choices of the parameter `behind`: where the friction of joints acts; behind, positions are those
+of the rotors."""
 
 LEAST_SHARE = 1e-3
 """Of the largest inertia of a joint over a log, at least, where its posture is not known."""
@@ -78,50 +92,80 @@ def load(signals: Signals, motor: int) -> np.ndarray:
     if motor not in kept:
         subject = signals.subject
         needed = signals.rigid - signals.acceleration @ subject.armature.T
-        kept[motor] = band_limited(applied(subject.motor_from_joint[motor : motor + 1], needed)[:, 0], signals.step, BAND / signals.step)
+        kept[motor] = band_limited(
+            applied(subject.motor_from_joint[motor : motor + 1], needed)[:, 0],
+            signals.step,
+            BAND / signals.step,
+        )
     return kept[motor]
 
 
 def frictionless(signals: Signals, motor: int) -> np.ndarray:
     """As `load`, without the nominal friction of the joints `(t,)` [Nm]."""
-    return load(signals, motor) - band_limited(_friction(signals, motor), signals.step, BAND / signals.step)
+    return load(signals, motor) - band_limited(
+        _friction(signals, motor), signals.step, BAND / signals.step
+    )
 
 
 def _friction(signals: Signals, motor: int) -> np.ndarray:
     """Nominal friction of the joints at a motor `(t,)` [Nm]."""
     subject = signals.subject
     swing = None if signals.chatter is None else signals.chatter.speed
-    return applied(subject.motor_from_joint[motor : motor + 1], rigid.rubbing_torque(subject, signals.velocity, swing))[:, 0]
+    return applied(
+        subject.motor_from_joint[motor : motor + 1],
+        rigid.rubbing_torque(subject, signals.velocity, swing),
+    )[:, 0]
 
 
 def transmitted(signals: Signals, motor: int) -> np.ndarray:
-    """Torque that a motor gives its belt, its own torque less what its rotor takes, where its speed is logged; else `load` `(t,)` [Nm]."""
-    if "transmission" not in signals.residual or not np.isfinite(signals.residual["transmission"][:, motor]).any():
+    """Torque that a motor gives its belt, its own torque less what its rotor takes, where its speed
+    is logged; else `load` `(t,)` [Nm].
+    """
+    if (
+        "transmission" not in signals.residual
+        or not np.isfinite(signals.residual["transmission"][:, motor]).any()
+    ):
         return load(signals, motor)
     kept = _GIVEN.setdefault(signals, {})
     if motor not in kept:
         spin = signals.residual["transmission"][:, motor] + motor_velocity(signals, motor)
-        kept[motor] = _passed_on(signals, motor, first_derivative(spin, signals.step), BAND / signals.step)
+        kept[motor] = _passed_on(
+            signals, motor, first_derivative(spin, signals.step), BAND / signals.step
+        )
     return kept[motor]
 
 
 def given(signals: Signals, motor: int, *, rubs: bool = True) -> np.ndarray:
-    """Torque that a motor gives its belt, where positions are those of the rotors `(t,)` [Nm]; `rubs`, joints rub behind it, else before."""
+    """Torque that a motor gives its belt, where positions are those of the rotors `(t,)` [Nm];
+    `rubs`, joints rub behind it, else before.
+    """
     kept = _OWN.setdefault(signals, {})
     if (motor, rubs) not in kept:
-        spun, band = signals.acceleration @ signals.subject.joint_from_motor[:, motor], min(BEHIND_BAND, BAND / signals.step)
+        spun, band = (
+            signals.acceleration @ signals.subject.joint_from_motor[:, motor],
+            min(BEHIND_BAND, BAND / signals.step),
+        )
         lost = 0.0 if rubs else band_limited(_friction(signals, motor), signals.step, band)
         kept[motor, rubs] = _passed_on(signals, motor, spun, band) - lost
     return kept[motor, rubs]
 
 
 def _passed_on(signals: Signals, motor: int, spun: np.ndarray, band: float) -> np.ndarray:
-    """A motor's own torque less what its rotor takes, of the rotor's acceleration `(t,)` and within a band [Hz]."""
-    return band_limited(signals.believed[:, motor] - rotor(signals.subject, motor) * spun, signals.step, band)
+    """A motor's own torque less what its rotor takes, of the rotor's acceleration `(t,)` and within
+    a band [Hz].
+    """
+    return band_limited(
+        signals.believed[:, motor] - rotor(signals.subject, motor) * spun, signals.step, band
+    )
 
 
 def stretch(
-    signals: Signals, through: np.ndarray, motor: int, compliance: np.ndarray, damping_ratio: np.ndarray, stiffening: np.ndarray | None = None
+    signals: Signals,
+    through: np.ndarray,
+    motor: int,
+    compliance: np.ndarray,
+    damping_ratio: np.ndarray,
+    stiffening: np.ndarray | None = None,
 ) -> np.ndarray:
     """How far a rotor turns beyond its joints under load, on its side of M `(k, t)` [rad].
 
@@ -131,7 +175,8 @@ def stretch(
         motor: place of the motor.
         compliance: `(k,)` [rad/Nm].
         damping_ratio: of the rotor on its belt `(k,)`.
-        stiffening: 1 over the joint's angle at which the belt is twice as stiff `(k,)` [1/rad]; by default 0.
+        stiffening: 1 over the joint's angle at which the belt is twice as stiff `(k,)` [1/rad]; by
+            default 0.
     """
     late = 2 * damping_ratio * np.sqrt(rotor(signals.subject, motor) * compliance)
     moved = np.asarray(compliance[:, None] * lagged(through, late, signals.step))
@@ -143,7 +188,9 @@ def stretch(
 
 
 def _eased(straight: np.ndarray, bend: np.ndarray) -> np.ndarray:
-    """Stretch s of a belt that would stretch by `straight` were it not stiffening: s (1 + (bend s)^2) = straight."""
+    """Stretch s of a belt that would stretch by `straight` were it not stiffening: s (1 + (bend
+    s)^2) = straight.
+    """
     size = 2 / np.sqrt(3)
     return np.asarray(size / bend * np.sinh(np.arcsinh(3 / size * bend * straight) / 3))
 
@@ -153,15 +200,24 @@ def moved_most(subject: Subject, motor: int) -> float:
     return float(np.abs(subject.joint_from_motor[:, motor]).max())
 
 
-def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coasting: np.ndarray, behind: np.ndarray | None = None) -> np.ndarray:
-    """Where a rotor is in its dead zone, from -play / 2 to play / 2, on its side of M `(k, t)` [rad].
+def slack(
+    signals: Signals,
+    motor: int,
+    play: np.ndarray,
+    side: np.ndarray,
+    coasting: np.ndarray,
+    behind: np.ndarray | None = None,
+) -> np.ndarray:
+    """Where a rotor is in its dead zone, from -play / 2 to play / 2, on its side of M `(k, t)`
+    [rad].
 
     Args:
         signals: a conditioned log.
         motor: place of the motor.
         play: whole width `(k,)` [rad].
         side: on which the positions were logged `(k,)`.
-        coasting: from 0, carried over by the load, to 1, moving by itself `(k,)`; a joint, on side 1, always does.
+        coasting: from 0, carried over by the load, to 1, moving by itself `(k,)`; a joint, on side
+            1, always does.
         behind: whether joints rub behind the belt, on side 1 `(k,)`; by default not.
     """
     found = np.zeros((len(play), len(signals.time)))
@@ -179,7 +235,12 @@ def slack(signals: Signals, motor: int, play: np.ndarray, side: np.ndarray, coas
             if at_rotor and behind is not None and behind[row] >= CHOSEN:
                 way = _rubbing(kicks[at_rotor], signals, motor, float(width) / 2)
             else:
-                way = _bounced(kicks[at_rotor], signals.step, float(width) / 2, 0.0 if at_rotor else RESTITUTION)
+                way = _bounced(
+                    kicks[at_rotor],
+                    signals.step,
+                    float(width) / 2,
+                    0.0 if at_rotor else RESTITUTION,
+                )
             found[row] = free * np.array(way)
         if free < 1:
             found[row] += (1 - free) * float(width) / 2 * pushed()
@@ -190,11 +251,15 @@ def _pushed(signals: Signals, motor: int) -> np.ndarray:
     """To which end of its dead zone the load pushes a rotor, from -1 to 1 `(t,)`."""
     through = load(signals, motor)
     usual = float(np.sqrt(np.nanmean(through**2)))
-    return band_limited(np.tanh(through / max(CROSSING * usual, 1e-12)), signals.step, CROSSING_BAND / signals.step)
+    return band_limited(
+        np.tanh(through / max(CROSSING * usual, 1e-12)), signals.step, CROSSING_BAND / signals.step
+    )
 
 
 def _bounced(kicks: list[float], step: float, half: float, restitution: float) -> list[float]:
-    """Places of a body between two walls, from its changes of speed; plain numbers, as arrays of a few are slower."""
+    """Places of a body between two walls, from its changes of speed; plain numbers, as arrays of a
+    few are slower.
+    """
     place, speed = half if kicks[0] > 0 else -half, 0.0
     found = []
     for change in kicks:
@@ -213,11 +278,16 @@ def _bounced(kicks: list[float], step: float, half: float, restitution: float) -
 
 
 def _rubbing(kicks: list[float], signals: Signals, motor: int, half: float) -> list[float]:
-    """As `_bounced`, of a rotor beside joints that rub: friction slows them, and at most stops them."""
+    """As `_bounced`, of a rotor beside joints that rub: friction slows them, and at most stops
+    them.
+    """
     subject, step = signals.subject, signals.step
     share = np.abs(subject.motor_from_joint[motor])
     slowed = step / _inertia(signals, motor)
-    drops, keeps = (float(share @ subject.coulomb) * slowed).tolist(), np.exp(-float(share**2 @ subject.viscous) * slowed).tolist()
+    drops, keeps = (
+        (float(share @ subject.coulomb) * slowed).tolist(),
+        np.exp(-float(share**2 @ subject.viscous) * slowed).tolist(),
+    )
     turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor]).tolist()
     place, speed = half if kicks[0] > 0 else -half, 0.0
     found = []
@@ -246,7 +316,9 @@ def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:
     """Acceleration of a free rotor against its joints `(t,)` [rad/s^2]."""
     inertia = rotor(signals.subject, motor)
     torque = band_limited(signals.believed[:, motor], signals.step, BAND / signals.step)
-    return np.asarray(torque / inertia - signals.acceleration @ signals.subject.joint_from_motor[:, motor])
+    return np.asarray(
+        torque / inertia - signals.acceleration @ signals.subject.joint_from_motor[:, motor]
+    )
 
 
 def _joint_alone(signals: Signals, motor: int) -> np.ndarray:
@@ -255,7 +327,12 @@ def _joint_alone(signals: Signals, motor: int) -> np.ndarray:
 
 
 def trace(
-    signals: Signals, motor: int, moved: np.ndarray, side: np.ndarray, seen: np.ndarray | None = None, behind: np.ndarray | None = None
+    signals: Signals,
+    motor: int,
+    moved: np.ndarray,
+    side: np.ndarray,
+    seen: np.ndarray | None = None,
+    behind: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
     """What stretch leaves in the balances of motion and transmission, see above.
 
@@ -264,29 +341,50 @@ def trace(
         motor: place of the motor.
         moved: stretch `(k, t)` [rad].
         side: on which the positions were logged `(k,)`.
-        seen: stretch in the balance of transmission, as the rotor's side tells it `(k, t)` [rad]; by default the same.
-        behind: whether joints rub behind the belt, with positions logged on side 1 `(k,)`; by default not.
+        seen: stretch in the balance of transmission, as the rotor's side tells it `(k, t)` [rad];
+            by default the same.
+        behind: whether joints rub behind the belt, with positions logged on side 1 `(k,)`; by
+            default not.
     """
     at_joints = 1 - side[:, None]
-    found = at_motor(signals, motor, at_joints * rotor(signals.subject, motor) * second_derivative(moved, signals.step))
-    found |= turned(signals, motor, at_joints * first_derivative(moved if seen is None else seen, signals.step))
+    found = at_motor(
+        signals,
+        motor,
+        at_joints * rotor(signals.subject, motor) * second_derivative(moved, signals.step),
+    )
+    found |= turned(
+        signals, motor, at_joints * first_derivative(moved if seen is None else seen, signals.step)
+    )
     if side.any():
         subject = signals.subject
         share = subject.motor_from_joint[motor]
-        nominal = rigid.inverse_dynamics(subject, signals.position, signals.velocity, signals.acceleration, signals.base, rotors=False)
+        nominal = rigid.inverse_dynamics(
+            subject,
+            signals.position,
+            signals.velocity,
+            signals.acceleration,
+            signals.base,
+            rotors=False,
+        )
         for row in np.flatnonzero(side * np.any(moved != 0, 1)):
             one = moved[row]
             rates = one, first_derivative(one, signals.step), second_derivative(one, signals.step)
             logged = signals.position, signals.velocity, signals.acceleration
-            q, v, a = (x - np.multiply.outer(rate, share) for x, rate in zip(logged, rates, strict=True))
-            found["motion"][row] += side[row] * (rigid.inverse_dynamics(subject, q, v, a, signals.base, rotors=False) - nominal)
+            q, v, a = (
+                x - np.multiply.outer(rate, share) for x, rate in zip(logged, rates, strict=True)
+            )
+            found["motion"][row] += side[row] * (
+                rigid.inverse_dynamics(subject, q, v, a, signals.base, rotors=False) - nominal
+            )
         if behind is not None and (rubbing := behind >= CHOSEN).any():
             found["motion"][rubbing] += _rubbed(signals, moved[rubbing], share)
     return found
 
 
 def _rubbed(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Nominal friction of joints that turn round later than their rotors, less that of the logged motion `(k, t, n)` [Nm]."""
+    """Nominal friction of joints that turn round later than their rotors, less that of the logged
+    motion `(k, t, n)` [Nm].
+    """
     subject = signals.subject
     found = np.zeros((len(moved), *signals.position.shape))
     own = np.flatnonzero(share)
@@ -298,7 +396,9 @@ def _rubbed(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarra
 
 
 def _dragged(way: np.ndarray) -> np.ndarray:
-    """Friction over its size, of bristles that bend along ways `(k, t, j)`: it turns over within `BRISTLES`, and stays at rest (Dahl)."""
+    """Friction over its size, of bristles that bend along ways `(k, t, j)`: it turns over within
+    `BRISTLES`, and stays at rest (Dahl).
+    """
     found = np.zeros_like(way)
     for row, column in np.ndindex(way.shape[0], way.shape[2]):
         found[row, 1:, column] = _bent(np.diff(way[row, :, column]))
@@ -306,7 +406,9 @@ def _dragged(way: np.ndarray) -> np.ndarray:
 
 
 def _bent(steps: np.ndarray) -> np.ndarray:
-    """Bristles after each step `(t,)`; on the way to one side z' = (side - z) / `BRISTLES`, so that only turns need a loop."""
+    """Bristles after each step `(t,)`; on the way to one side z' = (side - z) / `BRISTLES`, so that
+    only turns need a loop.
+    """
     moving = np.flatnonzero(steps)
     if not moving.size:
         return np.zeros(len(steps))

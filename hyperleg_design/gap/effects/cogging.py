@@ -9,7 +9,13 @@ import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.friction import sliding
-from hyperleg_design.gap.effects.placing import at_motor, driven_motors, motor_position, motor_strength, motor_velocity
+from hyperleg_design.gap.effects.placing import (
+    at_motor,
+    driven_motors,
+    motor_position,
+    motor_strength,
+    motor_velocity,
+)
 from hyperleg_design.gap.filtering import HIGHEST
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
@@ -18,29 +24,51 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 SHARE = 0.02
-"""Usual cogging over the torque that a motor is made for (EMBiR: cogging of a few per cent of rated torque)."""
+"""Usual cogging over the torque that a motor is made for (EMBiR: cogging of a few per cent of rated
+torque)."""
 ORDERS = np.arange(1.0, 201.0)
-"""Periods a turn that a search tries: of motors that count at the output of their gear, as many more as it has."""
+"""Periods a turn that a search tries: of motors that count at the output of their gear, as many
+more as it has."""
 ALWAYS = 48
-"""Of these, how many are tried however fast the motor turns; more as long as half of a log shows them below `HIGHEST`."""
+"""Of these, how many are tried however fast the motor turns; more as long as half of a log shows
+them below `HIGHEST`."""
 TRIED = 3
 """Best orders kept as starts of a search."""
 
 
 class Cogging(Effect):
-    """A motor resists with a torque that repeats `order` times a turn of M^T q: cosine cos(order M^T q) + sine sin(order M^T q).
+    """A motor resists with a torque that repeats `order` times a turn of M^T q: cosine cos(order
+    M^T q) + sine sin(order M^T q).
 
-    Amplitude and phase are hypot(cosine, sine) and atan2(sine, cosine). Where M holds a gear's ratio, a turn is the rotor's;
-    where it is 1, the gear's output's. Trace: that torque.
+    Amplitude and phase are hypot(cosine, sine) and atan2(sine, cosine). Where M holds a gear's
+    ratio, a turn is the rotor's; where it is 1, the gear's output's. Trace: that torque.
     """
 
     identifier: ClassVar[str] = "cogging"
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a motor's torque varies with its angle, some periods a turn"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("cosine", "Nm", 0.0, -20.0, 20.0, 0.1, "a few per cent of the rated torque of BLDC motors (assumed; MuJoCo's dcmotor `cogging`)"),
+        Parameter(
+            "cosine",
+            "Nm",
+            0.0,
+            -20.0,
+            20.0,
+            0.1,
+            "a few per cent of the rated torque of BLDC motors (assumed; MuJoCo's dcmotor "
+            "`cogging`)",
+        ),
         Parameter("sine", "Nm", 0.0, -20.0, 20.0, 0.1, "as the cosine"),
-        Parameter("order", "1/turn", 6.0, 0.5, 200.0, 10.0, "least common multiple of slots and poles, or its fractions", shape=True),
+        Parameter(
+            "order",
+            "1/turn",
+            6.0,
+            0.5,
+            200.0,
+            10.0,
+            "least common multiple of slots and poles, or its fractions",
+            shape=True,
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -63,7 +91,9 @@ class Cogging(Effect):
         """A share of the torque that the motor is made for."""
         motor = subject.motors.index(location)
         share = SHARE * motor_strength(subject, motor)
-        return np.array([share, share, self.parameters[2].typical * max(abs(float(subject.gear[motor])), 1.0)])
+        return np.array(
+            [share, share, self.parameters[2].typical * max(abs(float(subject.gear[motor])), 1.0)]
+        )
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Amplitudes up to the torque that the motor is made for."""
@@ -75,16 +105,26 @@ class Cogging(Effect):
     def steps(self, location: str, subject: Subject) -> np.ndarray:
         """Those of the order turn the phase little over a radian of the joint."""
         found = super().steps(location, subject)
-        found[2] = min(found[2], 0.05 / float(np.abs(subject.joint_from_motor[:, subject.motors.index(location)]).max()))
+        found[2] = min(
+            found[2],
+            0.05 / float(np.abs(subject.joint_from_motor[:, subject.motors.index(location)]).max()),
+        )
         return found
 
-    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+    def derived(
+        self, location: str, values: np.ndarray, subject: Subject
+    ) -> dict[str, tuple[float, str]]:
         """Amplitude, and the angle at which it resists most."""
         cosine, sine, order = values
-        return {"amplitude": (float(np.hypot(cosine, sine)), "Nm"), "phase": (float(np.arctan2(sine, cosine) / order), "rad")}
+        return {
+            "amplitude": (float(np.hypot(cosine, sine)), "Nm"),
+            "phase": (float(np.arctan2(sine, cosine) / order), "rad"),
+        }
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The orders that explain most of the residual of this log, each more than its neighbours, with their amplitudes."""
+        """The orders that explain most of the residual of this log, each more than its neighbours,
+        with their amplitudes.
+        """
         subject = signals.subject
         motor = subject.motors.index(location)
         main = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
@@ -94,9 +134,18 @@ class Cogging(Effect):
         if known.sum() < 16:
             return super().starts(signals, location)
         angle = motor_position(signals, motor)
-        # what gravity, friction and inertia that are off would leave is taken out of residual and waves alike
+        # what gravity, friction and inertia that are off would leave is taken out of residual and
+        # waves alike
         turned, speed = signals.position[:, main], signals.velocity[:, main]
-        other = [np.ones_like(turned), turned, np.cos(turned), np.sin(turned), speed, sliding(signals)[:, main], signals.acceleration[:, main]]
+        other = [
+            np.ones_like(turned),
+            turned,
+            np.cos(turned),
+            np.sin(turned),
+            speed,
+            sliding(signals)[:, main],
+            signals.acceleration[:, main],
+        ]
         basis = np.linalg.qr(np.stack(other, -1)[known])[0]
 
         def alone(rows: np.ndarray) -> np.ndarray:
@@ -107,7 +156,9 @@ class Cogging(Effect):
         orders = ORDERS[(ORDERS <= ALWAYS) | (ORDERS * slow <= 2 * np.pi * HIGHEST)]
         found = np.empty((len(orders), 3))
         for row, order in enumerate(orders):
-            waves = alone(np.stack([np.cos(order * angle[known]), np.sin(order * angle[known])], -1))
+            waves = alone(
+                np.stack([np.cos(order * angle[known]), np.sin(order * angle[known])], -1)
+            )
             gram = waves.T @ waves
             gram[np.diag_indices(2)] += 1e-4 * known.sum()
             right = waves.T @ wanted
@@ -139,7 +190,9 @@ class _Cogging(Live):
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
         one, angle = self.alteration, tick.motor_position[:, self.place]
-        torque[:, self.place] -= one.cosine * np.cos(one.order * angle) + one.sine * np.sin(one.order * angle)
+        torque[:, self.place] -= one.cosine * np.cos(one.order * angle) + one.sine * np.sin(
+            one.order * angle
+        )
         return torque
 
 

@@ -35,10 +35,11 @@ TARGETS = 0.5
 class CommandDelay(Effect):
     """Drives follow what they were told some time ago: all of them (`robot`), or one motor.
 
-    What comes late is the torque that the controller asked for (`late` 0), so that the whole loop is: the torque is that of the
-    targets and of the measured state of then. Or it is the targets alone (1), on the way to controllers that know their own joints'
-    state at once. Trace, by the rule of `placing`: the command with what is late less that of now, within the nominal limits. Of motors
-    whose commands are logged, late targets show in the balance of the control instead.
+    What comes late is the torque that the controller asked for (`late` 0), so that the whole loop
+    is: the torque is that of the targets and of the measured state of then. Or it is the targets
+    alone (1), on the way to controllers that know their own joints' state at once. Trace, by the
+    rule of `placing`: the command with what is late less that of now, within the nominal limits. Of
+    motors whose commands are logged, late targets show in the balance of the control instead.
     """
 
     identifier: ClassVar[str] = "command_delay"
@@ -62,7 +63,11 @@ class CommandDelay(Effect):
         """See `Effect.trace`."""
         delay, late = np.atleast_2d(np.asarray(values, float)).T
         targets = late >= TARGETS
-        moved = _moved(signals, np.where(targets, delay, 0.0)) if targets.any() and _told(signals, location) else None
+        moved = (
+            _moved(signals, np.where(targets, delay, 0.0))
+            if targets.any() and _told(signals, location)
+            else None
+        )
         changes, control = {}, None
         for motor, name in enumerate(signals.subject.motors):
             if location not in (ROBOT, name) or not is_commanded(signals, motor):
@@ -70,21 +75,40 @@ class CommandDelay(Effect):
             asked = commanded(signals, motor)
             after = delayed(asked, np.where(targets, 0.0, delay), signals.step)
             if moved is not None:
-                share = signals.supplied[:, motor] * np.tensordot(moved, signals.subject.motor_from_joint[motor], 1)
+                share = signals.supplied[:, motor] * np.tensordot(
+                    moved, signals.subject.motor_from_joint[motor], 1
+                )
                 if not is_logged(signals, motor):
                     after = after + share
                 elif "control" in signals.residual:
-                    control = np.zeros((*share.shape, len(signals.subject.motors))) if control is None else control
+                    control = (
+                        np.zeros((*share.shape, len(signals.subject.motors)))
+                        if control is None
+                        else control
+                    )
                     control[..., motor] = share
             changes[motor] = limited(signals, motor, after) - limited(signals, motor, asked)
-        return before_measurement(signals, changes) | ({} if control is None else {"control": control})
+        return before_measurement(signals, changes) | (
+            {} if control is None else {"control": control}
+        )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
         motors = driven_motors(subject) if location == ROBOT else (location,)
-        joints = tuple(dict.fromkeys(joint for motor in motors for joint in moved_joints(subject, subject.motors.index(motor))))
+        joints = tuple(
+            dict.fromkeys(
+                joint
+                for motor in motors
+                for joint in moved_joints(subject, subject.motors.index(motor))
+            )
+        )
         delay, late = np.moveaxis(np.asarray(values, float), -1, 0)
-        return LateCommand(motors, joints, np.where(late < TARGETS, delay, 0.0), np.where(late < TARGETS, 0.0, delay))
+        return LateCommand(
+            motors,
+            joints,
+            np.where(late < TARGETS, delay, 0.0),
+            np.where(late < TARGETS, 0.0, delay),
+        )
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
         """Nothing is between commands and targets."""
@@ -101,12 +125,16 @@ class CommandDelay(Effect):
 
 
 def _told(signals: Signals, location: str) -> bool:
-    """Whether targets are known that can come late by themselves: to one motor only where it has its joint to itself."""
+    """Whether targets are known that can come late by themselves: to one motor only where it has
+    its joint to itself.
+    """
     return signals.target is not None and (location == ROBOT or signals.subject.one_to_one)
 
 
 def _moved(signals: Signals, delay: np.ndarray) -> np.ndarray:
-    """Joint torque that controllers ask for more while their targets are old `(k, t, n)` [Nm]; 0 where no target or gain is known."""
+    """Joint torque that controllers ask for more while their targets are old `(k, t, n)` [Nm]; 0
+    where no target or gain is known.
+    """
     assert signals.target is not None
     stiffness = np.where(signals.subject.passive, 0.0, np.nan_to_num(signals.subject.gains[:, 0]))
     found = np.zeros((len(delay), *signals.target.shape))
@@ -119,7 +147,9 @@ def _moved(signals: Signals, delay: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class LateCommand(Alteration):
-    """Some motors' commands, and some joints' targets, come late, interpolated between simulation steps."""
+    """Some motors' commands, and some joints' targets, come late, interpolated between simulation
+    steps.
+    """
 
     motors: tuple[str, ...]
     joints: tuple[str, ...]
@@ -148,7 +178,10 @@ class _Past:
         self.begun[:] = 1.0
         self.values[:, 1:] = self.values[:, :-1].copy()
         self.values[:, 0] = fresh
-        return np.asarray((1 - self.part) * self.values[self.rows, self.whole] + self.part * self.values[self.rows, self.whole + 1])
+        return np.asarray(
+            (1 - self.part) * self.values[self.rows, self.whole]
+            + self.part * self.values[self.rows, self.whole + 1]
+        )
 
 
 class _Late(Live):
@@ -158,8 +191,15 @@ class _Late(Live):
 
     def prepare(self) -> None:
         one = self.alteration
-        self.of_motors = _Past(one.delay, self.count, self.step, [self.machine.motor(name) for name in one.motors])
-        self.of_joints = _Past(one.target_delay, self.count, self.step, [self.machine.joint(name) for name in one.joints])
+        self.of_motors = _Past(
+            one.delay, self.count, self.step, [self.machine.motor(name) for name in one.motors]
+        )
+        self.of_joints = _Past(
+            one.target_delay,
+            self.count,
+            self.step,
+            [self.machine.joint(name) for name in one.joints],
+        )
         self.commands, self.commands_begun = self.of_motors.values, self.of_motors.begun
         self.targets, self.targets_begun = self.of_joints.values, self.of_joints.begun
 

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, is_logged, limited
+from hyperleg_design.gap.effects.placing import (
+    before_measurement,
+    commanded,
+    driven_motors,
+    is_commanded,
+    is_logged,
+    limited,
+)
 from hyperleg_design.simulation.alteration import Alteration, Machine
 
 if TYPE_CHECKING:
@@ -19,16 +26,25 @@ if TYPE_CHECKING:
 class ControllerGain(Effect):
     """A joint's controller is stiffer or more damped than its declared gains.
 
-    Its torque K (target - q) - D q_dot changes by ((scale_K - 1) K (target - q) - (scale_D - 1) D q_dot), and with it those of
-    the motors. Trace, by the rule of `placing`: what that changes within the nominal limits. Of motors whose commands are
-    logged, and so known to be what the controller asked for, it shows in the balance of the control instead.
+    Its torque K (target - q) - D q_dot changes by ((scale_K - 1) K (target - q) - (scale_D - 1) D
+    q_dot), and with it those of the motors. Trace, by the rule of `placing`: what that changes
+    within the nominal limits. Of motors whose commands are logged, and so known to be what the
+    controller asked for, it shows in the balance of the control instead.
     """
 
     identifier: ClassVar[str] = "controller_gain"
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint controller is stiffer or more damped than declared"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("stiffness_scale", "", 1.0, 0.1, 5.0, 0.2, "servos' registers are nominal: 20 % off (assumed; XL330 and STS3215 fits in BAM)"),
+        Parameter(
+            "stiffness_scale",
+            "",
+            1.0,
+            0.1,
+            5.0,
+            0.2,
+            "servos' registers are nominal: 20 % off (assumed; XL330 and STS3215 fits in BAM)",
+        ),
         Parameter("damping_scale", "", 1.0, 0.0, 5.0, 0.2, "as the stiffness"),
     )
 
@@ -46,20 +62,33 @@ class ControllerGain(Effect):
         scale = np.atleast_2d(np.asarray(values, float))[..., None] - 1.0
         stiffness, damping = subject.gains[joint]
         error = signals.target[:, joint] - signals.position[:, joint]
-        spring, damper = scale[:, 0] * (stiffness * error), scale[:, 1] * (damping * signals.sensed[:, joint])
+        spring, damper = (
+            scale[:, 0] * (stiffness * error),
+            scale[:, 1] * (damping * signals.sensed[:, joint]),
+        )
         changes, control = {}, None
         for motor in np.flatnonzero(subject.motor_from_joint[:, joint]).tolist():
-            if subject.motors[motor] not in driven_motors(subject) or not is_commanded(signals, motor):
+            if subject.motors[motor] not in driven_motors(subject) or not is_commanded(
+                signals, motor
+            ):
                 continue
-            share = subject.motor_from_joint[motor, joint] * (signals.supplied[:, motor] * spring - damper)
+            share = subject.motor_from_joint[motor, joint] * (
+                signals.supplied[:, motor] * spring - damper
+            )
             if is_logged(signals, motor):
                 if "control" in signals.residual:
-                    control = np.zeros((*share.shape, len(subject.motors))) if control is None else control
+                    control = (
+                        np.zeros((*share.shape, len(subject.motors)))
+                        if control is None
+                        else control
+                    )
                     control[..., motor] = share
                 continue
             asked = commanded(signals, motor)
             changes[motor] = limited(signals, motor, asked + share) - limited(signals, motor, asked)
-        return before_measurement(signals, changes) | ({} if control is None else {"control": control})
+        return before_measurement(signals, changes) | (
+            {} if control is None else {"control": control}
+        )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
@@ -68,7 +97,9 @@ class ControllerGain(Effect):
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Softer and stiffer, with and without the damping."""
-        return np.array([[0.8, 0.8], [1.25, 1.25], [0.8, 1.0], [1.25, 1.0], [1.0, 0.8], [1.0, 1.25]])
+        return np.array(
+            [[0.8, 0.8], [1.25, 1.25], [0.8, 1.0], [1.25, 1.0], [1.0, 0.8], [1.0, 1.25]]
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alteration
 
 SHARE = 0.04
-"""Usual Coulomb friction over the torque that a joint is made for: 4-5 Nm on harmonic drives of 100 Nm (BAM)."""
+"""Usual Coulomb friction over the torque that a joint is made for: 4-5 Nm on harmonic drives of 100
+Nm (BAM)."""
 
 
 class CoulombFriction(Effect):
-    """A joint resists sliding with one torque at any speed, beyond (or, negative, short of) the friction of the model.
+    """A joint resists sliding with one torque at any speed, beyond (or, negative, short of) the
+    friction of the model.
 
     Trace: torque times the way in which the joint slides, `friction.sliding`.
     """
@@ -29,7 +31,15 @@ class CoulombFriction(Effect):
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint resists motion with a torque of constant size"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("torque", "Nm", 0.0, -50.0, 100.0, 4.0, "4-5.6 Nm on harmonic drives (BAM, arXiv 2410.08650); 0.7 Nm sliding on an RMD-X8"),
+        Parameter(
+            "torque",
+            "Nm",
+            0.0,
+            -50.0,
+            100.0,
+            4.0,
+            "4-5.6 Nm on harmonic drives (BAM, arXiv 2410.08650); 0.7 Nm sliding on an RMD-X8",
+        ),
     )
     linear: ClassVar[bool] = True
 
@@ -43,10 +53,16 @@ class CoulombFriction(Effect):
         return at_joint(signals, joint, np.atleast_2d(values)[:, :1] * sliding(signals)[:, joint])
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; what is taken away never exceeds the model's, and has its width."""
+        """See `Effect.alteration`; what is taken away never exceeds the model's, and has its
+        width.
+        """
         joint = subject.joints.index(location)
         torque = np.maximum(np.asarray(values, float)[..., 0], -subject.coulomb[joint])
-        return JointFriction(location, coulomb=torque, width=float(subject.friction_speed[joint]) if np.any(torque < 0) else WIDTH)
+        return JointFriction(
+            location,
+            coulomb=torque,
+            width=float(subject.friction_speed[joint]) if np.any(torque < 0) else WIDTH,
+        )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """A share of the torque that the joint is made for."""
@@ -55,4 +71,9 @@ class CoulombFriction(Effect):
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """No less than no friction at all."""
         joint = subject.joints.index(location)
-        return np.array([[-subject.coulomb[joint]], [min(self.parameters[0].high, joint_strength(subject)[joint])]])
+        return np.array(
+            [
+                [-subject.coulomb[joint]],
+                [min(self.parameters[0].high, joint_strength(subject)[joint])],
+            ]
+        )

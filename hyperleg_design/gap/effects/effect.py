@@ -1,4 +1,6 @@
-"""What every effect of the catalogue is: identifier, places, parameters, its trace in the balances and its way into the simulation."""
+"""What every effect of the catalogue is: identifier, places, parameters, its trace in the balances
+and its way into the simulation.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ BALANCES = ("motion", "drive", "control", "base", "ground")
 """Rows that a trace can fill; `gap/signals.py` says what each compares."""
 
 Change = Mapping[tuple[str, str], Mapping[str, float]]
-"""Values of parameters by (effect, location): what is added to a simulation; empty, the simulation as it is."""
+"""Values of parameters by (effect, location): what is added to a simulation; empty, the simulation
+as it is."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,8 @@ class Parameter:
     source: str
     """Where the magnitude comes from."""
     shape: bool = False
-    """Whether it only shapes the trace (a Stribeck speed, a cogging order) and means nothing while the size is at its null."""
+    """Whether it only shapes the trace (a Stribeck speed, a cogging order) and means nothing while
+    the size is at its null."""
     choices: tuple[str, ...] = ()
     """What 0, 1, ... stand for, of one that is no size."""
 
@@ -50,8 +54,9 @@ class Parameter:
 class Effect(ABC):
     """One unmodelled effect; a class without state.
 
-    Residuals of all balances are what the log shows minus what the model explains, so that a log made with the effect at
-    `values` has, apart from noise, the residual `trace(signals, location, values)`; at the nulls the trace is zero.
+    Residuals of all balances are what the log shows minus what the model explains, so that a log
+    made with the effect at `values` has, apart from noise, the residual `trace(signals, location,
+    values)`; at the nulls the trace is zero.
     """
 
     identifier: ClassVar[str]
@@ -61,7 +66,8 @@ class Effect(ABC):
     """One line for people."""
     parameters: ClassVar[tuple[Parameter, ...]]
     linear: ClassVar[bool] = False
-    """Whether the trace is linear in (values - nulls), but for parameters that only shape it: these are one of `variants`."""
+    """Whether the trace is linear in (values - nulls), but for parameters that only shape it: these
+    are one of `variants`."""
 
     @abstractmethod
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -77,9 +83,16 @@ class Effect(ABC):
         if location in found:
             return location
         if not found:
-            raise InputError(self.identifier, "location", location, f"this robot has no {self.kind} for it")
+            raise InputError(
+                self.identifier, "location", location, f"this robot has no {self.kind} for it"
+            )
         near = difflib.get_close_matches(location, found, n=1)
-        raise InputError(self.identifier, "location", location, f"did you mean {near[0]}?" if near else f"expects one of {', '.join(found)}")
+        raise InputError(
+            self.identifier,
+            "location",
+            location,
+            f"did you mean {near[0]}?" if near else f"expects one of {', '.join(found)}",
+        )
 
     @abstractmethod
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -91,8 +104,8 @@ class Effect(ABC):
             values: `(k, parameters)`, k settings at once.
 
         Returns:
-            By name of the balance `(k, t, rows)` [Nm; N in the ground balance], before any filtering; balances that it leaves
-            alone are missing. Unknown ticks are NaN.
+            By name of the balance `(k, t, rows)` [Nm; N in the ground balance], before any
+            filtering; balances that it leaves alone are missing. Unknown ticks are NaN.
         """
 
     @abstractmethod
@@ -101,33 +114,50 @@ class Effect(ABC):
 
         Args:
             location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation; rows at the nulls leave theirs alone.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation; rows at the nulls
+                leave theirs alone.
             subject: the robot.
         """
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """Usual distances from the nulls at a place of a robot `(parameters,)`: scale of priors and of finite differences."""
+        """Usual distances from the nulls at a place of a robot `(parameters,)`: scale of priors and
+        of finite differences.
+        """
         return np.array([p.typical for p in self.parameters])
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """Values `(parameters,)` at which it can be seen: `size` times the usual distance from the nulls, inside the bounds."""
+        """Values `(parameters,)` at which it can be seen: `size` times the usual distance from the
+        nulls, inside the bounds.
+        """
         values = self.nulls
-        for place, (parameter, usual) in enumerate(zip(self.parameters, self.usual(location, subject), strict=True)):
+        for place, (parameter, usual) in enumerate(
+            zip(self.parameters, self.usual(location, subject), strict=True)
+        ):
             if not parameter.shape:
                 above = min(parameter.null + size * float(usual), parameter.high)
-                values[place] = above if above > parameter.null else max(parameter.null - size * float(usual), parameter.low)
+                values[place] = (
+                    above
+                    if above > parameter.null
+                    else max(parameter.null - size * float(usual), parameter.low)
+                )
         return values
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Least and largest values that are possible at a place of a robot `(2, parameters)`; never wider than the parameters' own."""
+        """Least and largest values that are possible at a place of a robot `(2, parameters)`; never
+        wider than the parameters' own.
+        """
         return np.array([[p.low for p in self.parameters], [p.high for p in self.parameters]])
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Which parameters stay as a search begins with them, as nothing lies between their choices `(k,)` of bool."""
+        """Which parameters stay as a search begins with them, as nothing lies between their choices
+        `(k,)` of bool.
+        """
         return np.zeros(len(self.parameters), bool)
 
     def doubtful(self, values: np.ndarray) -> bool:
-        """Whether at some values `(k,)` it is like what nobody models well of a healthy robot, so that it needs more evidence."""
+        """Whether at some values `(k,)` it is like what nobody models well of a healthy robot, so
+        that it needs more evidence.
+        """
         return False
 
     def unsettles(self, values: np.ndarray) -> bool:
@@ -139,23 +169,35 @@ class Effect(ABC):
         return 0.0
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Values from which a search for the best fit to a log is worth while `(s, parameters)`, inside the bounds."""
+        """Values from which a search for the best fit to a log is worth while `(s, parameters)`,
+        inside the bounds.
+        """
         usual = self.usual(location, signals.subject)
         sized = np.array([not p.shape for p in self.parameters])
         low, high = self.bounds(location, signals.subject)
-        tried = np.clip(self.nulls + np.array([[1.0], [-1.0]]) * np.where(sized, usual, 0.0), low, high)
+        tried = np.clip(
+            self.nulls + np.array([[1.0], [-1.0]]) * np.where(sized, usual, 0.0), low, high
+        )
         return np.asarray(tried[np.any(tried != self.nulls, 1)])
 
     def variants(self, signals: Signals, location: str) -> np.ndarray:
-        """Of a linear effect, values of the parameters that only shape its trace, each worth a try `(v, parameters)`; the rest null."""
+        """Of a linear effect, values of the parameters that only shape its trace, each worth a try
+        `(v, parameters)`; the rest null.
+        """
         return self.nulls[None]
 
     def steps(self, location: str, subject: Subject) -> np.ndarray:
-        """Steps of finite differences, small enough for the trace to be about straight over them `(parameters,)`."""
+        """Steps of finite differences, small enough for the trace to be about straight over them
+        `(parameters,)`.
+        """
         return 0.1 * self.usual(location, subject)
 
-    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
-        """What people would rather read: quantities that follow from values `(parameters,)`, each with its unit."""
+    def derived(
+        self, location: str, values: np.ndarray, subject: Subject
+    ) -> dict[str, tuple[float, str]]:
+        """What people would rather read: quantities that follow from values `(parameters,)`, each
+        with its unit.
+        """
         return {}
 
     @property

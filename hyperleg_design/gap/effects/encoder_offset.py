@@ -17,24 +17,36 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 NODES = 5
-"""Positions at which the torque is computed: it is a trigonometric polynomial of second degree in one joint's angle."""
+"""Positions at which the torque is computed: it is a trigonometric polynomial of second degree in
+one joint's angle."""
 
 Basis = dict[str, tuple[np.ndarray, np.ndarray]]
 _BASES: WeakKeyDictionary[Signals, dict[int, Basis]] = WeakKeyDictionary()
 
 
 class EncoderOffset(Effect):
-    """A joint stands at the logged position minus `offset`; controller and log read the same wrong angle.
+    """A joint stands at the logged position minus `offset`; controller and log read the same wrong
+    angle.
 
-    Targets are absolute and torques follow from readings, so all that the offset leaves is the torque that another posture
-    needs: gravity, inertia, springs and the levers of contact forces. Trace: needed(q - offset) - needed(q), exact.
+    Targets are absolute and torques follow from readings, so all that the offset leaves is the
+    torque that another posture
+    needs: gravity, inertia, springs and the levers of contact forces. Trace: needed(q - offset) -
+        needed(q), exact.
     """
 
     identifier: ClassVar[str] = "encoder_offset"
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint's encoder reads a constant angle too much"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("offset", "rad", 0.0, -0.3, 0.3, 0.03, "up to 0.1 rad on calibrated legs (PACE, arXiv 2509.06342)"),
+        Parameter(
+            "offset",
+            "rad",
+            0.0,
+            -0.3,
+            0.3,
+            0.03,
+            "up to 0.1 rad on calibrated legs (PACE, arXiv 2509.06342)",
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -65,11 +77,15 @@ class EncoderOffset(Effect):
 
 def _waves(offset: np.ndarray) -> np.ndarray:
     """Functions of an offset that vanish at 0 `(k, 4)`."""
-    return np.stack([np.cos(offset) - 1, np.sin(offset), np.cos(2 * offset) - 1, np.sin(2 * offset)], -1)
+    return np.stack(
+        [np.cos(offset) - 1, np.sin(offset), np.cos(2 * offset) - 1, np.sin(2 * offset)], -1
+    )
 
 
 def _basis(signals: Signals, joint: int) -> Basis:
-    """By balance: rows that an offset changes, and how, in the functions of the offset `(functions, t, rows)`."""
+    """By balance: rows that an offset changes, and how, in the functions of the offset `(functions,
+    t, rows)`.
+    """
     hinge = bool(signals.subject.tree.hinge[joint])
     nodes = 2 * np.pi / NODES * np.arange(1, NODES) if hinge else np.array([-0.1, 0.1])
     matrix = np.linalg.inv(_waves(nodes) if hinge else np.stack([nodes, nodes**2], -1))

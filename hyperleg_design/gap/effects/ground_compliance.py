@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 
 class GroundCompliance(Effect):
-    """Compliance of sole and ground under one foot [m/N], and how well it is damped, over the model's; shows in vertical forces.
+    """Compliance of sole and ground under one foot [m/N], and how well it is damped, over the
+    model's; shows in vertical forces.
 
     Only where contact forces and the base's height are logged.
     """
@@ -26,8 +27,25 @@ class GroundCompliance(Effect):
     kind: ClassVar[str] = "foot"
     summary: ClassVar[str] = "the ground or the sole is softer or harder under a foot"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("scale", "", 1.0, 0.1, 20.0, 1.0, "soles and mats: 1-5 mm under body weight against a fraction of that (engineering estimate)"),
-        Parameter("damping_scale", "", 1.0, 0.1, 5.0, 0.5, "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)"),
+        Parameter(
+            "scale",
+            "",
+            1.0,
+            0.1,
+            20.0,
+            1.0,
+            "soles and mats: 1-5 mm under body weight against a fraction of that (engineering "
+            "estimate)",
+        ),
+        Parameter(
+            "damping_scale",
+            "",
+            1.0,
+            0.1,
+            5.0,
+            0.5,
+            "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)",
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:

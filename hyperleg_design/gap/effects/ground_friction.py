@@ -19,17 +19,28 @@ if TYPE_CHECKING:
 
 
 ICE = 2.7
-"""Usual differences by which a ground is slippery enough for a standing robot's feet to slide: friction 0.2 instead of 1 (assumed)."""
+"""Usual differences by which a ground is slippery enough for a standing robot's feet to slide:
+friction 0.2 instead of 1 (assumed)."""
 
 
 class GroundFriction(Effect):
-    """The coefficient of sliding friction under one foot; shows where the foot slides, or holds beyond the nominal cone."""
+    """The coefficient of sliding friction under one foot; shows where the foot slides, or holds
+    beyond the nominal cone.
+    """
 
     identifier: ClassVar[str] = "ground_friction"
     kind: ClassVar[str] = "foot"
     summary: ClassVar[str] = "the ground is more or less slippery under a foot"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("scale", "", 1.0, 0.05, 5.0, 0.3, "rubber on dry to wet floors 0.9-0.4 (engineering tables), 30 % of a nominal 0.8"),
+        Parameter(
+            "scale",
+            "",
+            1.0,
+            0.05,
+            5.0,
+            0.3,
+            "rubber on dry to wet floors 0.9-0.4 (engineering tables), 30 % of a nominal 0.8",
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -42,29 +53,48 @@ class GroundFriction(Effect):
         return ground_trace(signals, location, scale, np.ones_like(scale), np.ones_like(scale))
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """As slippery as ice, because a ground that holds better than needed does nothing, and feet creep before they slide."""
-        return np.maximum(self.nulls - ICE * size * self.usual(location, subject), self.parameters[0].low)
+        """As slippery as ice, because a ground that holds better than needed does nothing, and feet
+        creep before they slide.
+        """
+        return np.maximum(
+            self.nulls - ICE * size * self.usual(location, subject), self.parameters[0].low
+        )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
-        return ChangedGround(ground.foot_bodies(subject, subject.feet.index(location)), friction=np.asarray(values, float)[..., 0])
+        return ChangedGround(
+            ground.foot_bodies(subject, subject.feet.index(location)),
+            friction=np.asarray(values, float)[..., 0],
+        )
 
 
-def ground_trace(signals: Signals, location: str, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray) -> dict[str, np.ndarray]:
-    """What a changed ground under one foot leaves in the ground balance; scales `(k,)` as of `ground.Footing.ground`."""
+def ground_trace(
+    signals: Signals,
+    location: str,
+    friction: np.ndarray,
+    compliance: np.ndarray,
+    damping: np.ndarray,
+) -> dict[str, np.ndarray]:
+    """What a changed ground under one foot leaves in the ground balance; scales `(k,)` as of
+    `ground.Footing.ground`.
+    """
     feet = ground.footings(signals)
     if not feet:
         return {}
     place, one = signals.subject.feet.index(location), np.ones(1)
     found = np.zeros((len(friction), len(signals.time), 3 * len(feet)))
     own = feet[place]
-    found[..., 3 * place : 3 * place + 3] = own.ground(friction, compliance, damping) - own.ground(one, one, one)
+    found[..., 3 * place : 3 * place + 3] = own.ground(friction, compliance, damping) - own.ground(
+        one, one, one
+    )
     return {"ground": found}
 
 
 @dataclass(frozen=True, eq=False)
 class ChangedGround(Alteration):
-    """Contact of some bodies with the floor, as it is mixed in the model, with friction, compliance and damping scaled."""
+    """Contact of some bodies with the floor, as it is mixed in the model, with friction, compliance
+    and damping scaled.
+    """
 
     bodies: tuple[str, ...]
     friction: Any = 1.0
@@ -74,7 +104,8 @@ class ChangedGround(Alteration):
     def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
         """Give the bodies' shapes the pair's settings, scaled, and precedence over the floor's."""
         friction, compliance, damping = (
-            float(v if np.ndim(v) == 0 else v[simulation]) for v in (np.asarray(x, float) for x in (self.friction, self.compliance, self.damping))
+            float(v if np.ndim(v) == 0 else v[simulation])
+            for v in (np.asarray(x, float) for x in (self.friction, self.compliance, self.damping))
         )
         if friction == compliance == damping == 1.0:
             return
@@ -83,7 +114,8 @@ class ChangedGround(Alteration):
         for geom in ground.foot_geoms(model, self.bodies):
             mixed, solref, dimensions = ground.pair_settings(model, geom)
             if solref[0] > 0:
-                # k' falls by the compliance, b' by its root, so that the damping ratio stays unless scaled itself
+                # k' falls by the compliance, b' by its root, so that the damping ratio stays unless
+                # scaled itself
                 solref = solref * np.array([np.sqrt(compliance) / damping, damping])
             else:
                 solref = solref * np.array([1 / compliance, damping / np.sqrt(compliance)])

@@ -17,15 +17,21 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 IMU = "imu"
-_GYRO = "0.01 rad/s turn-on bias of consumer MEMS gyros (BMI088, ICM-42688 data sheets: 0.5-1 deg/s before calibration)"
-_ACCELEROMETER = "0.2 m/s^2, 20 mg zero-g offset of consumer MEMS accelerometers (BMI088, ICM-42688 data sheets)"
+_GYRO = (
+    "0.01 rad/s turn-on bias of consumer MEMS gyros (BMI088, ICM-42688 data sheets: 0.5-1 "
+    "deg/s before calibration)"
+)
+_ACCELEROMETER = (
+    "0.2 m/s^2, 20 mg zero-g offset of consumer MEMS accelerometers (BMI088, ICM-42688 data sheets)"
+)
 
 
 class ImuBias(Effect):
     """Constant errors of gyro and accelerometer, in the sensor's axes.
 
-    The motion of a floating base is known from them, so that the joint torques which it needs are off; a base whose motion
-    comes from elsewhere does not feel it. In simulation the policy is told a wrong angular velocity and a tilted gravity.
+    The motion of a floating base is known from them, so that the joint torques which it needs are
+    off; a base whose motion comes from elsewhere does not feel it. In simulation the policy is told
+    a wrong angular velocity and a tilted gravity.
     """
 
     identifier: ClassVar[str] = "imu_bias"
@@ -33,7 +39,10 @@ class ImuBias(Effect):
     summary: ClassVar[str] = "gyro and accelerometer are off by a constant"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         *(Parameter(f"gyro_{axis}", "rad/s", 0.0, -0.5, 0.5, 0.01, _GYRO) for axis in "xyz"),
-        *(Parameter(f"accelerometer_{axis}", "m/s^2", 0.0, -5.0, 5.0, 0.2, _ACCELEROMETER) for axis in "xyz"),
+        *(
+            Parameter(f"accelerometer_{axis}", "m/s^2", 0.0, -5.0, 5.0, 0.2, _ACCELEROMETER)
+            for axis in "xyz"
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -46,7 +55,9 @@ class ImuBias(Effect):
         values = np.atleast_2d(np.asarray(values, float))
         if base is None:
             return {}
-        by_gyro, by_accelerometer = (np.isfinite(signals.log.vector(kind)).any(0).all() for kind in ("gyro", "accelerometer"))
+        by_gyro, by_accelerometer = (
+            np.isfinite(signals.log.vector(kind)).any(0).all() for kind in ("gyro", "accelerometer")
+        )
         motion = signals.position, signals.velocity, signals.acceleration
         arm = subject.imu_position
 
@@ -60,7 +71,12 @@ class ImuBias(Effect):
             spin = base.angular_velocity - (subject.imu_rotation @ one[:3] if by_gyro else 0.0)
             force = base.specific_force
             if by_accelerometer:
-                force = force - subject.imu_rotation @ one[3:] + centripetal(base.angular_velocity) - centripetal(spin)
+                force = (
+                    force
+                    - subject.imu_rotation @ one[3:]
+                    + centripetal(base.angular_velocity)
+                    - centripetal(spin)
+                )
             true = dataclasses.replace(base, angular_velocity=spin, specific_force=force)
             rows[number] = rigid.inverse_dynamics(subject, *motion, true) - needed
             if wrench is not None:

@@ -1,4 +1,6 @@
-"""What effects that change a link's mass properties have in common: ten parameters added in the link's frame."""
+"""What effects that change a link's mass properties have in common: ten parameters added in the
+link's frame.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,12 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.mechanism import BASE, inertial_parameters, mass_properties, quaternion_rotation
+from hyperleg_design.gap.mechanism import (
+    BASE,
+    inertial_parameters,
+    mass_properties,
+    quaternion_rotation,
+)
 from hyperleg_design.simulation.alteration import Alteration
 
 if TYPE_CHECKING:
@@ -30,8 +37,8 @@ RIDGE = 1e-3
 class InertialEffect(Effect):
     """Adds inertial parameters to a link, by its own name or that of the joint that carries it.
 
-    Its trace is the inertial regressor times what it adds, in the rows of the joints before the link and, where contact
-    forces are logged, in those of the base.
+    Its trace is the inertial regressor times what it adds, in the rows of the joints before the
+    link and, where contact forces are logged, in those of the base.
     """
 
     kind: ClassVar[str] = "link"
@@ -43,13 +50,21 @@ class InertialEffect(Effect):
         return tuple(name for i, name in enumerate(tree.links) if carriers[i] not in carriers[:i])
 
     def place(self, location: str, subject: Subject) -> str:
-        """The link that is meant; any moving link will do, or a joint, for the link that it carries."""
+        """The link that is meant; any moving link will do, or a joint, for the link that it
+        carries.
+        """
         tree = subject.tree
-        return tree.links[tree.link(location)] if location in (*tree.links, *tree.joints) else super().place(location, subject)
+        return (
+            tree.links[tree.link(location)]
+            if location in (*tree.links, *tree.joints)
+            else super().place(location, subject)
+        )
 
     @abstractmethod
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Inertial parameters `(k, 10)` that it adds to those of the link itself `(10,)`, both in the link's frame."""
+        """Inertial parameters `(k, 10)` that it adds to those of the link itself `(10,)`, both in
+        the link's frame.
+        """
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
@@ -58,10 +73,14 @@ class InertialEffect(Effect):
         added = self.added(tree.link_inertial[link], np.atleast_2d(np.asarray(values, float)))
         found = {}
         if tree.link_joint[link] != BASE:
-            found["motion"] = np.einsum("tnp,kp->ktn", rigid.link_regressor(signals, tree.links[link]), added)
+            found["motion"] = np.einsum(
+                "tnp,kp->ktn", rigid.link_regressor(signals, tree.links[link]), added
+            )
         if "base" in signals.residual:
             # what the ground must give more, it shows
-            found["base"] = np.einsum("trp,kp->ktr", rigid.base_regressor(signals, tree.links[link]), added)
+            found["base"] = np.einsum(
+                "trp,kp->ktr", rigid.base_regressor(signals, tree.links[link]), added
+            )
         return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
@@ -71,7 +90,10 @@ class InertialEffect(Effect):
         values = np.asarray(values, float)
         added = self.added(tree.link_inertial[link], np.atleast_2d(values))
         if np.any(tree.link_inertial[link, 0] + added[:, 0] < 0):
-            remedy = f"takes more than the {tree.link_inertial[link, 0]:.3g} kg that {tree.links[link]} has"
+            remedy = (
+                f"takes more than the {tree.link_inertial[link, 0]:.3g} kg that "
+                f"{tree.links[link]} has"
+            )
             raise InputError(self.identifier, "mass", float(added[:, 0].min()), remedy)
         return AddedInertia(tree.links[link], added if values.ndim > 1 else added[0])
 
@@ -93,26 +115,41 @@ class AddedInertia(Alteration):
             return
         index = model.body(self.body).id
         turned = quaternion_rotation(model.body_iquat[index])
-        own = inertial_parameters(float(model.body_mass[index]), model.body_ipos[index], turned @ np.diag(model.body_inertia[index]) @ turned.T)
+        own = inertial_parameters(
+            float(model.body_mass[index]),
+            model.body_ipos[index],
+            turned @ np.diag(model.body_inertia[index]) @ turned.T,
+        )
         mass, com, inertia = mass_properties(own + added)
         values, vectors = np.linalg.eigh(inertia)
         if np.linalg.det(vectors) < 0:
             vectors[:, 0] *= -1
         quaternion = np.zeros(4)
         mujoco.mju_mat2Quat(quaternion, vectors.ravel())
-        model.body_mass[index], model.body_ipos[index], model.body_inertia[index], model.body_iquat[index] = mass, com, values, quaternion
+        (
+            model.body_mass[index],
+            model.body_ipos[index],
+            model.body_inertia[index],
+            model.body_iquat[index],
+        ) = mass, com, values, quaternion
         model.body_simple[index] = 0
 
 
 def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
-    """Some of the first four inertial parameters that a linear fit to a log adds to a link; None where it shows none of them."""
+    """Some of the first four inertial parameters that a linear fit to a log adds to a link; None
+    where it shows none of them.
+    """
     residual = signals.residual["motion"]
     known = np.isfinite(residual) & signals.valid[:, None]
     columns, values = rigid.link_regressor(signals, link)[..., :4][known][:, part], residual[known]
     square = columns.T @ columns
     if not len(values) or np.trace(square) <= 0:
         return None
-    return np.asarray(np.linalg.solve(square + RIDGE * np.trace(square) / 4 * np.eye(len(square)), columns.T @ values))
+    return np.asarray(
+        np.linalg.solve(
+            square + RIDGE * np.trace(square) / 4 * np.eye(len(square)), columns.T @ values
+        )
+    )
 
 
 def least_mass(subject: Subject, link: str) -> float:
@@ -126,5 +163,9 @@ def carried_mass(subject: Subject, link: str) -> float:
     tree = subject.tree
     joint = int(tree.link_joint[tree.link(link)])
     return float(
-        sum(own[0] for own, carrier in zip(tree.link_inertial, tree.link_joint, strict=True) if joint == BASE or joint in tree.chain(int(carrier)))
+        sum(
+            own[0]
+            for own, carrier in zip(tree.link_inertial, tree.link_joint, strict=True)
+            if joint == BASE or joint in tree.chain(int(carrier))
+        )
     )

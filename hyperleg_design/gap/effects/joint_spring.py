@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 SHARE = 0.05
-"""Usual stiffness a radian, and preload, over the torque that a joint is made for (assumed: cables and seals)."""
+"""Usual stiffness a radian, and preload, over the torque that a joint is made for (assumed: cables
+and seals)."""
 
 
 class JointSpring(Effect):
-    """A cable, a seal or a spring pulls a joint back: stiffness (q - default) + preload, default the robot's posture at rest.
+    """A cable, a seal or a spring pulls a joint back: stiffness (q - default) + preload, default
+    the robot's posture at rest.
 
     It rests at default - preload / stiffness. Trace: that torque.
     """
@@ -29,8 +31,24 @@ class JointSpring(Effect):
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a cable or a spring pulls a joint towards some angle"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("stiffness", "Nm/rad", 0.0, -100.0, 500.0, 2.0, "cable bundles and seals, 5 % of the joint's torque a radian (assumed)"),
-        Parameter("preload", "Nm", 0.0, -100.0, 100.0, 2.0, "as the stiffness, at the posture of rest (assumed)"),
+        Parameter(
+            "stiffness",
+            "Nm/rad",
+            0.0,
+            -100.0,
+            500.0,
+            2.0,
+            "cable bundles and seals, 5 % of the joint's torque a radian (assumed)",
+        ),
+        Parameter(
+            "preload",
+            "Nm",
+            0.0,
+            -100.0,
+            100.0,
+            2.0,
+            "as the stiffness, at the posture of rest (assumed)",
+        ),
     )
     linear: ClassVar[bool] = True
 
@@ -42,25 +60,43 @@ class JointSpring(Effect):
         """See `Effect.trace`."""
         joint = signals.subject.joints.index(location)
         stiffness, preload = np.atleast_2d(np.asarray(values, float)).T[..., None]
-        return at_joint(signals, joint, stiffness * (signals.position[:, joint] - signals.subject.default[joint]) + preload)
+        return at_joint(
+            signals,
+            joint,
+            stiffness * (signals.position[:, joint] - signals.subject.default[joint]) + preload,
+        )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
         values = np.asarray(values, float)
-        return Spring(location, values[..., 0], values[..., 1], float(subject.default[subject.joints.index(location)]))
+        return Spring(
+            location,
+            values[..., 0],
+            values[..., 1],
+            float(subject.default[subject.joints.index(location)]),
+        )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """A share of the torque that the joint is made for."""
         return np.full(2, SHARE * joint_strength(subject)[subject.joints.index(location)])
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Less stiff than the model's springs by no more than these; preload up to the torque that the joint is made for."""
+        """Less stiff than the model's springs by no more than these; preload up to the torque that
+        the joint is made for.
+        """
         joint = subject.joints.index(location)
         strength = joint_strength(subject)[joint]
         found = super().bounds(location, subject)
-        return np.array([np.maximum(found[0], [-subject.spring[joint], -strength]), np.minimum(found[1], [20 * strength, strength])])
+        return np.array(
+            [
+                np.maximum(found[0], [-subject.spring[joint], -strength]),
+                np.minimum(found[1], [20 * strength, strength]),
+            ]
+        )
 
-    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+    def derived(
+        self, location: str, values: np.ndarray, subject: Subject
+    ) -> dict[str, tuple[float, str]]:
         """Angle at which it rests."""
         stiffness, preload = values
         default = float(subject.default[subject.joints.index(location)])
@@ -92,7 +128,9 @@ class _Pull(Live):
 
     def joint_torque(self, tick: Tick) -> np.ndarray:
         one, out = self.alteration, np.zeros_like(tick.position)
-        out[:, self.place] = -(one.stiffness * (tick.position[:, self.place] - one.rest) + one.preload)
+        out[:, self.place] = -(
+            one.stiffness * (tick.position[:, self.place] - one.rest) + one.preload
+        )
         return out
 
 

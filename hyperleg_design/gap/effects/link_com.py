@@ -16,25 +16,48 @@ if TYPE_CHECKING:
 
 
 class LinkCom(InertialEffect):
-    """A link's mass moved as a whole in the link's frame; inertia about the centre of mass stays."""
+    """A link's mass moved as a whole in the link's frame; inertia about the centre of mass
+    stays.
+    """
 
     identifier: ClassVar[str] = "link_com"
     summary: ClassVar[str] = "a link's centre of mass is elsewhere than modelled"
     parameters: ClassVar[tuple[Parameter, ...]] = tuple(
-        Parameter(axis, "m", 0.0, -0.3, 0.3, 0.01, "a centimetre: motors and cables placed by eye in the drawing (assumed)") for axis in "xyz"
+        Parameter(
+            axis,
+            "m",
+            0.0,
+            -0.3,
+            0.3,
+            0.01,
+            "a centimetre: motors and cables placed by eye in the drawing (assumed)",
+        )
+        for axis in "xyz"
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass."""
-        return tuple(name for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True) if own[0] > 0)
+        return tuple(
+            name
+            for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
+            if own[0] > 0
+        )
 
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Of the moved link less the link, see `InertialEffect.added`."""
         mass, com, inertia = mass_properties(own)
-        return np.stack([inertial_parameters(mass, com + shift, inertia) - inertial_parameters(mass, com, inertia) for shift in values])
+        return np.stack(
+            [
+                inertial_parameters(mass, com + shift, inertia)
+                - inertial_parameters(mass, com, inertia)
+                for shift in values
+            ]
+        )
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The shift that a linear fit of the first moment to the log finds, and the usual one along each axis."""
+        """The shift that a linear fit of the first moment to the log finds, and the usual one along
+        each axis.
+        """
         tree, usual = signals.subject.tree, self.usual(location, signals.subject)
         low, high = self.bounds(location, signals.subject)
         tried = [*np.diag(usual), *-np.diag(usual)]

@@ -13,22 +13,38 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 SHARE = 0.1
-"""Usual error over the link's own mass (assumed: cables, screws and glue that a drawing leaves out)."""
+"""Usual error over the link's own mass (assumed: cables, screws and glue that a drawing leaves
+out)."""
 
 
 class LinkMass(InertialEffect):
-    """An error of a link's own mass, spread as the link's mass is: centre of mass stays, inertia grows alike."""
+    """An error of a link's own mass, spread as the link's mass is: centre of mass stays, inertia
+    grows alike.
+    """
 
     identifier: ClassVar[str] = "link_mass"
     summary: ClassVar[str] = "a link's own mass is off, its centre of mass is not"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("mass", "kg", 0.0, -20.0, 100.0, 0.2, "10 % of the link's own mass: cables, screws and glue that drawings leave out (assumed)"),
+        Parameter(
+            "mass",
+            "kg",
+            0.0,
+            -20.0,
+            100.0,
+            0.2,
+            "10 % of the link's own mass: cables, screws and glue that drawings leave out "
+            "(assumed)",
+        ),
     )
     linear: ClassVar[bool] = True
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass."""
-        return tuple(name for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True) if own[0] > 0)
+        return tuple(
+            name
+            for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
+            if own[0] > 0
+        )
 
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
         """A share of all of the link's parameters, see `InertialEffect.added`."""

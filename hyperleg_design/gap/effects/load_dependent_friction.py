@@ -18,29 +18,50 @@ if TYPE_CHECKING:
 
 
 class LoadDependentFriction(Effect):
-    """A joint resists sliding with a share of the torque that reaches it: its drive's, less what turns the rotors.
+    """A joint resists sliding with a share of the torque that reaches it: its drive's, less what
+    turns the rotors.
 
-    Trace: coefficient |M tau - rotors' torque| times the way in which the joint slides, `friction.sliding`.
+    Trace: coefficient |M tau - rotors' torque| times the way in which the joint slides,
+    `friction.sliding`.
     """
 
     identifier: ClassVar[str] = "load_dependent_friction"
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("coefficient", "", 0.0, 0.0, 0.8, 0.1, "20-31 % of the motor's torque on small servos, 4-5 % on good gears (BAM)"),
+        Parameter(
+            "coefficient",
+            "",
+            0.0,
+            0.0,
+            0.8,
+            0.1,
+            "20-31 % of the motor's torque on small servos, 4-5 % on good gears (BAM)",
+        ),
     )
     linear: ClassVar[bool] = True
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints that some motor moves."""
-        return tuple(name for name, row in zip(subject.joints, subject.joint_from_motor, strict=True) if row.any())
+        return tuple(
+            name
+            for name, row in zip(subject.joints, subject.joint_from_motor, strict=True)
+            if row.any()
+        )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
         subject = signals.subject
         joint = subject.joints.index(location)
-        load = applied(subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0] - signals.acceleration @ subject.armature[joint]
-        return at_joint(signals, joint, np.atleast_2d(values)[:, :1] * (np.abs(load) * sliding(signals)[:, joint]))
+        load = (
+            applied(subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
+            - signals.acceleration @ subject.armature[joint]
+        )
+        return at_joint(
+            signals,
+            joint,
+            np.atleast_2d(values)[:, :1] * (np.abs(load) * sliding(signals)[:, joint]),
+        )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""

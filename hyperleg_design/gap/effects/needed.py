@@ -1,4 +1,6 @@
-"""What another motion than the logged one would need: for effects by which positions are told wrongly."""
+"""What another motion than the logged one would need: for effects by which positions are told
+wrongly.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +18,15 @@ _LOGGED: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
 
 
 def needed(
-    signals: Signals, position: np.ndarray, velocity: np.ndarray | None = None, acceleration: np.ndarray | None = None, *, rotors: bool = True
+    signals: Signals,
+    position: np.ndarray,
+    velocity: np.ndarray | None = None,
+    acceleration: np.ndarray | None = None,
+    *,
+    rotors: bool = True,
 ) -> dict[str, np.ndarray]:
-    """Torque that a motion needs, less what contact gives, by balance: `motion` `(t, n)` [Nm], and the `base`'s wrench `(t, 6)`.
+    """Torque that a motion needs, less what contact gives, by balance: `motion` `(t, n)` [Nm], and
+    the `base`'s wrench `(t, 6)`.
 
     Args:
         signals: a conditioned log; its base moves as logged.
@@ -28,13 +36,19 @@ def needed(
         rotors: add the rotors' inertia.
     """
     subject, base = signals.subject, signals.base
-    motion = position, signals.velocity if velocity is None else velocity, signals.acceleration if acceleration is None else acceleration
+    motion = (
+        position,
+        signals.velocity if velocity is None else velocity,
+        signals.acceleration if acceleration is None else acceleration,
+    )
     found = {"motion": rigid.inverse_dynamics(subject, *motion, base, rotors=rotors)}
     if "base" in signals.residual and base is not None:
         found["base"] = rigid.base_wrench(subject, *motion, base)
     if signals.pad_force is not None:
         rotation = None if base is None else base.rotation
-        torque, wrench = rigid.contact_torque(subject, position, rotation, np.nan_to_num(signals.pad_force))
+        torque, wrench = rigid.contact_torque(
+            subject, position, rotation, np.nan_to_num(signals.pad_force)
+        )
         found["motion"] = found["motion"] - torque
         if "base" in found:
             found["base"] = found["base"] - wrench
@@ -42,7 +56,9 @@ def needed(
 
 
 def as_logged(signals: Signals) -> dict[str, np.ndarray]:
-    """What the logged motion needs by `needed`, without rotors; kept, as each location compares with it."""
+    """What the logged motion needs by `needed`, without rotors; kept, as each location compares
+    with it.
+    """
     if signals not in _LOGGED:
         _LOGGED[signals] = needed(signals, signals.position, rotors=False)
     return _LOGGED[signals]

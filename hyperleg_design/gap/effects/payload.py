@@ -14,34 +14,71 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 SHARE = 0.2
-"""Usual payload over the mass that moves with the link (assumed: tools and batteries; a UR10e carries 2.8 kg on 33 kg of arm)."""
+"""Usual payload over the mass that moves with the link (assumed: tools and batteries; a UR10e
+carries 2.8 kg on 33 kg of arm)."""
 FAR, OUT_OF_REACH = 4.0, 3.0
-"""Log odds against a load that is farther from its link's origin than so many times the link's own centre of mass (assumed)."""
+"""Log odds against a load that is farther from its link's origin than so many times the link's own
+centre of mass (assumed)."""
 NEAR = 0.4
 """Share of the robot's length up to which none is far (assumed: batteries and tools are)."""
 
 
 class Payload(InertialEffect):
-    """A body fixed to a link, over what the model or the log's metadata already put there, equally hard to turn about any axis.
+    """A body fixed to a link, over what the model or the log's metadata already put there, equally
+    hard to turn about any axis.
 
-    A motion feels its mass and its first moment, mass times com, so com means nothing where mass is 0; one joint alone cannot
-    tell the two apart. Left out, the body's own inertia would bend the estimates of its mass: the wrist of an arm feels it.
+    A motion feels its mass and its first moment, mass times com, so com means nothing where mass is
+    0; one joint alone cannot tell the two apart. Left out, the body's own inertia would bend the
+    estimates of its mass: the wrist of an arm feels it.
     """
 
     identifier: ClassVar[str] = "payload"
     summary: ClassVar[str] = "a mass that hangs on a link and that the model does not have"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("mass", "kg", 0.0, -20.0, 100.0, 0.5, "UR10e logs with 2.8 kg; tools and batteries, 20 % of what the link moves (assumed)"),
-        Parameter("com_x", "m", 0.0, -1.0, 1.0, 0.05, "centre of mass in the link's frame: a hand's breadth (assumed)", shape=True),
+        Parameter(
+            "mass",
+            "kg",
+            0.0,
+            -20.0,
+            100.0,
+            0.5,
+            "UR10e logs with 2.8 kg; tools and batteries, 20 % of what the link moves (assumed)",
+        ),
+        Parameter(
+            "com_x",
+            "m",
+            0.0,
+            -1.0,
+            1.0,
+            0.05,
+            "centre of mass in the link's frame: a hand's breadth (assumed)",
+            shape=True,
+        ),
         Parameter("com_y", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
         Parameter("com_z", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
-        Parameter("gyration_squared", "m^2", 0.0, 0.0, 0.1, 0.0025, "of a body 10 cm across (assumed)", shape=True),
+        Parameter(
+            "gyration_squared",
+            "m^2",
+            0.0,
+            0.0,
+            0.1,
+            0.0025,
+            "of a body 10 cm across (assumed)",
+            shape=True,
+        ),
     )
 
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Of the body, see `InertialEffect.added`."""
         mass, (x, y, z, own_inertia) = values[:, 0], values[:, 1:].T
-        inertia = (y * y + z * z + own_inertia, -x * y, x * x + z * z + own_inertia, -x * z, -y * z, x * x + y * y + own_inertia)
+        inertia = (
+            y * y + z * z + own_inertia,
+            -x * y,
+            x * x + z * z + own_inertia,
+            -x * z,
+            -y * z,
+            x * x + y * y + own_inertia,
+        )
         return mass[:, None] * np.stack([np.ones_like(x), x, y, z, *inertia], -1)
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
@@ -51,7 +88,9 @@ class Payload(InertialEffect):
         return found
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """At half as far again from the link's origin as its own centre of mass; a load at a joint's axis is hardly felt."""
+        """At half as far again from the link's origin as its own centre of mass; a load at a
+        joint's axis is hardly felt.
+        """
         found = super().example(location, subject, size)
         own = subject.tree.link_inertial[subject.tree.link(location)]
         if own[0] > 0:
@@ -66,7 +105,9 @@ class Payload(InertialEffect):
         return found
 
     def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
-        """Against a load out of the link's reach: what bends a motion like a pole with a weight is rather no load."""
+        """Against a load out of the link's reach: what bends a motion like a pole with a weight is
+        rather no load.
+        """
         own = subject.tree.link_inertial[subject.tree.link(location)]
         near = NEAR * subject.tree.length
         if own[0] > 0:
@@ -75,7 +116,9 @@ class Payload(InertialEffect):
         return -FAR if near > 0 and away > near else 0.0
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The mass and first moment that a linear fit to the log finds, and the usual mass where `example` has it."""
+        """The mass and first moment that a linear fit to the log finds, and the usual mass where
+        `example` has it.
+        """
         low, high = self.bounds(location, signals.subject)
         shown = self.example(location, signals.subject)
         tried = [shown, shown * np.array([-1.0, 1.0, 1.0, 1.0, 1.0])]

@@ -1,12 +1,16 @@
-"""Where a trace shows: the rule for effects between a command and the joints, and what effects share to apply it.
+"""Where a trace shows: the rule for effects between a command and the joints, and what effects
+share to apply it.
 
-    command --(gains, delay, bandwidth, limits, voltage)--> measured torque --(constant, cogging, friction, gears)--> joints
+    command --(gains, delay, bandwidth, limits, voltage)--> measured torque --(constant, cogging,
+    friction, gears)--> joints
 
-What lies after the measurement shows in the balance of motion. What lies before it, a change `d` of the torque that the drive
-gives, shows in the balance of the drive as `+d` and leaves that of motion alone, which trusts the measurement. Of motors whose
-torque nobody measured, motion trusts the command, and the same change shows there, as `-M d`.
+What lies after the measurement shows in the balance of motion. What lies before it, a change `d` of
+the torque that the drive gives, shows in the balance of the drive as `+d` and leaves that of motion
+alone, which trusts the measurement. Of motors whose torque nobody measured, motion trusts the
+command, and the same change shows there, as `-M d`.
 
-A measured torque counts as what the drive takes itself to give, as current times a declared constant is; so do joint torques.
+A measured torque counts as what the drive takes itself to give, as current times a declared
+constant is; so do joint torques.
 """
 
 from __future__ import annotations
@@ -29,7 +33,8 @@ SIDES = ("encoders at the joints", "encoders at the rotors")
 ROBOT = "robot"
 BATTERY = "battery"
 LIVELY = 10.0
-"""Acceleration that a robot's drives are taken to be made for where nobody gives their limits [rad/s^2]; assumed."""
+"""Acceleration that a robot's drives are taken to be made for where nobody gives their limits
+[rad/s^2]; assumed."""
 _POSTURES = 24
 _STRENGTH: WeakKeyDictionary[Subject, np.ndarray] = WeakKeyDictionary()
 _MACHINES: WeakKeyDictionary[Subject, Machine] = WeakKeyDictionary()
@@ -38,7 +43,11 @@ _MACHINES: WeakKeyDictionary[Subject, Machine] = WeakKeyDictionary()
 def driven_motors(subject: Subject) -> tuple[str, ...]:
     """Motors that exist: those of passive joints do not."""
     if subject.one_to_one:
-        return tuple(name for name, passive in zip(subject.motors, subject.passive, strict=True) if not passive)
+        return tuple(
+            name
+            for name, passive in zip(subject.motors, subject.passive, strict=True)
+            if not passive
+        )
     return subject.motors
 
 
@@ -55,20 +64,31 @@ def at_joint(signals: Signals, joint: int, torque: np.ndarray) -> dict[str, np.n
 
 
 def at_motor(signals: Signals, motor: int, torque: np.ndarray) -> dict[str, np.ndarray]:
-    """Trace of a torque that is lost between a motor's measured torque and the joints, on the motor's side `(k, t)` [Nm]."""
+    """Trace of a torque that is lost between a motor's measured torque and the joints, on the
+    motor's side `(k, t)` [Nm].
+    """
     rows = _rows(torque, len(signals.subject.joints))
     _add(rows, signals, motor, torque)
     return {"motion": rows.swapaxes(1, 2)}
 
 
-def before_measurement(signals: Signals, changes: Mapping[int, np.ndarray]) -> dict[str, np.ndarray]:
-    """Trace of changes of what drives give, by place of the motor `(k, t)` [Nm]; the rule of this module."""
+def before_measurement(
+    signals: Signals, changes: Mapping[int, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Trace of changes of what drives give, by place of the motor `(k, t)` [Nm]; the rule of this
+    module.
+    """
     rows: dict[str, np.ndarray] = {}
     for motor, change in changes.items():
         if is_measured(signals, motor):
             rows.setdefault("drive", _rows(change, len(signals.subject.motors)))[:, motor] += change
         else:
-            _add(rows.setdefault("motion", _rows(change, len(signals.subject.joints))), signals, motor, -change)
+            _add(
+                rows.setdefault("motion", _rows(change, len(signals.subject.joints))),
+                signals,
+                motor,
+                -change,
+            )
     return {balance: values.swapaxes(1, 2) for balance, values in rows.items()}
 
 
@@ -91,13 +111,17 @@ def commanded(signals: Signals, motor: int) -> np.ndarray:
 def is_logged(signals: Signals, motor: int) -> bool:
     """Whether a log tells what the controller asks of this motor."""
     subject, log = signals.subject, signals.log
-    return any(log.has("motor_torque_command", name) for name in (subject.motors[motor], subject.motor_aliases[motor]))
+    return any(
+        log.has("motor_torque_command", name)
+        for name in (subject.motors[motor], subject.motor_aliases[motor])
+    )
 
 
 def given(signals: Signals, motor: int) -> np.ndarray:
     """Torque believed of a motor `(t,)` [Nm].
 
-    One that gains and targets alone tell, from smoothed motion: noise of the sensors is in the balance already, and no effect scales it.
+    One that gains and targets alone tell, from smoothed motion: noise of the sensors is in the
+    balance already, and no effect scales it.
     """
     believed = signals.believed[:, motor]
     if signals.target is None or is_measured(signals, motor) or is_logged(signals, motor):
@@ -121,7 +145,14 @@ def motor_velocity(signals: Signals, motor: int) -> np.ndarray:
     return np.asarray(signals.velocity @ signals.subject.joint_from_motor[:, motor])
 
 
-def limited(signals: Signals, motor: int, torque: np.ndarray, *, peak: float | np.ndarray = np.inf, voltage: float | np.ndarray = 1.0) -> np.ndarray:
+def limited(
+    signals: Signals,
+    motor: int,
+    torque: np.ndarray,
+    *,
+    peak: float | np.ndarray = np.inf,
+    voltage: float | np.ndarray = 1.0,
+) -> np.ndarray:
     """Torque of one motor within its limits, as `conditioning.limited_torque` [Nm].
 
     Args:
@@ -129,7 +160,8 @@ def limited(signals: Signals, motor: int, torque: np.ndarray, *, peak: float | n
         motor: place of the motor.
         torque: `(..., t)` [Nm].
         peak: further limit [Nm], broadcasts against `torque`.
-        voltage: over the nominal one; scales stall torque and no-load speed, broadcasts against `torque`.
+        voltage: over the nominal one; scales stall torque and no-load speed, broadcasts against
+            `torque`.
     """
     subject = signals.subject
     peak = np.minimum(subject.torque_limit[motor], peak)
@@ -138,12 +170,19 @@ def limited(signals: Signals, motor: int, torque: np.ndarray, *, peak: float | n
     droop = stall / free * motor_velocity(signals, motor) if line else np.zeros(1)
     available = stall * np.maximum(voltage, 0.0) * signals.supplied[:, motor]
     largest = max(float(np.nanmax(torque, initial=0.0)), -float(np.nanmin(torque, initial=0.0)))
-    if largest <= min(float(np.nanmin(peak, initial=np.inf)), float(np.nanmin(available, initial=np.inf)) - float(np.abs(droop).max())):
-        return np.broadcast_to(torque, np.broadcast_shapes(np.shape(torque), np.shape(peak), np.shape(voltage)))
+    if largest <= min(
+        float(np.nanmin(peak, initial=np.inf)),
+        float(np.nanmin(available, initial=np.inf)) - float(np.abs(droop).max()),
+    ):
+        return np.broadcast_to(
+            torque, np.broadcast_shapes(np.shape(torque), np.shape(peak), np.shape(voltage))
+        )
     torque = np.clip(torque, -peak, peak)
     if not line:
         return torque
-    return np.asarray(np.clip(np.maximum(np.minimum(torque, available - droop), -available - droop), -peak, peak))
+    return np.asarray(
+        np.clip(np.maximum(np.minimum(torque, available - droop), -available - droop), -peak, peak)
+    )
 
 
 def machine(subject: Subject) -> Machine:
@@ -154,22 +193,33 @@ def machine(subject: Subject) -> Machine:
 
 
 def joint_strength(subject: Subject) -> np.ndarray:
-    """Torque for which each joint is made `(n,)` [Nm]: what its motors can give, else gravity's largest and its inertia's share."""
+    """Torque for which each joint is made `(n,)` [Nm]: what its motors can give, else gravity's
+    largest and its inertia's share.
+    """
     if subject not in _STRENGTH:
         limit = np.where(np.isfinite(subject.torque_limit), subject.torque_limit, 0.0)
         given = np.abs(subject.joint_from_motor) @ limit
-        unknown = (np.abs(subject.joint_from_motor) @ (~np.isfinite(subject.torque_limit)).astype(float) > 0) | (given <= 0)
+        unknown = (
+            np.abs(subject.joint_from_motor) @ (~np.isfinite(subject.torque_limit)).astype(float)
+            > 0
+        ) | (given <= 0)
         _STRENGTH[subject] = np.where(unknown, _needed(subject), given) if unknown.any() else given
     return _STRENGTH[subject]
 
 
 def motor_strength(subject: Subject, motor: int) -> float:
-    """Torque for which a motor is made [Nm]: its limit, else its share of what its joints are made for."""
+    """Torque for which a motor is made [Nm]: its limit, else its share of what its joints are made
+    for.
+    """
     if np.isfinite(subject.torque_limit[motor]):
         return float(subject.torque_limit[motor])
     column = np.abs(subject.joint_from_motor[:, motor])
     used = column > 0
-    return float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3)) if used.any() else 1e-3
+    return (
+        float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3))
+        if used.any()
+        else 1e-3
+    )
 
 
 def joint_inertia(subject: Subject) -> np.ndarray:
@@ -180,7 +230,9 @@ def joint_inertia(subject: Subject) -> np.ndarray:
     rest = np.broadcast_to(subject.default, still.shape)
     base = _base_at_rest(subject, len(still))
     moved = rigid.inverse_dynamics(subject, rest, still, np.eye(len(still)), base, rotors=False)
-    return np.asarray(np.diag(moved - rigid.inverse_dynamics(subject, rest, still, still, base, rotors=False)))
+    return np.asarray(
+        np.diag(moved - rigid.inverse_dynamics(subject, rest, still, still, base, rotors=False))
+    )
 
 
 def _needed(subject: Subject) -> np.ndarray:
@@ -189,7 +241,9 @@ def _needed(subject: Subject) -> np.ndarray:
     count = len(subject.joints)
     spread = np.sin(np.outer(np.arange(1, _POSTURES + 1), np.sqrt(np.arange(2, count + 2)))) * 1.5
     still = np.zeros((_POSTURES, count))
-    gravity = rigid.inverse_dynamics(subject, subject.default + spread, still, still, _base_at_rest(subject, _POSTURES))
+    gravity = rigid.inverse_dynamics(
+        subject, subject.default + spread, still, still, _base_at_rest(subject, _POSTURES)
+    )
     inertia = joint_inertia(subject) + np.diag(subject.armature)
     return np.maximum(2 * np.abs(gravity).max(0), inertia * LIVELY)
 
@@ -198,7 +252,9 @@ def _base_at_rest(subject: Subject, ticks: int) -> BaseMotion | None:
     if not subject.floating:
         return None
     zero = np.zeros((ticks, 3))
-    return BaseMotion(zero, np.broadcast_to(np.eye(3), (ticks, 3, 3)), zero, zero, zero - subject.gravity, zero)
+    return BaseMotion(
+        zero, np.broadcast_to(np.eye(3), (ticks, 3, 3)), zero, zero, zero - subject.gravity, zero
+    )
 
 
 def _rows(torque: np.ndarray, count: int) -> np.ndarray:
@@ -207,7 +263,9 @@ def _rows(torque: np.ndarray, count: int) -> np.ndarray:
 
 
 def _add(rows: np.ndarray, signals: Signals, motor: int, torque: np.ndarray) -> None:
-    """Add a motor's torque `(k, t)` to the joints `(k, n, t)` that it moves; NaN stays with these."""
+    """Add a motor's torque `(k, t)` to the joints `(k, n, t)` that it moves; NaN stays with
+    these.
+    """
     column = signals.subject.joint_from_motor[:, motor]
     for joint in np.flatnonzero(column).tolist():
         rows[:, joint] += column[joint] * torque

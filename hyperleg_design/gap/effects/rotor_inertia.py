@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 SHARE = 0.3
-"""Usual error over the rotor's inertia, or, where the model has none, over that of its joint (assumed)."""
+"""Usual error over the rotor's inertia, or, where the model has none, over that of its joint
+(assumed)."""
 
 
 class RotorInertia(Effect):
-    """Inertia of a rotor and what turns with it, beyond the model's, on the motor's side of the transmission.
+    """Inertia of a rotor and what turns with it, beyond the model's, on the motor's side of the
+    transmission.
 
     Trace: inertia times the motor's acceleration M^T q_ddot.
     """
@@ -29,7 +31,15 @@ class RotorInertia(Effect):
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("inertia", "kg m^2", 0.0, -5.0, 5.0, 0.05, "0.03-0.1 kg m^2 reflected on leg joints; `usual` knows the motor's side"),
+        Parameter(
+            "inertia",
+            "kg m^2",
+            0.0,
+            -5.0,
+            5.0,
+            0.05,
+            "0.03-0.1 kg m^2 reflected on leg joints; `usual` knows the motor's side",
+        ),
     )
     linear: ClassVar[bool] = True
 
@@ -54,7 +64,9 @@ class RotorInertia(Effect):
         own = float(subject.rotor_inertia[motor])
         column = subject.joint_from_motor[:, motor]
         main = int(np.argmax(np.abs(column)))
-        return np.array([SHARE * max(own, 0.03 * float(joint_inertia(subject)[main]) / column[main] ** 2)])
+        return np.array(
+            [SHARE * max(own, 0.03 * float(joint_inertia(subject)[main]) / column[main] ** 2)]
+        )
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """No less than no rotor at all."""
@@ -73,4 +85,6 @@ class AddedRotor(Alteration):
 
     def machine(self, machine: Machine) -> Machine:
         """With the heavier rotor."""
-        return machine.changed("rotor_inertia", machine.motor(self.motor), lambda own: own + self.inertia)
+        return machine.changed(
+            "rotor_inertia", machine.motor(self.motor), lambda own: own + self.inertia
+        )

@@ -1,4 +1,6 @@
-"""Operations on evenly sampled signals that traces share: delay, first-order lag, second derivative; NaN stays NaN."""
+"""Operations on evenly sampled signals that traces share: delay, first-order lag, second
+derivative; NaN stays NaN.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,8 @@ def delayed(values: np.ndarray, delay: np.ndarray, step: float) -> np.ndarray:
 
 
 def lagged(values: np.ndarray, time_constant: np.ndarray, step: float) -> np.ndarray:
-    """Signal after a first-order lag T y' = u - y, exact for a signal that is straight between ticks; it starts settled.
+    """Signal after a first-order lag T y' = u - y, exact for a signal that is straight between
+    ticks; it starts settled.
 
     Args:
         values: `(t,)`; unknown ticks are bridged, and unknown in the result.
@@ -63,7 +66,9 @@ def lagged(values: np.ndarray, time_constant: np.ndarray, step: float) -> np.nda
 
 
 def band_limited(values: np.ndarray, step: float, cutoff: float) -> np.ndarray:
-    """Signal `(t,)` without what lies above a frequency [Hz], no delay; unknown ticks are bridged."""
+    """Signal `(t,)` without what lies above a frequency [Hz], no delay; unknown ticks are
+    bridged.
+    """
     from scipy.signal import butter, sosfiltfilt
 
     if not np.isfinite(values).any():
@@ -71,11 +76,17 @@ def band_limited(values: np.ndarray, step: float, cutoff: float) -> np.ndarray:
     filled = bridged(values)
     if cutoff >= 0.45 / step or len(values) < 20:
         return filled
-    return np.asarray(sosfiltfilt(butter(2, cutoff, fs=1 / step, output="sos"), filled, padlen=min(len(values) - 1, 100)))
+    return np.asarray(
+        sosfiltfilt(
+            butter(2, cutoff, fs=1 / step, output="sos"), filled, padlen=min(len(values) - 1, 100)
+        )
+    )
 
 
 def second_derivative(values: np.ndarray, step: float) -> np.ndarray:
-    """Central second difference along the last axis `(..., t)`; its ends repeat their neighbours."""
+    """Central second difference along the last axis `(..., t)`; its ends repeat their
+    neighbours.
+    """
     out = np.empty_like(values)
     out[..., 1:-1] = (values[..., 2:] - 2 * values[..., 1:-1] + values[..., :-2]) / step**2
     out[..., 0], out[..., -1] = out[..., 1], out[..., -2]

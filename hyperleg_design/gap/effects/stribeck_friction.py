@@ -20,18 +20,38 @@ SHARE = 0.04
 
 
 class StribeckFriction(Effect):
-    """Breakaway friction in excess of sliding friction, which is gone at speeds above the Stribeck speed.
+    """Breakaway friction in excess of sliding friction, which is gone at speeds above the Stribeck
+    speed.
 
-    Trace: torque exp(-(v / speed)^2) times the way in which the joint slides, `friction.sliding`. Sliding friction itself is
-    `coulomb_friction`.
+    Trace: torque exp(-(v / speed)^2) times the way in which the joint slides, `friction.sliding`.
+    Sliding friction itself is `coulomb_friction`.
     """
 
     identifier: ClassVar[str] = "stribeck_friction"
     kind: ClassVar[str] = "joint"
-    summary: ClassVar[str] = "a joint sticks: friction is larger at rest and at low speed than in fast motion"
+    summary: ClassVar[str] = (
+        "a joint sticks: friction is larger at rest and at low speed than in fast motion"
+    )
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("torque", "Nm", 0.0, 0.0, 50.0, 2.0, "breakaway 2.4-3.3 Nm against 0.7 Nm sliding on an RMD-X8"),
-        Parameter("speed", "rad/s", 0.1, 0.01, 2.0, 0.1, "0.01-0.3 rad/s (Armstrong-Helouvry et al. 1994; BAM fits)", shape=True),
+        Parameter(
+            "torque",
+            "Nm",
+            0.0,
+            0.0,
+            50.0,
+            2.0,
+            "breakaway 2.4-3.3 Nm against 0.7 Nm sliding on an RMD-X8",
+        ),
+        Parameter(
+            "speed",
+            "rad/s",
+            0.1,
+            0.01,
+            2.0,
+            0.1,
+            "0.01-0.3 rad/s (Armstrong-Helouvry et al. 1994; BAM fits)",
+            shape=True,
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -48,11 +68,18 @@ class StribeckFriction(Effect):
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
         values = np.asarray(values, float)
-        return JointFriction(location, breakaway=values[..., 0], speed=np.maximum(values[..., 1], 1e-6))
+        return JointFriction(
+            location, breakaway=values[..., 0], speed=np.maximum(values[..., 1], 1e-6)
+        )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """A share of the torque that the joint is made for."""
-        return np.array([SHARE * joint_strength(subject)[subject.joints.index(location)], self.parameters[1].typical])
+        return np.array(
+            [
+                SHARE * joint_strength(subject)[subject.joints.index(location)],
+                self.parameters[1].typical,
+            ]
+        )
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Excess no larger than the torque that the joint is made for."""

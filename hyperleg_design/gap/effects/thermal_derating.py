@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import at_motor, driven_motors, given, machine, motor_strength
+from hyperleg_design.gap.effects.placing import (
+    at_motor,
+    driven_motors,
+    given,
+    machine,
+    motor_strength,
+)
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
@@ -18,7 +24,8 @@ if TYPE_CHECKING:
 COLD = 25.0
 """Temperature at which a motor has the torque of its data sheet [degC]."""
 RATED_RISE = 60.0
-"""Rise at rated torque for ever [K]: continuous torque is rated so that windings reach 80-90 degC (assumed)."""
+"""Rise at rated torque for ever [K]: continuous torque is rated so that windings reach 80-90 degC
+(assumed)."""
 TIME_CONSTANT = 60.0
 """Of a motor's windings and iron [s]; assumed."""
 RATED_SHARE = 1 / 3
@@ -26,17 +33,26 @@ RATED_SHARE = 1 / 3
 
 
 class ThermalDerating(Effect):
-    """A motor's torque falls short of what its current says by a share for each kelvin above 25 degC.
+    """A motor's torque falls short of what its current says by a share for each kelvin above 25
+    degC.
 
-    Temperature as logged; else that of a first-order model heated by the squared torques of the log itself, from cold.
-    Trace: coefficient (T - 25 degC) times the believed torque.
+    Temperature as logged; else that of a first-order model heated by the squared torques of the log
+    itself, from cold. Trace: coefficient (T - 25 degC) times the believed torque.
     """
 
     identifier: ClassVar[str] = "thermal_derating"
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a motor loses torque as it warms up"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("coefficient", "1/K", 0.0, 0.0, 0.012, 0.002, "flux of NdFeB -0.12 %/K, of ferrites -0.2 %/K; copper 0.39 %/K with voltage drives"),
+        Parameter(
+            "coefficient",
+            "1/K",
+            0.0,
+            0.0,
+            0.012,
+            0.002,
+            "flux of NdFeB -0.12 %/K, of ferrites -0.2 %/K; copper 0.39 %/K with voltage drives",
+        ),
     )
     linear: ClassVar[bool] = True
 
@@ -48,11 +64,17 @@ class ThermalDerating(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         torque = given(signals, motor)
-        return at_motor(signals, motor, np.atleast_2d(values)[:, :1] * (rise(signals, motor) * torque))
+        return at_motor(
+            signals, motor, np.atleast_2d(values)[:, :1] * (rise(signals, motor) * torque)
+        )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
-        return DeratedMotor(location, np.asarray(values, float)[..., 0], rated_torque(subject, subject.motors.index(location)))
+        return DeratedMotor(
+            location,
+            np.asarray(values, float)[..., 0],
+            rated_torque(subject, subject.motors.index(location)),
+        )
 
 
 def rise(signals: Signals, motor: int) -> np.ndarray:
@@ -61,7 +83,10 @@ def rise(signals: Signals, motor: int) -> np.ndarray:
         return signals.temperature[:, motor] - COLD
     from scipy.signal import lfilter
 
-    heat = RATED_RISE * (np.nan_to_num(signals.believed[:, motor]) / rated_torque(signals.subject, motor)) ** 2
+    heat = (
+        RATED_RISE
+        * (np.nan_to_num(signals.believed[:, motor]) / rated_torque(signals.subject, motor)) ** 2
+    )
     keep = np.exp(-signals.step / TIME_CONSTANT)
     return np.asarray(lfilter([0.0, 1 - keep], [1.0, -keep], heat))
 

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import at_motor, before_measurement, driven_motors, given, is_commanded, is_measured
+from hyperleg_design.gap.effects.placing import (
+    at_motor,
+    before_measurement,
+    driven_motors,
+    given,
+    is_commanded,
+    is_measured,
+)
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
@@ -17,19 +24,33 @@ if TYPE_CHECKING:
 
 
 class TorqueConstant(Effect):
-    """A motor's torque is `scale` times the one believed, from its current and the declared constant, or as commanded.
+    """A motor's torque is `scale` times the one believed, from its current and the declared
+    constant, or as commanded.
 
-    Either the motor is another one, and its drive knows no more of it than the log (`reading` 0); or the constant by which the
-    log's currents are read is wrong, and the drive gives what it was asked for (1). Trace: (1 - scale) times the believed torque,
-    in the balance of motion, and with a wrong reading in that of the drive.
+    Either the motor is another one, and its drive knows no more of it than the log (`reading` 0);
+    or the constant by which the log's currents are read is wrong, and the drive gives what it was
+    asked for (1). Trace: (1 - scale) times the believed torque, in the balance of motion, and with
+    a wrong reading in that of the drive.
     """
 
     identifier: ClassVar[str] = "torque_constant"
     kind: ClassVar[str] = "motor"
-    summary: ClassVar[str] = "a motor gives more or less torque than its current and its data sheet say"
+    summary: ClassVar[str] = (
+        "a motor gives more or less torque than its current and its data sheet say"
+    )
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("scale", "", 1.0, 0.3, 2.0, 0.08, "8 % off on a dynamometer (EMBiR)"),
-        Parameter("reading", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=("another motor", "its current is read wrongly")),
+        Parameter(
+            "reading",
+            "",
+            0.0,
+            0.0,
+            1.0,
+            1.0,
+            "a choice",
+            shape=True,
+            choices=("another motor", "its current is read wrongly"),
+        ),
     )
     linear: ClassVar[bool] = True
 
@@ -53,7 +74,9 @@ class TorqueConstant(Effect):
         return ScaledTorque(location, values[..., 0], values[..., 1])
 
     def variants(self, signals: Signals, location: str) -> np.ndarray:
-        """Another motor; and a wrong reading, where the log tells both what was asked for and what was given."""
+        """Another motor; and a wrong reading, where the log tells both what was asked for and what
+        was given.
+        """
         both = _told_twice(signals, signals.subject.motors.index(location))
         return np.array([[1.0, 0.0], [1.0, 1.0]] if both else [[1.0, 0.0]])
 
@@ -64,7 +87,9 @@ def _told_twice(signals: Signals, motor: int) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class ScaledTorque(Alteration):
-    """Torque of a motor over the one that its drive takes itself to give, or over the one that is read from it."""
+    """Torque of a motor over the one that its drive takes itself to give, or over the one that is
+    read from it.
+    """
 
     motor: str
     scale: Any
@@ -89,8 +114,13 @@ class _Scaled(Live):
     def limits(self, limits: Limits, tick: Tick) -> Limits:
         if not self.misread:
             return limits
-        shape = np.broadcast_shapes(np.shape(limits.peak_torque), (self.count, len(self.machine.motors)))
-        stall, peak = np.array(np.broadcast_to(limits.stall_torque, shape)), np.array(np.broadcast_to(limits.peak_torque, shape))
+        shape = np.broadcast_shapes(
+            np.shape(limits.peak_torque), (self.count, len(self.machine.motors))
+        )
+        stall, peak = (
+            np.array(np.broadcast_to(limits.stall_torque, shape)),
+            np.array(np.broadcast_to(limits.peak_torque, shape)),
+        )
         stall[:, self.place] /= self.read
         peak[:, self.place] /= self.read
         return Limits(limits.no_load_speed, stall, peak)

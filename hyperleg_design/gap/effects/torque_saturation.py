@@ -10,7 +10,14 @@ import numpy as np
 
 from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.placing import before_measurement, commanded, driven_motors, is_commanded, limited, motor_strength
+from hyperleg_design.gap.effects.placing import (
+    before_measurement,
+    commanded,
+    driven_motors,
+    is_commanded,
+    limited,
+    motor_strength,
+)
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
@@ -20,21 +27,31 @@ if TYPE_CHECKING:
 _QUANTILES = (0.97, 0.9, 0.8, 0.6)
 _NEEDED = 0.95
 LEAST = 0.03
-"""Limit over the torque that the motor is made for (assumed: current limits of 5 % are set by nobody)."""
+"""Limit over the torque that the motor is made for (assumed: current limits of 5 % are set by
+nobody)."""
 
 
 class TorqueSaturation(Effect):
-    """A drive stops at a torque below the limit of the model: at 1 / inverse_limit, so that 0 is no limit.
+    """A drive stops at a torque below the limit of the model: at 1 / inverse_limit, so that 0 is no
+    limit.
 
-    Trace, by the rule of `placing`: the command within the lower limit minus the command within the nominal ones. A log without
-    commands cannot show it.
+    Trace, by the rule of `placing`: the command within the lower limit minus the command within the
+    nominal ones. A log without commands cannot show it.
     """
 
     identifier: ClassVar[str] = "torque_saturation"
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a drive limits its torque (or current) to less than the model's limit"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("inverse_limit", "1/Nm", 0.0, 0.0, 1e3, 0.1, "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor"),
+        Parameter(
+            "inverse_limit",
+            "1/Nm",
+            0.0,
+            0.0,
+            1e3,
+            0.1,
+            "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor",
+        ),
     )
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -48,7 +65,10 @@ class TorqueSaturation(Effect):
             return {}
         asked = commanded(signals, motor)
         limit = _limit(np.atleast_2d(np.asarray(values, float))[:, :1])
-        return before_measurement(signals, {motor: limited(signals, motor, asked, peak=limit) - limited(signals, motor, asked)})
+        return before_measurement(
+            signals,
+            {motor: limited(signals, motor, asked, peak=limit) - limited(signals, motor, asked)},
+        )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
@@ -65,19 +85,34 @@ class TorqueSaturation(Effect):
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """A drive that gives next to nothing is no limited one."""
         low, high = super().bounds(location, subject)
-        return np.array([low, np.minimum(high, 1 / (LEAST * motor_strength(subject, subject.motors.index(location))))])
+        return np.array(
+            [
+                low,
+                np.minimum(
+                    high, 1 / (LEAST * motor_strength(subject, subject.motors.index(location)))
+                ),
+            ]
+        )
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The torque that the motion hardly ever needs more than, and torques that the command of this log exceeds ever more often."""
+        """The torque that the motion hardly ever needs more than, and torques that the command of
+        this log exceeds ever more often.
+        """
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
             return super().starts(signals, location)
         asked = np.abs(limited(signals, motor, commanded(signals, motor)))
         needed = np.abs(applied(signals.subject.motor_from_joint[motor : motor + 1], signals.rigid))
         limits = np.append(np.nanquantile(needed, _NEEDED), np.nanquantile(asked, _QUANTILES))
-        return np.asarray(np.minimum(1 / np.maximum(limits, 1e-9), self.bounds(location, signals.subject)[1])[:, None])
+        return np.asarray(
+            np.minimum(1 / np.maximum(limits, 1e-9), self.bounds(location, signals.subject)[1])[
+                :, None
+            ]
+        )
 
-    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+    def derived(
+        self, location: str, values: np.ndarray, subject: Subject
+    ) -> dict[str, tuple[float, str]]:
         """The limit."""
         return {"limit": (float(_limit(values[0])), "Nm")}
 
@@ -104,7 +139,9 @@ class _Lower(Live):
         self.place = self.machine.motor(self.alteration.motor)
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:
-        peak = np.array(np.broadcast_to(limits.peak_torque, (self.count, len(self.machine.motors))), float)
+        peak = np.array(
+            np.broadcast_to(limits.peak_torque, (self.count, len(self.machine.motors))), float
+        )
         limit = np.asarray(self.alteration.limit, float)
         peak[:, self.place] = np.minimum(peak[:, self.place], limit)
         return dataclasses.replace(limits, peak_torque=peak)

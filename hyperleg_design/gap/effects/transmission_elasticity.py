@@ -27,7 +27,8 @@ STIFFER = 30.0
 
 
 class TransmissionElasticity(Effect):
-    """A motor and its joints are joined by a spring, on the motor's side of the transmission; see `belt`.
+    """A motor and its joints are joined by a spring, on the motor's side of the transmission; see
+    `belt`.
 
     The rotor on its belt, the joint held, rings at 1 / (2 pi sqrt(J compliance)).
     """
@@ -36,12 +37,36 @@ class TransmissionElasticity(Effect):
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a belt, cable or gear gives under load, so motor and joint move apart"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("compliance", "rad/Nm", 0.0, 0.0, 1e4, 0.01, "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor"),
-        Parameter("damping_ratio", "", DAMPING_RATIO, 0.0, 1.0, 0.05, "steel-corded belts ring for a few periods (assumed)", shape=True),
+        Parameter(
+            "compliance",
+            "rad/Nm",
+            0.0,
+            0.0,
+            1e4,
+            0.01,
+            "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor",
+        ),
+        Parameter(
+            "damping_ratio",
+            "",
+            DAMPING_RATIO,
+            0.0,
+            1.0,
+            0.05,
+            "steel-corded belts ring for a few periods (assumed)",
+            shape=True,
+        ),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
         Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
         Parameter(
-            "stiffening", "1/rad", 0.0, 0.0, 200.0, STIFFER, "gears are two to three times as stiff beyond some mrad (data sheets)", shape=True
+            "stiffening",
+            "1/rad",
+            0.0,
+            0.0,
+            200.0,
+            STIFFER,
+            "gears are two to three times as stiff beyond some mrad (data sheets)",
+            shape=True,
         ),
     )
 
@@ -52,15 +77,23 @@ class TransmissionElasticity(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
-        compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(np.asarray(values, float)).T
+        compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(
+            np.asarray(values, float)
+        ).T
         needed, told = belt.load(signals, motor), belt.transmitted(signals, motor)
         moved = belt.stretch(signals, needed, motor, compliance, damping_ratio, stiffening)
         bent = (stiffening > 0) | (behind >= belt.CHOSEN)
         for rubs in (True, False):
             if (mine := bent & (side >= belt.CHOSEN) & ((behind >= belt.CHOSEN) == rubs)).any():
                 own = belt.given(signals, motor, rubs=rubs)
-                moved[mine] = belt.stretch(signals, own, motor, *(v[mine] for v in (compliance, damping_ratio, stiffening)))
-        seen = None if told is needed else belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
+                moved[mine] = belt.stretch(
+                    signals, own, motor, *(v[mine] for v in (compliance, damping_ratio, stiffening))
+                )
+        seen = (
+            None
+            if told is needed
+            else belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
+        )
         return belt.trace(signals, motor, moved, side, seen, behind)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
@@ -70,7 +103,9 @@ class TransmissionElasticity(Effect):
         inertia = belt.rotor(subject, subject.motors.index(location))
         damping = 2 * ratio * np.sqrt(inertia / np.where(compliance > 0, compliance, np.inf))
         bend = values[..., 4] / belt.moved_most(subject, subject.motors.index(location))
-        return Belt(location, compliance=compliance, damping=damping, side=values[..., 2], stiffening=bend)
+        return Belt(
+            location, compliance=compliance, damping=damping, side=values[..., 2], stiffening=bend
+        )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """Compliance at which the rotor rings at the usual frequency."""
@@ -85,7 +120,9 @@ class TransmissionElasticity(Effect):
         return found
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Where joints rub; of a belt that stiffens, or with joints that rub behind it, where encoders sit; else it is straight."""
+        """Where joints rub; of a belt that stiffens, or with joints that rub behind it, where
+        encoders sit; else it is straight.
+        """
         behind, stiffens = values[3] >= belt.CHOSEN, values[4] > 0
         return np.array([False, False, behind or stiffens, True, not (behind or stiffens)])
 
@@ -94,17 +131,28 @@ class TransmissionElasticity(Effect):
         return bool(values[3] >= belt.CHOSEN)
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Several resonances, with encoders on either side, and with joints that rub behind a belt, which may stiffen."""
+        """Several resonances, with encoders on either side, and with joints that rub behind a belt,
+        which may stiffen.
+        """
         stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
         plain = [[c, DAMPING_RATIO, side, 0.0, 0.0] for side in (0.0, 1.0) for c in stiff]
-        bent = [[c, DAMPING_RATIO, 1.0, behind, bend] for behind, bend in ((0.0, STIFFER), (1.0, 0.0), (1.0, STIFFER)) for c in stiff[1:3]]
+        bent = [
+            [c, DAMPING_RATIO, 1.0, behind, bend]
+            for behind, bend in ((0.0, STIFFER), (1.0, 0.0), (1.0, STIFFER))
+            for c in stiff[1:3]
+        ]
         return np.array(plain + bent)
 
-    def derived(self, location: str, values: np.ndarray, subject: Subject) -> dict[str, tuple[float, str]]:
+    def derived(
+        self, location: str, values: np.ndarray, subject: Subject
+    ) -> dict[str, tuple[float, str]]:
         """Stiffness on the motor's side, and the frequency of the rotor on its belt."""
         stiffness = 1 / values[0] if values[0] > 0 else np.inf
         inertia = belt.rotor(subject, subject.motors.index(location))
-        return {"stiffness": (float(stiffness), "Nm/rad"), "resonance": (float(np.sqrt(stiffness / inertia) / (2 * np.pi)), "Hz")}
+        return {
+            "stiffness": (float(stiffness), "Nm/rad"),
+            "resonance": (float(np.sqrt(stiffness / inertia) / (2 * np.pi)), "Hz"),
+        }
 
     def _compliance(self, frequency: float, location: str, subject: Subject) -> float:
         inertia = belt.rotor(subject, subject.motors.index(location))

@@ -12,7 +12,13 @@ import numpy as np
 from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.needed import as_logged, needed
-from hyperleg_design.gap.effects.placing import SIDES, at_motor, driven_motors, given, motor_velocity
+from hyperleg_design.gap.effects.placing import (
+    SIDES,
+    at_motor,
+    driven_motors,
+    given,
+    motor_velocity,
+)
 from hyperleg_design.gap.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
@@ -22,20 +28,31 @@ if TYPE_CHECKING:
 
 
 class TransmissionRatio(Effect):
-    """A motor turns `scale` times as fast over its joints as the model says, and pulls on them `scale` times as hard.
+    """A motor turns `scale` times as fast over its joints as the model says, and pulls on them
+    `scale` times as hard.
 
-    Where positions are the joints' own (`side` 0), the trace is (1 - scale) tau + (scale^2 - 1) J M^T q_ddot on the motor's side,
-    the second part as the rotor turns faster too: apart from it, and from the rotor's speed where that is logged, this looks like
-    a torque constant. Where they are worked out from rotors by the model (1), the joints stand elsewhere, at q + (1 / scale - 1) P
-    M^T q, P the motor's row of the inverse of M, and the trace is (1 - scale) (tau - J M^T q_ddot) and what that motion needs more
-    than the logged one, friction included: of coupled joints one may stand while its encoders say that it turns.
+    Where positions are the joints' own (`side` 0), the trace is (1 - scale) tau + (scale^2 - 1) J
+    M^T q_ddot on the motor's side, the second part as the rotor turns faster too: apart from it,
+    and from the rotor's speed where that is logged, this looks like a torque constant. Where they
+    are worked out from rotors by the model (1), the joints stand elsewhere, at q + (1 / scale - 1)
+    P M^T q, P the motor's row of the inverse of M, and the trace is (1 - scale) (tau - J M^T
+    q_ddot) and what that motion needs more than the logged one, friction included: of coupled
+    joints one may stand while its encoders say that it turns.
     """
 
     identifier: ClassVar[str] = "transmission_ratio"
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("scale", "", 1.0, 0.7, 1.4, 0.03, "linkages off their design point, one tooth of 40 on a pulley (assumed)"),
+        Parameter(
+            "scale",
+            "",
+            1.0,
+            0.7,
+            1.4,
+            0.03,
+            "linkages off their design point, one tooth of 40 on a pulley (assumed)",
+        ),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
     )
 
@@ -48,7 +65,9 @@ class TransmissionRatio(Effect):
         subject = signals.subject
         motor = subject.motors.index(location)
         scale, side = np.atleast_2d(np.asarray(values, float)).T[..., None]
-        rotor = subject.rotor_inertia[motor] * (signals.acceleration @ subject.joint_from_motor[:, motor])
+        rotor = subject.rotor_inertia[motor] * (
+            signals.acceleration @ subject.joint_from_motor[:, motor]
+        )
         turning = (1 - side) * (scale**2 - 1.0) + side * (scale - 1.0)
         found = at_motor(signals, motor, (1.0 - scale) * given(signals, motor) + turning * rotor)
         found |= turned(signals, motor, (1 - side) * (scale - 1.0) * motor_velocity(signals, motor))
@@ -73,13 +92,16 @@ class TransmissionRatio(Effect):
 
 
 def _other_friction(signals: Signals, motor: int, farther: np.ndarray) -> np.ndarray:
-    """Friction of joints that move otherwise than logged, a motor's share of it larger by some shares `(k, 1)`, less the logged `(k, t, n)`."""
+    """Friction of joints that move otherwise than logged, a motor's share of it larger by some
+    shares `(k, 1)`, less the logged `(k, t, n)`.
+    """
     subject, velocity = signals.subject, signals.velocity
     own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
     swing = None if signals.chatter is None else signals.chatter.speed
     moved = velocity + farther[..., None] * (velocity @ own)
     return np.asarray(
-        rigid.friction_torque(subject, signals.position, moved, swing) - rigid.friction_torque(subject, signals.position, velocity, swing)
+        rigid.friction_torque(subject, signals.position, moved, swing)
+        - rigid.friction_torque(subject, signals.position, velocity, swing)
     )
 
 
@@ -89,20 +111,29 @@ _MOVED: WeakKeyDictionary[Signals, dict[int, dict[str, np.ndarray]]] = WeakKeyDi
 
 
 def _elsewhere(signals: Signals, motor: int) -> dict[str, np.ndarray]:
-    """What the motion needs more where a motor's share of it is larger, in that share and its square `(2, t, rows)`, by balance."""
+    """What the motion needs more where a motor's share of it is larger, in that share and its
+    square `(2, t, rows)`, by balance.
+    """
     kept = _MOVED.setdefault(signals, {})
     if motor not in kept:
         subject = signals.subject
         own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
         here, there = as_logged(signals), []
         for node in (NODE, -NODE):
-            moved = (values + node * values @ own for values in (signals.position, signals.velocity, signals.acceleration))
+            moved = (
+                values + node * values @ own
+                for values in (signals.position, signals.velocity, signals.acceleration)
+            )
             there.append(needed(signals, *moved, rotors=False))
-            there[-1]["motion"] = there[-1]["motion"] + node * (signals.position @ own) * subject.spring
+            there[-1]["motion"] = (
+                there[-1]["motion"] + node * (signals.position @ own) * subject.spring
+            )
         kept[motor] = {}
         for balance, now in here.items():
             more, less = there[0][balance] - now, there[1][balance] - now
-            kept[motor][balance] = np.stack([(more - less) / (2 * NODE), (more + less) / (2 * NODE**2)])
+            kept[motor][balance] = np.stack(
+                [(more - less) / (2 * NODE), (more + less) / (2 * NODE**2)]
+            )
     return kept[motor]
 
 
@@ -139,7 +170,10 @@ class _Scaled(Live):
         self.told = share[..., None, None] * (column[..., :, None] * row[..., None, :])
 
     def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return tuple(values + (values[..., None, :] @ self.told)[..., 0, :] for values in (position, velocity))
+        return tuple(
+            values + (values[..., None, :] @ self.told)[..., 0, :]
+            for values in (position, velocity)
+        )
 
 
 ScaledRatio.live = _Scaled

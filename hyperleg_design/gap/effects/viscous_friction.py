@@ -16,17 +16,28 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alteration
 
 SHARE = 0.02
-"""Usual viscous friction at 1 rad/s over the torque that a joint is made for: 1.3-9.7 Nms/rad on harmonic drives of 100 Nm (BAM)."""
+"""Usual viscous friction at 1 rad/s over the torque that a joint is made for: 1.3-9.7 Nms/rad on
+harmonic drives of 100 Nm (BAM)."""
 
 
 class ViscousFriction(Effect):
-    """A joint resists motion in proportion to its velocity, beyond (or, negative, short of) the model; trace: damping times velocity."""
+    """A joint resists motion in proportion to its velocity, beyond (or, negative, short of) the
+    model; trace: damping times velocity.
+    """
 
     identifier: ClassVar[str] = "viscous_friction"
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint resists motion in proportion to its velocity"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("damping", "Nms/rad", 0.0, -50.0, 100.0, 2.0, "1.3-9.7 Nms/rad on harmonic drives (BAM, arXiv 2410.08650)"),
+        Parameter(
+            "damping",
+            "Nms/rad",
+            0.0,
+            -50.0,
+            100.0,
+            2.0,
+            "1.3-9.7 Nms/rad on harmonic drives (BAM, arXiv 2410.08650)",
+        ),
     )
     linear: ClassVar[bool] = True
 
@@ -42,7 +53,9 @@ class ViscousFriction(Effect):
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`; what is taken away never exceeds the model's."""
         joint = subject.joints.index(location)
-        return JointFriction(location, viscous=np.maximum(np.asarray(values, float)[..., 0], -subject.viscous[joint]))
+        return JointFriction(
+            location, viscous=np.maximum(np.asarray(values, float)[..., 0], -subject.viscous[joint])
+        )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """A share of the torque that the joint is made for."""
@@ -51,4 +64,9 @@ class ViscousFriction(Effect):
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """No less than no friction at all."""
         joint = subject.joints.index(location)
-        return np.array([[-subject.viscous[joint]], [min(self.parameters[0].high, joint_strength(subject)[joint])]])
+        return np.array(
+            [
+                [-subject.viscous[joint]],
+                [min(self.parameters[0].high, joint_strength(subject)[joint])],
+            ]
+        )

@@ -29,34 +29,61 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.subject import Subject
 
 SAG = 0.2
-"""Share of the voltage that is missing at the reference power, where nobody logged it (assumed: 5.8-7.4 V of an XL330's 7.4 V)."""
+"""Share of the voltage that is missing at the reference power, where nobody logged it (assumed:
+5.8-7.4 V of an XL330's 7.4 V)."""
 AT_REST = 0.5
 """Part of `SAG` that is missing without load, as batteries run down (assumed)."""
 FAR, FALLS_SHORT, FEWEST = 6.0, 0.02, 20
-"""A motor falls short where it gives less than it is told, by so many times the median of its error, and by this share of the torque that
-it is made for; ticks that a line needs."""
+"""A motor falls short where it gives less than it is told, by so many times the median of its
+error, and by this share of the torque that it is made for; ticks that a line needs."""
 REFERENCE_SPEED = 0.5
 """Reference power: the torque that the joints are made for at this speed [rad/s]; assumed."""
 
 
 class VoltageSag(Effect):
-    """Torque falls with the battery's voltage: its limits, and of drives without current control the torque itself.
+    """Torque falls with the battery's voltage: its limits, and of drives without current control
+    the torque itself.
 
-    What is missing of the voltage, 1 - V / V_nominal, is logged; else 20 % of it at the reference power, half of that at rest. A
-    nominal voltage that nobody gives is the largest that reference logs show, or the log itself. `limits` scales how much of it
-    a motor's DC-motor line loses. Of motors whose line nobody knows, it says how near that line is: stall torque at the nominal
-    voltage is the torque that the motor is made for over `limits`, no-load speed is `speed` at the joint that it moves most, and
-    both fall with the voltage. `torque` is how much of what is missing any torque loses. Trace, by the rule of `placing`.
+    What is missing of the voltage, 1 - V / V_nominal, is logged; else 20 % of it at the reference
+    power, half of that at rest. A nominal voltage that nobody gives is the largest that reference
+    logs show, or the log itself. `limits` scales how much of it a motor's DC-motor line loses. Of
+    motors whose line nobody knows, it says how near that line is: stall torque at the nominal
+    voltage is the torque that the motor is made for over `limits`, no-load speed is `speed` at the
+    joint that it moves most, and both fall with the voltage. `torque` is how much of what is
+    missing any torque loses. Trace, by the rule of `placing`.
     """
 
     identifier: ClassVar[str] = "voltage_sag"
     kind: ClassVar[str] = "robot"
     summary: ClassVar[str] = "the battery's voltage drops, and with it torque limits or torques"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("limits", "", 0.0, 0.0, 20.0, 1.0, "1: as a DC motor's; 5.8-9.2 V at 7.4 V nominal (XL330 log)"),
-        Parameter("torque", "", 0.0, -0.5, 4.0, 1.0, "1: as of servos driven by duty cycle, without current control"),
         Parameter(
-            "speed", "rad/s", 10.0, 0.5, 60.0, 5.0, "no-load speeds of servos 6-10 rad/s, of legs' joints 10-25 rad/s (data sheets)", shape=True
+            "limits",
+            "",
+            0.0,
+            0.0,
+            20.0,
+            1.0,
+            "1: as a DC motor's; 5.8-9.2 V at 7.4 V nominal (XL330 log)",
+        ),
+        Parameter(
+            "torque",
+            "",
+            0.0,
+            -0.5,
+            4.0,
+            1.0,
+            "1: as of servos driven by duty cycle, without current control",
+        ),
+        Parameter(
+            "speed",
+            "rad/s",
+            10.0,
+            0.5,
+            60.0,
+            5.0,
+            "no-load speeds of servos 6-10 rad/s, of legs' joints 10-25 rad/s (data sheets)",
+            shape=True,
         ),
     )
 
@@ -75,10 +102,17 @@ class VoltageSag(Effect):
         lost = missing(signals)
         changes = {}
         for motor in range(len(subject.motors)):
-            if not is_commanded(signals, motor) or (signals.voltage is not None and np.isfinite(subject.supply[motor])):
+            if not is_commanded(signals, motor) or (
+                signals.voltage is not None and np.isfinite(subject.supply[motor])
+            ):
                 continue  # of motors that follow a logged voltage it is no news
-            asked, wanted = commanded(signals, motor), commanded(signals, motor) * (1 - torque * lost)
-            if np.isfinite(subject.stall_torque[motor]) and np.isfinite(subject.no_load_speed[motor]):
+            asked, wanted = (
+                commanded(signals, motor),
+                commanded(signals, motor) * (1 - torque * lost),
+            )
+            if np.isfinite(subject.stall_torque[motor]) and np.isfinite(
+                subject.no_load_speed[motor]
+            ):
                 given = limited(signals, motor, wanted, voltage=np.maximum(1 - limits * lost, 0.0))
             else:
                 given = limited(signals, motor, wanted)
@@ -92,20 +126,41 @@ class VoltageSag(Effect):
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
         values = np.asarray(values, float)
-        strength = np.array([motor_strength(subject, motor) for motor in range(len(subject.motors))])
+        strength = np.array(
+            [motor_strength(subject, motor) for motor in range(len(subject.motors))]
+        )
         ratios = np.array([ratio(subject, motor) for motor in range(len(subject.motors))])
-        return WeakBattery(values[..., 0], values[..., 1], values[..., 2], strength, ratios, reference_power(subject))
+        return WeakBattery(
+            values[..., 0],
+            values[..., 1],
+            values[..., 2],
+            strength,
+            ratios,
+            reference_power(subject),
+        )
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Limits alone, torques alone; of motors whose line nobody knows, also the line on which they give less than they are told."""
+        """Limits alone, torques alone; of motors whose line nobody knows, also the line on which
+        they give less than they are told.
+        """
         if np.isfinite(signals.subject.stall_torque).all():
             return np.array([[1.0, 0.0, 10.0], [3.0, 0.0, 10.0], [0.0, 1.0, 10.0]])
-        usual = [[1.0, 0.0, 10.0], [1.0, 0.0, 20.0], [1.0, 0.0, 40.0], [0.5, 0.0, 20.0], [2.0, 0.0, 20.0], [4.0, 0.0, 20.0], [0.0, 1.0, 10.0]]
+        usual = [
+            [1.0, 0.0, 10.0],
+            [1.0, 0.0, 20.0],
+            [1.0, 0.0, 40.0],
+            [0.5, 0.0, 20.0],
+            [2.0, 0.0, 20.0],
+            [4.0, 0.0, 20.0],
+            [0.0, 1.0, 10.0],
+        ]
         return np.array([*_lines(signals), *usual])
 
 
 def _lines(signals: Signals) -> list[list[float]]:
-    """`limits`, `torque` and `speed` of the line through what each measured motor gives at most `(3,)`; empty where none falls short."""
+    """`limits`, `torque` and `speed` of the line through what each measured motor gives at most
+    `(3,)`; empty where none falls short.
+    """
     subject, found = signals.subject, []
     for motor in range(len(subject.motors)):
         if not is_commanded(signals, motor) or signals.measured is None:
@@ -113,11 +168,21 @@ def _lines(signals: Signals) -> list[list[float]]:
         torque = signals.measured[:, motor]
         way = np.sign(torque)
         short = (limited(signals, motor, commanded(signals, motor)) - torque) * way
-        far = np.flatnonzero(short > max(FAR * float(np.nanmedian(np.abs(short))), FALLS_SHORT * motor_strength(subject, motor)))
+        far = np.flatnonzero(
+            short
+            > max(
+                FAR * float(np.nanmedian(np.abs(short))),
+                FALLS_SHORT * motor_strength(subject, motor),
+            )
+        )
         if len(far) < FEWEST:
             continue
-        lines = np.nan_to_num(np.stack([1 - missing(signals), -motor_velocity(signals, motor) * way], -1)[far])
-        (level, slope), *_ = np.linalg.lstsq(lines, np.abs(torque[far]) / motor_strength(subject, motor))
+        lines = np.nan_to_num(
+            np.stack([1 - missing(signals), -motor_velocity(signals, motor) * way], -1)[far]
+        )
+        (level, slope), *_ = np.linalg.lstsq(
+            lines, np.abs(torque[far]) / motor_strength(subject, motor)
+        )
         if level > 0 and slope > 0:
             found.append([1 / level, 0.0, level / (slope * ratio(subject, motor))])
     return found
@@ -128,13 +193,23 @@ def missing(signals: Signals) -> np.ndarray:
     subject = signals.subject
     if signals.voltage is not None:
         nominal = machine(subject).voltage
-        return np.asarray(1 - signals.voltage / (nominal if np.isfinite(nominal) else float(np.nanpercentile(signals.voltage, FULL))))
+        return np.asarray(
+            1
+            - signals.voltage
+            / (nominal if np.isfinite(nominal) else float(np.nanpercentile(signals.voltage, FULL)))
+        )
     speed = np.stack([motor_velocity(signals, motor) for motor in range(len(subject.motors))], -1)
-    return modelled(np.nan_to_num(signals.believed), speed, machine(subject), reference_power(subject))
+    return modelled(
+        np.nan_to_num(signals.believed), speed, machine(subject), reference_power(subject)
+    )
 
 
-def modelled(torque: np.ndarray, speed: np.ndarray, drives: Machine, reference: float) -> np.ndarray:
-    """Share of the voltage that is missing at torques and speeds of the motors `(..., m)`, `(...,)`."""
+def modelled(
+    torque: np.ndarray, speed: np.ndarray, drives: Machine, reference: float
+) -> np.ndarray:
+    """Share of the voltage that is missing at torques and speeds of the motors `(..., m)`,
+    `(...,)`.
+    """
     power = np.maximum((torque * speed + drives.power_constant * torque**2).sum(-1), 0.0)
     return np.asarray(SAG * (AT_REST + (1 - AT_REST) * np.minimum(power / reference, 1.0)))
 
@@ -159,7 +234,8 @@ class WeakBattery(Alteration):
     """`()` or `(n,)` each [-, -, rad/s]."""
     strength: np.ndarray
     ratio: np.ndarray
-    """Of each motor: torque that it is made for [Nm], and speed over that of the joint that it moves most `(m,)`."""
+    """Of each motor: torque that it is made for [Nm], and speed over that of the joint that it
+    moves most `(m,)`."""
     reference_power: float
     """[W]"""
 
@@ -174,7 +250,9 @@ class _Weak(Live):
         self.lost, self.full = np.zeros(self.count), np.zeros(self.count)
 
     def begin(self, tick: Tick) -> None:
-        found = modelled(tick.last_torque, tick.motor_velocity, self.machine, self.alteration.reference_power)
+        found = modelled(
+            tick.last_torque, tick.motor_velocity, self.machine, self.alteration.reference_power
+        )
         if tick.battery is not None:
             self.full[:] = np.fmax(self.full, tick.battery)
             nominal = self.machine.voltage if np.isfinite(self.machine.voltage) else self.full
@@ -187,15 +265,26 @@ class _Weak(Live):
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:
         one = self.alteration
-        share, speed = (np.broadcast_to(np.asarray(x, float), (self.count,))[:, None] for x in (one.limits, one.speed))
+        share, speed = (
+            np.broadcast_to(np.asarray(x, float), (self.count,))[:, None]
+            for x in (one.limits, one.speed)
+        )
         lost = self.lost[:, None]
         voltage = np.maximum(1 - share * lost, 1e-6)
         left = np.maximum(1 - lost, 1e-6)
         stall = one.strength / np.maximum(share, 1e-12) * left
         return dataclasses.replace(
             limits,
-            stall_torque=np.where(self.line, limits.stall_torque * voltage, np.where(share > 0, stall, limits.stall_torque)),
-            no_load_speed=np.where(self.line, limits.no_load_speed * voltage, np.where(share > 0, speed * one.ratio * left, limits.no_load_speed)),
+            stall_torque=np.where(
+                self.line,
+                limits.stall_torque * voltage,
+                np.where(share > 0, stall, limits.stall_torque),
+            ),
+            no_load_speed=np.where(
+                self.line,
+                limits.no_load_speed * voltage,
+                np.where(share > 0, speed * one.ratio * left, limits.no_load_speed),
+            ),
         )
 
 

@@ -1,4 +1,6 @@
-"""Readers of logs: every format ends as a `Log` that states what its source lacks; which reader fits is told by the content."""
+"""Readers of logs: every format ends as a `Log` that states what its source lacks; which reader
+fits is told by the content.
+"""
 
 from __future__ import annotations
 
@@ -18,15 +20,22 @@ _SQLITE, _MCAP = b"SQLite format 3\0", b"\x89MCAP0\r\n"
 _TEXTS = (".csv", ".tsv", ".txt")
 
 
-def open_log(path: str | os.PathLike[str], *, mapping: Mapping[str, str] | None = None, metadata: Mapping[str, Any] | None = None) -> list[Log]:
+def open_log(
+    path: str | os.PathLike[str],
+    *,
+    mapping: Mapping[str, str] | None = None,
+    metadata: Mapping[str, Any] | None = None,
+) -> list[Log]:
     """The logs in a file or folder, of any known format.
 
-    Metadata come from the source, overruled by the side file (`NAME.json`, `NAME.meta.json` beside a JSON file, `hyperleg.json`
-    in a folder), overruled by `metadata`. Beside the fields of `Metadata` these may name `joints` (in the source's order, where
-    it names none), `columns` (of a CSV file, ours by the file's) and `units`.
+    Metadata come from the source, overruled by the side file (`NAME.json`, `NAME.meta.json` beside
+    a JSON file, `hyperleg.json` in a folder), overruled by `metadata`. Beside the fields of
+    `Metadata` these may name `joints` (in the source's order, where it names none), `columns` (of a
+    CSV file, ours by the file's) and `units`.
 
     Args:
-        path: file or folder; a folder that is no recording itself gives the logs of all recordings in it.
+        path: file or folder; a folder that is no recording itself gives the logs of all recordings
+            in it.
         mapping: our column by the file's own, for CSV.
         metadata: fields that win.
 
@@ -76,11 +85,20 @@ def _open_folder(path: Path, metadata: Mapping[str, Any] | None) -> list[Log]:
         if fits(path):
             return read(path, metadata)
     inside = sorted(p for p in path.iterdir() if not p.name.startswith("."))
-    folders = [p for p in inside if p.is_dir() and any(fits(p) for fits in (is_sage, is_lerobot, is_bag))]
-    files = [p for p in inside if p.is_file() and (p.suffix.lower() in (".parquet", ".pt", ".mcap", ".db3", *_TEXTS) or _is_bam(p))]
+    folders = [
+        p for p in inside if p.is_dir() and any(fits(p) for fits in (is_sage, is_lerobot, is_bag))
+    ]
+    files = [
+        p
+        for p in inside
+        if p.is_file()
+        and (p.suffix.lower() in (".parquet", ".pt", ".mcap", ".db3", *_TEXTS) or _is_bam(p))
+    ]
     if not folders and not files:
         raise InputError(str(path), "", None, f"holds no logs: expects {FORMATS}")
-    return [log for source in sorted(folders + files) for log in open_log(source, metadata=metadata)]
+    return [
+        log for source in sorted(folders + files) for log in open_log(source, metadata=metadata)
+    ]
 
 
 def _is_bam(path: Path) -> bool:
@@ -97,4 +115,6 @@ def _is_bam(path: Path) -> bool:
 def _overruled(log: Log, metadata: Mapping[str, Any] | None) -> Log:
     if not metadata:
         return log
-    return log.changed(metadata=metadata_from_mapping({**log.metadata.mapping(), **metadata}, "metadata"))
+    return log.changed(
+        metadata=metadata_from_mapping({**log.metadata.mapping(), **metadata}, "metadata")
+    )

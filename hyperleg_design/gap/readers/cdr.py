@@ -18,7 +18,9 @@ class CdrError(Exception):
 
 
 class Cursor:
-    """Walks through one message; alignment counts from behind the four bytes of the encapsulation."""
+    """Walks through one message; alignment counts from behind the four bytes of the
+    encapsulation.
+    """
 
     def __init__(self, data: bytes) -> None:
         if len(data) < 4 or data[0] != 0 or data[1] not in (0, 1):
@@ -80,7 +82,8 @@ def joint_state(data: bytes) -> JointState:
 
 
 def imu(data: bytes) -> tuple[float, np.ndarray]:
-    """Decode a sensor_msgs/Imu: stamp, and orientation w x y z, angular velocity, linear acceleration `(10,)`; NaN where unknown.
+    """Decode a sensor_msgs/Imu: stamp, and orientation w x y z, angular velocity, linear
+    acceleration `(10,)`; NaN where unknown.
 
     Raises:
         CdrError: damaged.

@@ -1,4 +1,6 @@
-"""MCAP containers: schemas, channels and messages, in chunks or not, read front to back (https://mcap.dev/spec)."""
+"""MCAP containers: schemas, channels and messages, in chunks or not, read front to back
+(https://mcap.dev/spec).
+"""
 
 from __future__ import annotations
 
@@ -60,20 +62,31 @@ def messages(path: Path, types: tuple[str, ...]) -> Iterator[Message]:
                 raise InputError(path.name, "", None, "is no MCAP file")
             while True:
                 head = stream.read(9)
-                code, length = (head[0], struct.unpack_from("<Q", head, 1)[0]) if len(head) == 9 else (0, size)
+                code, length = (
+                    (head[0], struct.unpack_from("<Q", head, 1)[0]) if len(head) == 9 else (0, size)
+                )
                 if length > size - stream.tell():
-                    raise InputError(path.name, "", None, "is cut short: run `mcap recover` on it, or copy it again")
+                    raise InputError(
+                        path.name,
+                        "",
+                        None,
+                        "is cut short: run `mcap recover` on it, or copy it again",
+                    )
                 if code == DATA_END:
                     return
                 if code not in (SCHEMA, CHANNEL, MESSAGE, CHUNK):
                     stream.seek(length, 1)
                     continue
                 body = stream.read(length)
-                yield from from_records(_records(_unpacked(body, path.name)) if code == CHUNK else iter([(code, body)]))
+                yield from from_records(
+                    _records(_unpacked(body, path.name)) if code == CHUNK else iter([(code, body)])
+                )
     except (struct.error, UnicodeDecodeError, IndexError) as error:
         raise InputError(path.name, "", None, f"is damaged ({error})") from None
     except OSError as error:
-        raise InputError(path.name, "", None, f"cannot be read ({error.strerror or error})") from None
+        raise InputError(
+            path.name, "", None, f"cannot be read ({error.strerror or error})"
+        ) from None
 
 
 def _records(data: bytes) -> Iterator[tuple[int, bytes]]:
@@ -97,7 +110,9 @@ def _unpacked(body: bytes, where: str) -> bytes:
     if not compression:
         return packed
     if compression not in ("zstd", "lz4"):
-        raise InputError(where, "compression", compression, "is not known; compress with zstd or lz4")
+        raise InputError(
+            where, "compression", compression, "is not known; compress with zstd or lz4"
+        )
     if size > MAX_CHUNK:
         raise InputError(where, "chunk", size, "is larger than 1 GiB when unpacked")
     try:

@@ -1,7 +1,9 @@
-"""SAGE's folders: `joint_list.txt`, `control.csv` (targets), `state_motor.csv` (positions, velocities, torques as lists).
+"""SAGE's folders: `joint_list.txt`, `control.csv` (targets), `state_motor.csv` (positions,
+velocities, torques as lists).
 
-Time stamps are microseconds on hardware, seconds in simulation. The source lacks gains, units and signs: the SO-101
-collector writes the supply current's size under `torques`, which is left out, and the jaw's position as 0 .. 1.
+Time stamps are microseconds on hardware, seconds in simulation. The source lacks gains, units and
+signs: the SO-101 collector writes the supply current's size under `torques`, which is left out, and
+the jaw's position as 0 .. 1.
 """
 
 from __future__ import annotations
@@ -24,10 +26,12 @@ SO101 = ("Rotation", "Pitch", "Elbow", "Wrist_Pitch", "Wrist_Roll", "Jaw")
 SO101_FIRMWARE_GAIN = 16
 """Position gain that SAGE's collector writes to the servos; integral gain 0."""
 STS3215 = {"torque_constant": 1.2116, "resistance": 2.676, "error_gain": 0.166, "supply": 7.4}
-"""kt [Nm/A], R [ohm], duty a firmware gain and radian, nominal supply [V]: BAM's fit m1 of the 7.4 V servo. The recorded supply
-currents agree: duty^2 V / R predicts 19.5 A/rad^2 while holding, 22 are recorded (the 12 V servo would draw 42)."""
+"""kt [Nm/A], R [ohm], duty a firmware gain and radian, nominal supply [V]: BAM's fit m1 of the 7.4
+V servo. The recorded supply currents agree: duty^2 V / R predicts 19.5 A/rad^2 while holding, 22
+are recorded (the 12 V servo would draw 42)."""
 SO101_JAW_RANGE = 2.29
-"""From closed to open [rad]: logged speed over rate of the 0 .. 1 position, in recordings that move the jaw."""
+"""From closed to open [rad]: logged speed over rate of the 0 .. 1 position, in recordings that move
+the jaw."""
 LONGEST_STEP = 1.0
 """Median steps beyond are microseconds."""
 
@@ -47,23 +51,40 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
     said = beside(folder, metadata)
     time, state = _table(folder / STATE, ("positions", "velocities", "torques"))
     width = state["positions"].shape[1]
-    listed = (folder / JOINTS).read_text(encoding="utf-8").split() if (folder / JOINTS).is_file() else []
+    listed = (
+        (folder / JOINTS).read_text(encoding="utf-8").split() if (folder / JOINTS).is_file() else []
+    )
     if listed and len(listed) != width:
-        raise InputError(f"{folder.name}/{JOINTS}", "", len(listed), f"expects {width} names, as many as {STATE} has values")
+        raise InputError(
+            f"{folder.name}/{JOINTS}",
+            "",
+            len(listed),
+            f"expects {width} names, as many as {STATE} has values",
+        )
     joints = joint_names(said, listed or [f"joint_{i}" for i in range(width)], folder.name)
     remarks = [] if listed else ["the source names no joints: joint_0, joint_1, ... in its order"]
     scale, found = np.ones(width), {}
     if tuple(listed) == SO101:
         scale[-1] = SO101_JAW_RANGE
         found = _so101(joints)
-        remarks.append(f"{joints[-1]} is logged as 0 .. 1 and taken as {SO101_JAW_RANGE} rad from closed to open; its zero is not known")
+        remarks.append(
+            f"{joints[-1]} is logged as 0 .. 1 and taken as {SO101_JAW_RANGE} rad from closed to "
+            f"open; its zero is not known"
+        )
         if "gains" not in said:
-            remarks.append("gains are worked out from the collector's firmware gain and published kt and R at 7.4 V")
+            remarks.append(
+                "gains are worked out from the collector's firmware gain and published kt and R at "
+                "7.4 V"
+            )
     elif "gains" not in said:
         remarks.append("the source lacks the controller's gains; say `gains` in a side file")
-    signals = {f"position/{joint}": state["positions"][:, i] * scale[i] for i, joint in enumerate(joints)}
+    signals = {
+        f"position/{joint}": state["positions"][:, i] * scale[i] for i, joint in enumerate(joints)
+    }
     if "velocities" in state:
-        signals |= {f"velocity/{joint}": state["velocities"][:, i] for i, joint in enumerate(joints)}
+        signals |= {
+            f"velocity/{joint}": state["velocities"][:, i] for i, joint in enumerate(joints)
+        }
     if "torques" in state:
         torque = state["torques"]
         if np.nanmin(torque) < 0:
@@ -73,8 +94,16 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
     if (folder / CONTROL).is_file():
         own, control = _table(folder / CONTROL, ("positions",))
         if control["positions"].shape[1] != width:
-            raise InputError(f"{folder.name}/{CONTROL}", "positions", control["positions"].shape[1], f"expects {width} values, as {STATE}")
-        targets = {f"position_target/{joint}": control["positions"][:, i] * scale[i] for i, joint in enumerate(joints)}
+            raise InputError(
+                f"{folder.name}/{CONTROL}",
+                "positions",
+                control["positions"].shape[1],
+                f"expects {width} values, as {STATE}",
+            )
+        targets = {
+            f"position_target/{joint}": control["positions"][:, i] * scale[i]
+            for i, joint in enumerate(joints)
+        }
         if len(own) == len(time) and np.array_equal(own, time):
             signals |= targets
         else:
@@ -88,13 +117,28 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
 
 def _so101(joints: list[str]) -> dict[str, Any]:
     slope = STS3215["torque_constant"] / STS3215["resistance"]
-    gains = [slope * STS3215["supply"] * STS3215["error_gain"] * SO101_FIRMWARE_GAIN, slope * STS3215["torque_constant"]]
+    gains = [
+        slope * STS3215["supply"] * STS3215["error_gain"] * SO101_FIRMWARE_GAIN,
+        slope * STS3215["torque_constant"],
+    ]
     return {
         "base": "fixed",
         "gains": dict.fromkeys(joints, gains),
         "torque_constant": dict.fromkeys(joints, STS3215["torque_constant"]),
-        "supply": dict.fromkeys(joints, (STS3215["supply"], slope * STS3215["supply"], STS3215["supply"] / STS3215["torque_constant"])),
-        "extra": {"servo": "STS3215", "kp": SO101_FIRMWARE_GAIN, "vin": STS3215["supply"], "resistance": STS3215["resistance"]},
+        "supply": dict.fromkeys(
+            joints,
+            (
+                STS3215["supply"],
+                slope * STS3215["supply"],
+                STS3215["supply"] / STS3215["torque_constant"],
+            ),
+        ),
+        "extra": {
+            "servo": "STS3215",
+            "kp": SO101_FIRMWARE_GAIN,
+            "vin": STS3215["supply"],
+            "resistance": STS3215["resistance"],
+        },
         "session": "so101",
     }
 
@@ -105,7 +149,12 @@ def _table(path: Path, lists: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np
 
     where = f"{path.parent.name}/{path.name}"
     if not path.is_file():
-        raise InputError(where, "", None, f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}")
+        raise InputError(
+            where,
+            "",
+            None,
+            f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}",
+        )
     try:
         table = pd.read_csv(path)
     except (ValueError, pd.errors.ParserError, OSError) as error:
@@ -131,8 +180,15 @@ def _rows(texts: list[Any], where: str, column: str) -> np.ndarray:
         try:
             row = [float(v) for v in json.loads(str(text).replace("nan", "NaN"))]
         except (ValueError, TypeError):
-            raise InputError(where, f"{column}, row {number}", text, "expects a list of numbers, [0.1, 0.2]") from None
+            raise InputError(
+                where, f"{column}, row {number}", text, "expects a list of numbers, [0.1, 0.2]"
+            ) from None
         if rows and len(row) != len(rows[0]):
-            raise InputError(where, f"{column}, row {number}", len(row), f"expects {len(rows[0])} values, as in the first row")
+            raise InputError(
+                where,
+                f"{column}, row {number}",
+                len(row),
+                f"expects {len(rows[0])} values, as in the first row",
+            )
         rows.append(row)
     return np.array(rows, float)

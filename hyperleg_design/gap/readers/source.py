@@ -1,4 +1,6 @@
-"""What all readers share: metadata from beside a source, joints renamed, clocks that start at zero."""
+"""What all readers share: metadata from beside a source, joints renamed, clocks that start at
+zero.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ LATEST_START = 1e6
 
 
 def side_file(path: Path) -> Path:
-    """Where a user writes metadata of a source: `hyperleg.json` in a folder, `NAME.json`, or `NAME.meta.json` beside a JSON file."""
+    """Where a user writes metadata of a source: `hyperleg.json` in a folder, `NAME.json`, or
+    `NAME.meta.json` beside a JSON file.
+    """
     if path.is_dir():
         return path / FOLDER_FILE
     return path.with_suffix(".meta.json" if path.suffix.lower() == ".json" else ".json")
@@ -38,8 +42,17 @@ def joint_names(said: Mapping[str, Any], found: list[str], where: str) -> list[s
         InputError: another number of names.
     """
     names = said.get("joints", found)
-    if not isinstance(names, list | tuple) or len(names) != len(found) or not all(isinstance(n, str) for n in names):
-        raise InputError(where, "joints", names, f"expects a list of {len(found)} names, in the order of the source")
+    if (
+        not isinstance(names, list | tuple)
+        or len(names) != len(found)
+        or not all(isinstance(n, str) for n in names)
+    ):
+        raise InputError(
+            where,
+            "joints",
+            names,
+            f"expects a list of {len(found)} names, in the order of the source",
+        )
     if len(set(names)) != len(names):
         raise InputError(where, "joints", names, "expects different names")
     return list(names)
@@ -65,5 +78,7 @@ def made_log(
     if len(time) and np.isfinite(time[0]) and abs(time[0]) > LATEST_START:
         extra["start_time"] = float(time[0])
         time = time - time[0]
-    metadata: Metadata = metadata_from_mapping({**found, "extra": extra, **said}, side_file(path).name if said else path.name)
+    metadata: Metadata = metadata_from_mapping(
+        {**found, "extra": extra, **said}, side_file(path).name if said else path.name
+    )
     return finished_log(path, time, signals, metadata, remarks, name)

@@ -10,14 +10,17 @@ GAP = 3.0
 """Times the stream's own median step over which nothing is filled in."""
 
 
-def onto(time: np.ndarray, own_time: np.ndarray, signals: Mapping[str, np.ndarray], *, hold: bool) -> dict[str, np.ndarray]:
+def onto(
+    time: np.ndarray, own_time: np.ndarray, signals: Mapping[str, np.ndarray], *, hold: bool
+) -> dict[str, np.ndarray]:
     """Signals of one stream at other times; NaN where the stream has a gap, or has not begun.
 
     Args:
         time: wanted `(t,)` [s], rising.
         own_time: of the stream `(k,)` [s], strictly rising.
         signals: by column `(k,)`.
-        hold: keep the last value, as a controller keeps its target, instead of interpolating linearly.
+        hold: keep the last value, as a controller keeps its target, instead of interpolating
+            linearly.
     """
     if len(own_time) < 2:
         return {column: np.full(len(time), np.nan) for column in signals}
@@ -33,12 +36,18 @@ def onto(time: np.ndarray, own_time: np.ndarray, signals: Mapping[str, np.ndarra
             found[column] = np.where(known, values[at], np.nan)
         else:
             weight = (time - own_time[after - 1]) / (own_time[after] - own_time[after - 1])
-            found[column] = np.where(known, values[after - 1] + weight * (values[after] - values[after - 1]), np.nan)
+            found[column] = np.where(
+                known, values[after - 1] + weight * (values[after] - values[after - 1]), np.nan
+            )
     return found
 
 
-def sorted_stream(time: np.ndarray, signals: Mapping[str, np.ndarray]) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
-    """A stream in the order of its stamps, repeats left out, and how many messages came out of order."""
+def sorted_stream(
+    time: np.ndarray, signals: Mapping[str, np.ndarray]
+) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
+    """A stream in the order of its stamps, repeats left out, and how many messages came out of
+    order.
+    """
     disorder = int((np.diff(time) < 0).sum())
     time, first = np.unique(time, return_index=True)
     return time, {column: values[first] for column, values in signals.items()}, disorder

@@ -11,8 +11,21 @@ from hyperleg_design.gap.log import unit
 FACTORS = {
     "": {"": 1.0, "-": 1.0, "1": 1.0},
     "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9},
-    "rad": {"rad": 1.0, "deg": math.pi / 180, "°": math.pi / 180, "mrad": 1e-3, "rev": 2 * math.pi, "turn": 2 * math.pi},
-    "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180, "°/s": math.pi / 180, "rpm": math.pi / 30, "rev/s": 2 * math.pi},
+    "rad": {
+        "rad": 1.0,
+        "deg": math.pi / 180,
+        "°": math.pi / 180,
+        "mrad": 1e-3,
+        "rev": 2 * math.pi,
+        "turn": 2 * math.pi,
+    },
+    "rad/s": {
+        "rad/s": 1.0,
+        "deg/s": math.pi / 180,
+        "°/s": math.pi / 180,
+        "rpm": math.pi / 30,
+        "rev/s": 2 * math.pi,
+    },
     "Nm": {"nm": 1.0, "n.m": 1.0, "n*m": 1.0, "mnm": 1e-3, "ncm": 1e-2},
     "A": {"a": 1.0, "ma": 1e-3},
     "V": {"v": 1.0, "mv": 1e-3, "dv": 0.1},
@@ -27,7 +40,9 @@ _HEADER = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*$")
 
 
 def split_header(header: str) -> tuple[str, str]:
-    """Name and unit of a column's header, `position/knee [deg]`; the unit empty where none stands."""
+    """Name and unit of a column's header, `position/knee [deg]`; the unit empty where none
+    stands.
+    """
     found = _HEADER.match(header.strip())
     return (found["name"], found["unit"]) if found else (header.strip(), "")
 
@@ -43,5 +58,10 @@ def factor(column: str, given: str, where: str) -> float:
         return 1.0
     found = known.get(given.strip().lower().replace(" ", ""))
     if found is None:
-        raise InputError(where, column, given, f"is no unit of this signal; there are {', '.join(k for k in known if k)}")
+        raise InputError(
+            where,
+            column,
+            given,
+            f"is no unit of this signal; there are {', '.join(k for k in known if k)}",
+        )
     return found

@@ -1,9 +1,10 @@
 """A pelvis path that keeps the centre of pressure where it was planned.
 
-For a body whose mass sits at height h, the zero-moment point is `x - (h / g) x''`. In a Fourier series that is a factor
-`1 + (h / g) w^2` a harmonic, so the path for a wanted zero-moment point is one division. The robot's legs weigh something:
-the zero-moment point of the whole robot (inverse dynamics) misses the plan by an error, the same division turns the error
-into a correction of the pelvis, and a few rounds bring it to nothing.
+For a body whose mass sits at height h, the zero-moment point is `x - (h / g) x''`. In a Fourier
+series that is a factor `1 + (h / g) w^2` a harmonic, so the path for a wanted zero-moment point is
+one division. The robot's legs weigh something: the zero-moment point of the whole robot (inverse
+dynamics) misses the plan by an error, the same division turns the error into a correction of the
+pelvis, and a few rounds bring it to nothing.
 """
 
 from __future__ import annotations
@@ -18,14 +19,22 @@ from hyperleg_design.errors import InfeasibleError
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.sizing.kinematics import about_x, hip_center, leg_reach
 from hyperleg_design.sizing.motions.foot_path import FootPath
-from hyperleg_design.sizing.motions.motion import GRAVITY, PelvisPath, check_ranges, ground_wrench, joint_states, zero_moment_offset
+from hyperleg_design.sizing.motions.motion import (
+    GRAVITY,
+    PelvisPath,
+    check_ranges,
+    ground_wrench,
+    joint_states,
+    zero_moment_offset,
+)
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
     from hyperleg_design.robot.models import RigidBodyModel
 
 TOLERANCE = 5e-4
-"""Largest distance between planned and actual zero-moment point [m], but for the highest harmonic of an even grid."""
+"""Largest distance between planned and actual zero-moment point [m], but for the highest harmonic
+of an even grid."""
 LOAD_TOLERANCE = 0.02
 """Largest difference between planned and actual vertical force, over weight [-]."""
 ROUNDS = 60
@@ -36,7 +45,8 @@ ROUNDS = 60
 class Series:
     """Evenly sampled functions of time as Fourier series, to differentiate and filter.
 
-    A motion that does not repeat runs forward and back: its mirror image makes it periodic, with zero rate at both ends.
+    A motion that does not repeat runs forward and back: its mirror image makes it periodic, with
+    zero rate at both ends.
     """
 
     time_step: float
@@ -59,7 +69,12 @@ class Series:
     def derivatives(self, values: np.ndarray) -> np.ndarray:
         """Values without their highest harmonic, rate and acceleration, `(3, n, ...)`."""
         spectrum, frequency = self._spectrum(values)
-        return np.stack([self._back(spectrum * factor, values) for factor in (1.0 + 0 * frequency, 1j * frequency, -(frequency**2))])
+        return np.stack(
+            [
+                self._back(spectrum * factor, values)
+                for factor in (1.0 + 0 * frequency, 1j * frequency, -(frequency**2))
+            ]
+        )
 
     def integrated_twice(self, values: np.ndarray) -> np.ndarray:
         """Function of zero mean whose acceleration is `values` less their mean, `(n, ...)`."""
@@ -120,8 +135,13 @@ def highest_pelvis(
         room = reach**2 - np.sum(offset**2, -1)
         if np.any(room <= 0):
             far = float(np.sqrt(np.max(np.sum(offset**2, -1))))
-            raise InfeasibleError(f"{design.name}: a foot would have to be {far:.3f} m off below the hip; the leg allows {reach:.3f} m")
-        allowed = min(allowed, float(np.min(path.position[0, :, 2] + np.sqrt(room) - rise - hip[..., 2])))
+            raise InfeasibleError(
+                f"{design.name}: a foot would have to be {far:.3f} m off below the hip; the leg "
+                f"allows {reach:.3f} m"
+            )
+        allowed = min(
+            allowed, float(np.min(path.position[0, :, 2] + np.sqrt(room) - rise - hip[..., 2]))
+        )
     return allowed
 
 
@@ -141,15 +161,18 @@ def balanced_states(
         model: floating robot.
         feet: planned feet.
         pressure: planned centre of pressure [m], `(n, 3)`.
-        height: of the pelvis with rate and acceleration, `(3, n)`, over its horizontal place `(n, 2)` and over the rise and
-            fall that `load` asks for, `(3, n)`.
+        height: of the pelvis with rate and acceleration, `(3, n)`, over its horizontal place `(n,
+            2)` and over the rise and fall that `load` asks for, `(3, n)`.
         series: how the motion repeats.
-        drift: place, rate and acceleration [m] of a steady travel, `(3, n, 2)`, taken out before the Fourier series.
-        load: planned vertical force over weight, `(n,)`, of mean 1; none leaves the height as it is.
+        drift: place, rate and acceleration [m] of a steady travel, `(3, n, 2)`, taken out before
+            the Fourier series.
+        load: planned vertical force over weight, `(n,)`, of mean 1; none leaves the height as it
+            is.
         roll: of the pelvis with rate and acceleration [rad], `(3, n)`; none keeps it upright.
 
     Raises:
-        InfeasibleError: a leg does not reach, a joint leaves its range, or the corrections do not settle.
+        InfeasibleError: a leg does not reach, a joint leaves its range, or the corrections do not
+        settle.
     """
     count = len(pressure)
     travel = np.zeros((3, count, 2)) if drift is None else drift
@@ -163,7 +186,9 @@ def balanced_states(
     for done in range(1, ROUNDS + 1):
         plane = series.derivatives(sideways) + travel
         raised = height(plane[0], series.derivatives(rise))
-        pelvis = PelvisPath(np.concatenate([plane, raised[..., None]], -1), np.zeros((3, count)), lean)
+        pelvis = PelvisPath(
+            np.concatenate([plane, raised[..., None]], -1), np.zeros((3, count)), lean
+        )
         q, v, a = joint_states(model, pelvis, feet)
         force, moment = ground_wrench(model, q, v, a)
         error = zero_moment_offset(force, moment, pressure)
@@ -172,10 +197,12 @@ def balanced_states(
         if miss < TOLERANCE and np.max(np.abs(excess)) < LOAD_TOLERANCE:
             check_ranges(model, q)
             return Balanced(pelvis, q, v, a, done)
-        # weighted by the load, the error is the moment over the weight, in which the pelvis's acceleration is linear
+        # weighted by the load, the error is the moment over the weight, in which the pelvis's
+        # acceleration is linear
         sideways = sideways - series.filtered(error * force[:, 2:] / weight, lag)
         rise = rise - series.integrated_twice(GRAVITY * excess)
     raise InfeasibleError(
-        f"{model.design.name}: no pelvis path found that keeps the centre of pressure as planned; it still misses by {miss:.4f} m; "
+        f"{model.design.name}: no pelvis path found that keeps the centre of pressure as planned; "
+        f"it still misses by {miss:.4f} m; "
         "bend the knees more, move more slowly, or take more samples, an odd number"
     )

@@ -1,8 +1,10 @@
-"""Paths of a foot: it stands flat, rolls over its toes or its tip, swings, lands on its heel and rolls flat.
+"""Paths of a foot: it stands flat, rolls over its toes or its tip, swings, lands on its heel and
+rolls flat.
 
-The foot moves in its own sagittal plane. While it rolls, its place follows from its pitch alone: a toe that moves lies flat
-and the foot turns about the toe's axis; a stiff foot rolls on the pads at its tip; either rolls on its heel pads when it
-lands. Rolling pads do not slip. Pieces join with equal position, rate and acceleration.
+The foot moves in its own sagittal plane. While it rolls, its place follows from its pitch alone: a
+toe that moves lies flat and the foot turns about the toe's axis; a stiff foot rolls on the pads at
+its tip; either rolls on its heel pads when it lands. Rolling pads do not slip. Pieces join with
+equal position, rate and acceleration.
 """
 
 from __future__ import annotations
@@ -45,7 +47,9 @@ class FootPath:
     """`(n,)`"""
 
     def twist(self, order: int, sample: int) -> np.ndarray:
-        """Velocity (order 1) or acceleration (2) of the ankle and of the foot's turning, `(6,)`, world axes."""
+        """Velocity (order 1) or acceleration (2) of the ankle and of the foot's turning, `(6,)`,
+        world axes.
+        """
         return np.array([*self.position[order, sample], 0.0, self.pitch[order, sample], 0.0])
 
     def bears(self, row: str) -> np.ndarray:
@@ -55,7 +59,9 @@ class FootPath:
 
 @dataclass(frozen=True)
 class Step:
-    """One step of a foot: times of heel rise, toe-off, touchdown and flat foot, and where it goes."""
+    """One step of a foot: times of heel rise, toe-off, touchdown and flat foot, and where it
+    goes.
+    """
 
     rise: float
     """Heel leaves the floor [s]."""
@@ -93,7 +99,9 @@ def quintic(time: np.ndarray, begin: float, end: float, first: State, last: Stat
 
 
 def bump(time: np.ndarray, begin: float, end: float, height: float) -> np.ndarray:
-    """Smooth rise and fall, `height (4 s (1 - s))^3`, with rate and acceleration, `(3, n)`; at rest at both ends."""
+    """Smooth rise and fall, `height (4 s (1 - s))^3`, with rate and acceleration, `(3, n)`; at rest
+    at both ends.
+    """
     poly = height * 64 * np.polynomial.Polynomial([0, 1, -1]) ** 3
     span = end - begin
     s = (time - begin) / span
@@ -105,7 +113,8 @@ def rolling(design: Design, row: str, pitch: np.ndarray) -> np.ndarray:
 
     Args:
         design: a robot.
-        row: `heel`, or `tip` for the toes: about the toe's axis where that moves, on the tip's pads otherwise.
+        row: `heel`, or `tip` for the toes: about the toe's axis where that moves, on the tip's pads
+            otherwise.
         pitch: of the foot, with rate and acceleration, `(3, n)`.
 
     Returns:
@@ -117,13 +126,21 @@ def rolling(design: Design, row: str, pitch: np.ndarray) -> np.ndarray:
     elif has_toe_joint(design):
         x, z, roll = foot.ball_length, -(foot.ankle_height - design.toe.axis_height), 0.0
     else:
-        x, z, roll = foot.ball_length + design.toe.length - radius, -foot.ankle_height + radius, radius
+        x, z, roll = (
+            foot.ball_length + design.toe.length - radius,
+            -foot.ankle_height + radius,
+            radius,
+        )
     angle, rate, turn = pitch
     cosine, sine = np.cos(angle), np.sin(angle)
-    forward = np.stack([x - (cosine * x + sine * z) + roll * angle, z - (-sine * x + cosine * z)], -1)
+    forward = np.stack(
+        [x - (cosine * x + sine * z) + roll * angle, z - (-sine * x + cosine * z)], -1
+    )
     slope = np.stack([sine * x - cosine * z + roll, cosine * x + sine * z], -1)
     bend = np.stack([cosine * x + sine * z, -sine * x + cosine * z], -1)
-    return np.stack([forward, slope * rate[:, None], slope * turn[:, None] + bend * (rate**2)[:, None]])
+    return np.stack(
+        [forward, slope * rate[:, None], slope * turn[:, None] + bend * (rate**2)[:, None]]
+    )
 
 
 def foot_path(design: Design, time: np.ndarray, steps: Sequence[Step]) -> FootPath:
@@ -157,7 +174,9 @@ def foot_path(design: Design, time: np.ndarray, steps: Sequence[Step]) -> FootPa
             first = (start[axis] + leaves[0, column], leaves[1, column], leaves[2, column])
             last = (end[axis] + meets[0, column], meets[1, column], meets[2, column])
             position[:, swings, axis] = quintic(time[swings], step.off, step.land, first, last)
-        position[:, swings, 1] = quintic(time[swings], step.off, step.land, (start[1], 0, 0), (end[1], 0, 0))
+        position[:, swings, 1] = quintic(
+            time[swings], step.off, step.land, (start[1], 0, 0), (end[1], 0, 0)
+        )
         position[:, swings, 2] += bump(time[swings], step.off, step.land, step.clearance)
 
         lands = (time >= step.land) & (time < step.flat)
@@ -173,7 +192,9 @@ def foot_path(design: Design, time: np.ndarray, steps: Sequence[Step]) -> FootPa
             back = step.off + TOE_RETURN * (step.land - step.off)
             straightens = (time >= step.off) & (time < back)
             toe[:, rises] = -pitch[:, rises]
-            toe[:, straightens] = quintic(time[straightens], step.off, back, (-off[0], -off[1], -off[2]), REST)
+            toe[:, straightens] = quintic(
+                time[straightens], step.off, back, (-off[0], -off[1], -off[2]), REST
+            )
     return FootPath(position, pitch, toe, phase)
 
 
@@ -186,9 +207,17 @@ def _place(position: np.ndarray, where: np.ndarray, base: np.ndarray, moved: np.
 
 def _off_state(step: Step) -> State:
     """Pitch as the foot leaves: still turning, at the mean rate of the rise."""
-    return (step.pitch_off, step.pitch_off / (step.off - step.rise), 0.0) if step.pitch_off else REST
+    return (
+        (step.pitch_off, step.pitch_off / (step.off - step.rise), 0.0) if step.pitch_off else REST
+    )
 
 
 def _land_state(step: Step) -> State:
-    """Pitch as the foot lands: already turning, at the mean rate of the landing, so that the heel meets the floor without impact."""
-    return (step.pitch_land, -step.pitch_land / (step.flat - step.land), 0.0) if step.pitch_land else REST
+    """Pitch as the foot lands: already turning, at the mean rate of the landing, so that the heel
+    meets the floor without impact.
+    """
+    return (
+        (step.pitch_land, -step.pitch_land / (step.flat - step.land), 0.0)
+        if step.pitch_land
+        else REST
+    )

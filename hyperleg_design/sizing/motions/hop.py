@@ -1,8 +1,9 @@
 """Hopping on the spot with both feet: push-off, flight, landing, over and over.
 
-The ground's force is vertical and passes through the centre of mass, which stays over the middle of the soles; it is a
-smooth pulse in stance and nothing in flight, where the centre of mass falls freely. The angular momentum about the centre of
-mass stays zero: the pelvis leans forward at the deepest point and swings back as the legs extend.
+The ground's force is vertical and passes through the centre of mass, which stays over the middle of
+the soles; it is a smooth pulse in stance and nothing in flight, where the centre of mass falls
+freely. The angular momentum about the centre of mass stays zero: the pelvis leans forward at the
+deepest point and swings back as the legs extend.
 """
 
 from __future__ import annotations
@@ -50,9 +51,11 @@ class HopPlan:
     flight: float = 0.12
     """Feet up [s]; the centre of mass rises by g flight^2 / 8 meanwhile."""
     min_knee: float = 1.0
-    """Knee flexion at the straightest moment, were the trunk upright [rad]; straighter legs spin a light trunk too fast."""
+    """Knee flexion at the straightest moment, were the trunk upright [rad]; straighter legs spin a
+    light trunk too fast."""
     lean: float = 0.45
-    """Pitch of the pelvis at the deepest point [rad]; it swings back as the legs extend, as a jumper's trunk does."""
+    """Pitch of the pelvis at the deepest point [rad]; it swings back as the legs extend, as a
+    jumper's trunk does."""
 
     def __post_init__(self) -> None:
         check_positive("hop", stance=self.stance, flight=self.flight, min_knee=self.min_knee)
@@ -89,18 +92,24 @@ def hop(design: Design, plan: HopPlan | None = None, samples: int = 60) -> Motio
     pressure[:, 0] = sole_middle(design)
     pressure[flying] = np.nan
     assumed = {
-        "hop": f"{plan.stance:g} s of stance, {plan.flight:g} s of flight, the centre of mass {100 * plan.rise:.1f} cm up in flight (assumed)",
-        "force": f"a vertical pulse of at most {load_pulse(plan, time)[2].max():.2f} body weights under the middle of the soles (assumed)",
-        "trunk": f"leans forward by {np.rad2deg(plan.lean):.0f} deg at the deepest point and swings back; no angular momentum, feet flat (assumed)",
+        "hop": f"{plan.stance:g} s of stance, {plan.flight:g} s of flight, the centre of mass "
+        f"{100 * plan.rise:.1f} cm up in flight (assumed)",
+        "force": f"a vertical pulse of at most {load_pulse(plan, time)[2].max():.2f} body weights "
+        f"under the middle of the soles (assumed)",
+        "trunk": f"leans forward by {np.rad2deg(plan.lean):.0f} deg at the deepest point and "
+        f"swings back; no angular momentum, feet flat (assumed)",
     }
-    return Motion("hop", model, time, q, v, a, contact_mask(model, feet), feet, pressure, True, 0.0, assumed)
+    return Motion(
+        "hop", model, time, q, v, a, contact_mask(model, feet), feet, pressure, True, 0.0, assumed
+    )
 
 
 def load_pulse(plan: HopPlan, time: np.ndarray) -> np.ndarray:
-    """Height of the centre of mass [m] over that at touchdown, its rate [m/s], and the vertical force over weight, `(3, n)`.
+    """Height of the centre of mass [m] over that at touchdown, its rate [m/s], and the vertical
+    force over weight, `(3, n)`.
 
-    The force is a smooth pulse `u^2 (3 - 2 u)`, u = 4 s (1 - s), in stance and zero in flight, 1 on average. Time [s] within
-    one hop, from touchdown.
+    The force is a smooth pulse `u^2 (3 - 2 u)`, u = 4 s (1 - s), in stance and zero in flight, 1 on
+    average. Time [s] within one hop, from touchdown.
     """
     time = np.asarray(time, float)
     u = 4 * np.polynomial.Polynomial([0.0, 1.0, -1.0])
@@ -120,7 +129,9 @@ def _feet(design: Design, plan: HopPlan, time: np.ndarray) -> tuple[FootPath, Fo
     for side in SIDES:
         position = np.zeros((3, len(time), 3))
         position[0] = [0.0, SIGN[side] * design.hip.spacing / 2, design.foot.ankle_height]
-        position[:, flying, 2] += bump(time[flying], plan.stance, plan.stance + plan.flight, plan.rise)
+        position[:, flying, 2] += bump(
+            time[flying], plan.stance, plan.stance + plan.flight, plan.rise
+        )
         still = np.zeros((3, len(time)))
         found.append(FootPath(position, still, still, np.where(flying, SWING, FLAT)))
     return found[0], found[1]
@@ -128,7 +139,9 @@ def _feet(design: Design, plan: HopPlan, time: np.ndarray) -> tuple[FootPath, Fo
 
 @dataclass(frozen=True, eq=False)
 class _Hop:
-    """The hop's three conditions (place of the centre of mass, no spin) solved for the pelvis's place and pitch."""
+    """The hop's three conditions (place of the centre of mass, no spin) solved for the pelvis's
+    place and pitch.
+    """
 
     model: RigidBodyModel
     plan: HopPlan
@@ -137,35 +150,64 @@ class _Hop:
         """States at times within one hop, `(n,)`."""
         design, plan = self.model.design, self.plan
         middle, rise = sole_middle(design), load_pulse(plan, time)[0]
-        # the straightest moment, upright and over the middle of the soles, fixes how high the centre of mass may be
+        # the straightest moment, upright and over the middle of the soles, fixes how high the
+        # centre of mass may be
         over = np.stack([np.full(len(time), middle), 0 * time], -1)
-        rooms = [highest_pelvis(design, over[[n]], _feet(design, plan, time[[n]]), rise[[n]], plan.min_knee) for n in range(len(time))]
+        rooms = [
+            highest_pelvis(
+                design, over[[n]], _feet(design, plan, time[[n]]), rise[[n]], plan.min_knee
+            )
+            for n in range(len(time))
+        ]
         straightest = int(np.argmin(rooms))
         posture = np.array([middle, rooms[straightest] + rise[straightest], 0.0])
-        touchdown = self.model.center_of_mass(self._row(time[[straightest]], posture, *np.zeros((2, 1, 3)))[0][0])[2] - rise[straightest]
-        guess = np.array([middle, rooms[straightest] + load_pulse(plan, np.array([plan.stance / 2]))[0, 0], plan.lean])
+        touchdown = (
+            self.model.center_of_mass(
+                self._row(time[[straightest]], posture, *np.zeros((2, 1, 3)))[0][0]
+            )[2]
+            - rise[straightest]
+        )
+        guess = np.array(
+            [
+                middle,
+                rooms[straightest] + load_pulse(plan, np.array([plan.stance / 2]))[0, 0],
+                plan.lean,
+            ]
+        )
 
-        # no spin fixes the pitch's rate: integrate from the deepest point, where the motion turns back on itself
+        # no spin fixes the pitch's rate: integrate from the deepest point, where the motion turns
+        # back on itself
         period = plan.stance + plan.flight
         wanted = np.abs((time - plan.stance / 2 + period / 2) % period - period / 2)
         marks = np.unique(np.round(np.concatenate([[0.0], wanted]), 12))
         places = {0.0: self._placed(0.0, guess, touchdown)}
         for begin, end in itertools.pairwise(marks):
-            places[float(end)] = self._stepped(float(begin), float(end), places[float(begin)], touchdown)
-        q, v, a = (np.zeros((len(time), size)) for size in (self.model.model.nq, self.model.model.nv, self.model.model.nv))
+            places[float(end)] = self._stepped(
+                float(begin), float(end), places[float(begin)], touchdown
+            )
+        q, v, a = (
+            np.zeros((len(time), size))
+            for size in (self.model.model.nq, self.model.model.nv, self.model.model.nv)
+        )
         for n, moment in enumerate(time):
             place = places[float(np.round(wanted[n], 12))]
             speed = self._speed(float(moment), place)
             q[n], v[n], a[n] = self._thrust(float(moment), place, speed)
         return q, v, a
 
-    def _row(self, time: np.ndarray, place: np.ndarray, speed: np.ndarray, thrust: np.ndarray) -> tuple[np.ndarray, ...]:
-        """States with the pelvis at `(x, z, pitch)`, for each row of its rates and accelerations `(rows, 3)`."""
+    def _row(
+        self, time: np.ndarray, place: np.ndarray, speed: np.ndarray, thrust: np.ndarray
+    ) -> tuple[np.ndarray, ...]:
+        """States with the pelvis at `(x, z, pitch)`, for each row of its rates and accelerations
+        `(rows, 3)`.
+        """
         rows = len(speed)
         moved = np.stack([np.broadcast_to(place, (rows, 3)), speed, thrust])
         position = np.stack([moved[..., 0], np.zeros((3, rows)), moved[..., 1]], -1)
         feet = _feet(self.model.design, self.plan, np.full(rows, time[0]))
-        return joint_states(self.model, PelvisPath(position, moved[..., 2], np.zeros((3, rows))), feet)
+        return joint_states(
+            self.model, PelvisPath(position, moved[..., 2], np.zeros((3, rows))), feet
+        )
 
     def _since_touchdown(self, late: float) -> np.ndarray:
         """Time within the hop of a time after its deepest point, `(1,)` [s]."""
@@ -174,16 +216,25 @@ class _Hop:
     def _placed(self, late: float, place: np.ndarray, touchdown: float) -> np.ndarray:
         """The place, its x and z moved until the centre of mass is where it should be."""
         moment = self._since_touchdown(late)
-        target = np.array([sole_middle(self.model.design), touchdown + load_pulse(self.plan, moment)[0, 0]])
+        target = np.array(
+            [sole_middle(self.model.design), touchdown + load_pulse(self.plan, moment)[0, 0]]
+        )
         found = place.copy()
         for _ in range(NEWTON_STEPS):
             q, v, _ = self._row(moment, found, np.eye(3)[:2], np.zeros((2, 3)))
             miss = target - self.model.center_of_mass(q[0])[[0, 2]]
             if np.max(np.abs(miss)) < CLOSE:
                 return found
-            slope = self._momenta(q, v)[:, :2].T - self._momenta(*self._row(moment, found, np.zeros((1, 3)), np.zeros((1, 3)))[:2])[:, :2].T
+            slope = (
+                self._momenta(q, v)[:, :2].T
+                - self._momenta(*self._row(moment, found, np.zeros((1, 3)), np.zeros((1, 3)))[:2])[
+                    :, :2
+                ].T
+            )
             found[:2] += np.linalg.solve(slope / self._mass, miss)
-        raise InfeasibleError(f"{self.model.design.name}: no posture puts the centre of mass where the hop needs it")
+        raise InfeasibleError(
+            f"{self.model.design.name}: no posture puts the centre of mass where the hop needs it"
+        )
 
     def _stepped(self, begin: float, end: float, place: np.ndarray, touchdown: float) -> np.ndarray:
         """One step of the classical Runge-Kutta method in the pitch."""
@@ -201,14 +252,25 @@ class _Hop:
         return self._placed(end, np.array([at[0], at[1], pitch]), touchdown)
 
     def _speed(self, moment: float, place: np.ndarray) -> np.ndarray:
-        """Rates of the pelvis at which the centre of mass moves as planned and nothing spins, `(3,)`."""
-        q, v, _ = self._row(np.array([moment]), place, np.concatenate([np.zeros((1, 3)), np.eye(3)]), np.zeros((4, 3)))
+        """Rates of the pelvis at which the centre of mass moves as planned and nothing spins,
+        `(3,)`.
+        """
+        q, v, _ = self._row(
+            np.array([moment]),
+            place,
+            np.concatenate([np.zeros((1, 3)), np.eye(3)]),
+            np.zeros((4, 3)),
+        )
         found = self._momenta(q, v)
         target = np.array([0.0, self._mass * load_pulse(self.plan, np.array([moment]))[1, 0], 0.0])
         return np.linalg.solve((found[1:] - found[0]).T, target - found[0])
 
-    def _thrust(self, moment: float, place: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The state, with accelerations of the pelvis at which the ground's force is the planned one."""
+    def _thrust(
+        self, moment: float, place: np.ndarray, speed: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The state, with accelerations of the pelvis at which the ground's force is the planned
+        one.
+        """
         rows = np.concatenate([np.zeros((1, 3)), np.eye(3)])
         q, v, a = self._row(np.array([moment]), place, np.broadcast_to(speed, (4, 3)), rows)
         force, moments = ground_wrench(self.model, q, v, a)

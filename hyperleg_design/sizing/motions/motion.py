@@ -11,7 +11,14 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.sizing.contacts import sole_pads
-from hyperleg_design.sizing.kinematics import about_x, about_y, check_range, has_toe_joint, hip_center, leg_angles
+from hyperleg_design.sizing.kinematics import (
+    about_x,
+    about_y,
+    check_range,
+    has_toe_joint,
+    hip_center,
+    leg_angles,
+)
 from hyperleg_design.sizing.motions.foot_path import FootPath
 
 if TYPE_CHECKING:
@@ -67,7 +74,11 @@ class Motion:
     @property
     def duration(self) -> float:
         """[s]"""
-        return float(len(self.time) * self.time_step) if self.periodic else float(self.time[-1] - self.time[0])
+        return (
+            float(len(self.time) * self.time_step)
+            if self.periodic
+            else float(self.time[-1] - self.time[0])
+        )
 
     @property
     def joint_position(self) -> np.ndarray:
@@ -80,11 +91,14 @@ class Motion:
         return self.v[:, 6:].reshape(len(self.time), 2, -1)
 
 
-def joint_states(model: RigidBodyModel, pelvis: PelvisPath, feet: tuple[FootPath, FootPath]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def joint_states(
+    model: RigidBodyModel, pelvis: PelvisPath, feet: tuple[FootPath, FootPath]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """States that carry pelvis and feet along their paths, velocities and accelerations exact.
 
-    Positions are inverse kinematics. Velocities solve `J_leg q_dot = twist of the foot - what the base brings`, and
-    accelerations the same equation differentiated, so that a foot planned to stand has none of either.
+    Positions are inverse kinematics. Velocities solve `J_leg q_dot = twist of the foot - what the
+    base brings`, and accelerations the same equation differentiated, so that a foot planned to
+    stand has none of either.
 
     Returns:
         `q (n, nq)`, `v (n, nv)`, `a (n, nv)`.
@@ -97,15 +111,25 @@ def joint_states(model: RigidBodyModel, pelvis: PelvisPath, feet: tuple[FootPath
     design, count = model.design, pelvis.position.shape[1]
     joints = (model.model.nv - 6) // 2
     toe = has_toe_joint(design)
-    q, v, a = np.zeros((count, model.model.nq)), np.zeros((count, model.model.nv)), np.zeros((count, model.model.nv))
+    q, v, a = (
+        np.zeros((count, model.model.nq)),
+        np.zeros((count, model.model.nv)),
+        np.zeros((count, model.model.nv)),
+    )
     place, speed, thrust = pelvis.position
     pitch, roll = pelvis.pitch, pelvis.roll
     rotation = about_x(roll[0]) @ about_y(pitch[0])
     to_body = np.swapaxes(rotation, -1, -2)
     half_pitch, half_roll = pitch[0] / 2, roll[0] / 2
     q[:, :3] = place
-    q[:, 3], q[:, 4] = np.sin(half_roll) * np.cos(half_pitch), np.cos(half_roll) * np.sin(half_pitch)
-    q[:, 5], q[:, 6] = np.sin(half_roll) * np.sin(half_pitch), np.cos(half_roll) * np.cos(half_pitch)
+    q[:, 3], q[:, 4] = (
+        np.sin(half_roll) * np.cos(half_pitch),
+        np.cos(half_roll) * np.sin(half_pitch),
+    )
+    q[:, 5], q[:, 6] = (
+        np.sin(half_roll) * np.sin(half_pitch),
+        np.cos(half_roll) * np.cos(half_pitch),
+    )
     cosine, sine = np.cos(pitch[0]), np.sin(pitch[0])
     v[:, :3] = np.einsum("nij,nj->ni", to_body, speed)
     v[:, 3], v[:, 4], v[:, 5] = cosine * roll[1], pitch[1], sine * roll[1]
@@ -114,8 +138,12 @@ def joint_states(model: RigidBodyModel, pelvis: PelvisPath, feet: tuple[FootPath
     a[:, 5] = sine * roll[2] + cosine * pitch[1] * roll[1]
     for leg, side in enumerate(SIDES):
         start, path = 7 + leg * joints, feet[leg]
-        offset = np.einsum("nij,nj->ni", to_body, path.position[0] - place) - hip_center(design, side)
-        q[:, start : start + 6] = leg_angles(design, side, offset, to_body @ about_y(path.pitch[0]), check_limits=False)
+        offset = np.einsum("nij,nj->ni", to_body, path.position[0] - place) - hip_center(
+            design, side
+        )
+        q[:, start : start + 6] = leg_angles(
+            design, side, offset, to_body @ about_y(path.pitch[0]), check_limits=False
+        )
         if toe:
             q[:, start + 6], v[:, start + 5], a[:, start + 5] = path.toe
     frames = [model.model.getFrameId(f"{side}_foot") for side in SIDES]
@@ -152,8 +180,12 @@ def contact_mask(model: RigidBodyModel, feet: tuple[FootPath, FootPath]) -> np.n
     return np.stack(columns, -1)
 
 
-def ground_wrench(model: RigidBodyModel, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What the ground must give: force [N] and moment about the world's origin [Nm], each `(n, 3)`, world axes."""
+def ground_wrench(
+    model: RigidBodyModel, q: np.ndarray, v: np.ndarray, a: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """What the ground must give: force [N] and moment about the world's origin [Nm], each `(n, 3)`,
+    world axes.
+    """
     from hyperleg_design.robot.models import quaternion_matrix
 
     force, moment = np.zeros((len(q), 3)), np.zeros((len(q), 3))

@@ -25,7 +25,9 @@ MOTIONS = tuple(_PLANNERS)
 """Names of the reference motions."""
 
 
-def reference_motion(design: Design, name: str, *, samples: int | None = None, **plan: float) -> Motion:
+def reference_motion(
+    design: Design, name: str, *, samples: int | None = None, **plan: float
+) -> Motion:
     """A reference motion of one robot.
 
     Args:
@@ -46,6 +48,8 @@ def reference_motion(design: Design, name: str, *, samples: int | None = None, *
     known = made.__dataclass_fields__  # type: ignore[attr-defined]
     for field, value in plan.items():
         if field not in known:
-            raise InputError(name, field, value, f"is no part of the plan; it has {', '.join(known)}")
+            raise InputError(
+                name, field, value, f"is no part of the plan; it has {', '.join(known)}"
+            )
     counted = {} if samples is None else {"samples": samples}
     return planner(design, made(**plan), **counted)

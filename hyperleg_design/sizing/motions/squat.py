@@ -40,7 +40,9 @@ def standing_feet(design: Design, count: int) -> tuple[FootPath, FootPath]:
     for side in SIDES:
         position = np.zeros((3, count, 3))
         position[0] = [0.0, SIGN[side] * design.hip.spacing / 2, design.foot.ankle_height]
-        found.append(FootPath(position, np.zeros((3, count)), np.zeros((3, count)), np.full(count, FLAT)))
+        found.append(
+            FootPath(position, np.zeros((3, count)), np.zeros((3, count)), np.full(count, FLAT))
+        )
     return found[0], found[1]
 
 
@@ -71,14 +73,40 @@ def squat(design: Design, plan: SquatPlan | None = None, samples: int = 81) -> M
     pressure = np.zeros((samples, 3))
     pressure[:, 0] = sole_middle(design)
     rate = 2 * np.pi / plan.period
-    wave = plan.depth / 2 * np.stack([np.cos(rate * time) - 1, -rate * np.sin(rate * time), -(rate**2) * np.cos(rate * time)])
+    wave = (
+        plan.depth
+        / 2
+        * np.stack(
+            [np.cos(rate * time) - 1, -rate * np.sin(rate * time), -(rate**2) * np.cos(rate * time)]
+        )
+    )
 
     def height(place: np.ndarray, _rise: np.ndarray) -> np.ndarray:
-        return wave + np.array([highest_pelvis(design, place, feet, wave[0], plan.min_knee), 0.0, 0.0])[:, None]
+        return (
+            wave
+            + np.array([highest_pelvis(design, place, feet, wave[0], plan.min_knee), 0.0, 0.0])[
+                :, None
+            ]
+        )
 
-    found = balanced_states(model, feet, pressure, height, Series(plan.period / samples, mirrored=False))
+    found = balanced_states(
+        model, feet, pressure, height, Series(plan.period / samples, mirrored=False)
+    )
     assumed = {
         "squat": f"{plan.depth:g} m in {plan.period:g} s, down and up as a sinusoid (assumed)",
         "feet": "flat under the hips, trunk upright, pressure in the middle of the soles (assumed)",
     }
-    return Motion("squat", model, time, found.q, found.v, found.a, contact_mask(model, feet), feet, pressure, True, 0.0, assumed)
+    return Motion(
+        "squat",
+        model,
+        time,
+        found.q,
+        found.v,
+        found.a,
+        contact_mask(model, feet),
+        feet,
+        pressure,
+        True,
+        0.0,
+        assumed,
+    )

@@ -1,4 +1,6 @@
-"""A stair step: shift the weight, lift one foot onto the step, rise, bring the other foot beside it."""
+"""A stair step: shift the weight, lift one foot onto the step, rise, bring the other foot beside
+it.
+"""
 
 from __future__ import annotations
 
@@ -41,11 +43,14 @@ class StairPlan:
     pitch_off: float = 0.55
     """Pitch of the rear foot as it leaves the lower floor [rad]."""
     lean: float = 0.10
-    """Of the trunk over the standing foot [rad]; upright, the hips' narrow range inward (5 deg) would not let it stand there."""
+    """Of the trunk over the standing foot [rad]; upright, the hips' narrow range inward (5 deg)
+    would not let it stand there."""
     inward: float = 0.4
-    """How far inside the standing foot's middle the pressure is, over the half distance of its pads [-]."""
+    """How far inside the standing foot's middle the pressure is, over the half distance of its pads
+    [-]."""
     upper_pressure: float = 0.2
-    """Where the upper foot takes the weight, from below its ankle to its middle [-]; further ahead the ankle would bend too far."""
+    """Where the upper foot takes the weight, from below its ankle to its middle [-]; further ahead
+    the ankle would bend too far."""
     heel_rise: float = 0.30
     """When in the rise the rear heel leaves the floor [-]."""
     min_knee: float = 0.30
@@ -76,28 +81,63 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
     if samples < 40:
         raise InputError("stair", "samples", samples, "expects at least 40")
     model = rigid_body_model(design)
-    marks = np.cumsum([0.0, plan.shift / 2, plan.shift, plan.swing, plan.rise, plan.swing, plan.shift, plan.shift / 2])
+    marks = np.cumsum(
+        [
+            0.0,
+            plan.shift / 2,
+            plan.shift,
+            plan.swing,
+            plan.rise,
+            plan.swing,
+            plan.shift,
+            plan.shift / 2,
+        ]
+    )
     _, leave, up, landed, over, beside, centred, end = marks
     time = np.linspace(0.0, end, samples)
     y, ahead, high = plan.width * design.hip.spacing / 2, plan.step_depth, plan.step_height
     left = Step(up, up, landed, landed, (0.0, y, 0.0), (ahead, y, high), 0.0, 0.0, plan.clearance)
     heel_up = landed + plan.heel_rise * plan.rise
-    right = Step(heel_up, over, beside, beside, (0.0, -y, 0.0), (ahead, -y, high), plan.pitch_off, 0.0, plan.clearance)
+    right = Step(
+        heel_up,
+        over,
+        beside,
+        beside,
+        (0.0, -y, 0.0),
+        (ahead, -y, high),
+        plan.pitch_off,
+        0.0,
+        plan.clearance,
+    )
     feet = (foot_path(design, time, [left]), foot_path(design, time, [right]))
 
-    middle, tip = sole_middle(design), design.foot.ball_length + design.toe.length - design.contact.pad_radius
+    middle, tip = (
+        sole_middle(design),
+        design.foot.ball_length + design.toe.length - design.contact.pad_radius,
+    )
     inner = y - plan.inward * max(design.foot.width / 2 - design.contact.pad_radius, 0.0)
-    lower, upper = np.array([middle, -inner, 0.0]), np.array([ahead + plan.upper_pressure * middle, inner, high])
+    lower, upper = (
+        np.array([middle, -inner, 0.0]),
+        np.array([ahead + plan.upper_pressure * middle, inner, high]),
+    )
     ready = np.array([middle + 0.85 * (tip - middle), -inner, 0.0])
     stops = [
-        (0.0, np.array([middle, 0.0, 0.0])), (leave, np.array([middle, 0.0, 0.0])), (up, lower), (landed, ready), (over, upper),
-        (beside, upper), (centred, np.array([ahead + middle, 0.0, high])), (end, np.array([ahead + middle, 0.0, high])),
-    ]  # fmt: skip
+        (0.0, np.array([middle, 0.0, 0.0])),
+        (leave, np.array([middle, 0.0, 0.0])),
+        (up, lower),
+        (landed, ready),
+        (over, upper),
+        (beside, upper),
+        (centred, np.array([ahead + middle, 0.0, high])),
+        (end, np.array([ahead + middle, 0.0, high])),
+    ]
     path = np.zeros((3, samples, 3))
     for (t0, p0), (t1, p1) in itertools.pairwise(stops):
         inside = (time >= t0) & (time <= t1)
         for axis in range(3):
-            path[:, inside, axis] = quintic(time[inside], t0, t1, (p0[axis], 0, 0), (p1[axis], 0, 0))
+            path[:, inside, axis] = quintic(
+                time[inside], t0, t1, (p0[axis], 0, 0), (p1[axis], 0, 0)
+            )
     pressure, lean = path[0], -plan.lean / inner * path[..., 1]
 
     climb = np.zeros((3, samples))
@@ -106,13 +146,35 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
     climb[:, rising] = quintic(time[rising], landed, over, (0, 0, 0), (high, 0, 0))
 
     def height(place: np.ndarray, _rise: np.ndarray) -> np.ndarray:
-        return climb + np.array([highest_pelvis(design, place, feet, climb[0], plan.min_knee, lean[0]), 0.0, 0.0])[:, None]
+        return (
+            climb
+            + np.array(
+                [highest_pelvis(design, place, feet, climb[0], plan.min_knee, lean[0]), 0.0, 0.0]
+            )[:, None]
+        )
 
-    found = balanced_states(model, feet, pressure, height, Series(end / (samples - 1), mirrored=True), roll=lean)
+    found = balanced_states(
+        model, feet, pressure, height, Series(end / (samples - 1), mirrored=True), roll=lean
+    )
     assumed = {
-        "step": f"{high:g} m high, {ahead:g} m ahead, {SIDES[0]} foot first, {end:.2f} s from rest to rest (assumed)",
-        "pelvis": f"leans by {np.rad2deg(plan.lean):.0f} deg over the standing foot and rises as the weight passes (assumed)",
+        "step": f"{high:g} m high, {ahead:g} m ahead, {SIDES[0]} foot first, {end:.2f} s from rest "
+        f"to rest (assumed)",
+        "pelvis": f"leans by {np.rad2deg(plan.lean):.0f} deg over the standing foot and rises as "
+        f"the weight passes (assumed)",
         "knee": f"never straighter than {np.rad2deg(plan.min_knee):.0f} deg (assumed)",
         "balance": "the zero-moment point goes from foot to foot (assumed)",
     }
-    return Motion("stair", model, time, found.q, found.v, found.a, contact_mask(model, feet), feet, pressure, False, ahead, assumed)
+    return Motion(
+        "stair",
+        model,
+        time,
+        found.q,
+        found.v,
+        found.a,
+        contact_mask(model, feet),
+        feet,
+        pressure,
+        False,
+        ahead,
+        assumed,
+    )

@@ -1,4 +1,6 @@
-"""A planned walk: steps of one length, the trunk upright, heel first, rolling over the toes at the end of each stance."""
+"""A planned walk: steps of one length, the trunk upright, heel first, rolling over the toes at the
+end of each stance.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,10 @@ if TYPE_CHECKING:
 class WalkPlan:
     """What the walk looks like.
 
-    Only the speed is the paper's. The rest is assumed: of the plans near human walking that a random search tried, one that
-    keeps every motor of the paper's robot inside its envelope, with the active toe and without it. Knees as straight as
-    a human's would have to turn faster, as the heel rises, than their motors can.
+    Only the speed is the paper's. The rest is assumed: of the plans near human walking that a
+    random search tried, one that keeps every motor of the paper's robot inside its envelope, with
+    the active toe and without it. Knees as straight as a human's would have to turn faster, as the
+    heel rises, than their motors can.
     """
 
     speed: float = 1.33
@@ -36,7 +39,8 @@ class WalkPlan:
     step_width: float = 0.8
     """Between the feet, over the distance between the hips [-]."""
     heel_rise: float = 0.20
-    """When in double support the rear heel leaves the floor [-]; the front heel has met it before."""
+    """When in double support the rear heel leaves the floor [-]; the front heel has met it
+    before."""
     foot_flat: float = 0.57
     """When in double support the front foot is flat [-]."""
     pitch_off: float = 0.49
@@ -50,24 +54,38 @@ class WalkPlan:
     min_knee: float = 0.65
     """Least knee flexion [rad]; the pelvis is as high as this lets it be."""
     pressure_start: float = 0.0
-    """Where on the way from below the ankle to the toe axis the pressure starts in single support [-]."""
+    """Where on the way from below the ankle to the toe axis the pressure starts in single support
+    [-]."""
     pressure_end: float = 0.82
-    """Where on the way from the toe axis to the tip pads the pressure ends in single support [-]."""
+    """Where on the way from the toe axis to the tip pads the pressure ends in single support
+    [-]."""
 
     def __post_init__(self) -> None:
-        check_positive("walk", speed=self.speed, step_time=self.step_time, step_width=self.step_width, min_knee=self.min_knee)
+        check_positive(
+            "walk",
+            speed=self.speed,
+            step_time=self.step_time,
+            step_width=self.step_width,
+            min_knee=self.min_knee,
+        )
         for name in ("double_support", "heel_rise", "foot_flat"):
             if not 0 < getattr(self, name) < 1:
                 raise InputError("walk", name, getattr(self, name), "must lie between 0 and 1")
         if not (0 <= self.pitch_off < 1.2 and -0.8 < self.pitch_land <= 0):
-            raise InputError("walk", "pitch_off, pitch_land", (self.pitch_off, self.pitch_land), "expects 0 .. 1.2 and -0.8 .. 0 rad")
+            raise InputError(
+                "walk",
+                "pitch_off, pitch_land",
+                (self.pitch_off, self.pitch_land),
+                "expects 0 .. 1.2 and -0.8 .. 0 rad",
+            )
 
 
 def walk(design: Design, plan: WalkPlan | None = None, samples: int = 101) -> Motion:
     """One stride (two steps) of a steady walk.
 
-    The feet follow their steps; the centre of pressure runs from heel to toe in single support and to the other foot in
-    double support; the pelvis path makes the whole robot's zero-moment point that one.
+    The feet follow their steps; the centre of pressure runs from heel to toe in single support and
+    to the other foot in double support; the pelvis path makes the whole robot's zero-moment point
+    that one.
 
     Args:
         design: a robot, of any variant.
@@ -88,23 +106,46 @@ def walk(design: Design, plan: WalkPlan | None = None, samples: int = 101) -> Mo
     pressure = _pressure(design, plan, time)
     drift = np.zeros((3, samples, 2))
     drift[0, :, 0], drift[1, :, 0] = plan.speed * time, plan.speed
-    load = 1 + plan.load_swing * np.cos(2 * np.pi * (time / plan.step_time - plan.double_support / 2))
+    load = 1 + plan.load_swing * np.cos(
+        2 * np.pi * (time / plan.step_time - plan.double_support / 2)
+    )
 
     def height(place: np.ndarray, rise: np.ndarray) -> np.ndarray:
-        return rise + np.array([highest_pelvis(design, place, feet, rise[0], plan.min_knee), 0.0, 0.0])[:, None]
+        return (
+            rise
+            + np.array([highest_pelvis(design, place, feet, rise[0], plan.min_knee), 0.0, 0.0])[
+                :, None
+            ]
+        )
 
-    found = balanced_states(model, feet, pressure, height, Series(stride_time / samples, mirrored=False), drift, load)
+    found = balanced_states(
+        model, feet, pressure, height, Series(stride_time / samples, mirrored=False), drift, load
+    )
     return Motion(
-        "walk", model, time, found.q, found.v, found.a, contact_mask(model, feet), feet, pressure, True, plan.speed * stride_time, _assumed(plan)
+        "walk",
+        model,
+        time,
+        found.q,
+        found.v,
+        found.a,
+        contact_mask(model, feet),
+        feet,
+        pressure,
+        True,
+        plan.speed * stride_time,
+        _assumed(plan),
     )
 
 
 def _assumed(plan: WalkPlan) -> dict[str, str]:
     return {
         "speed": f"{plan.speed:g} m/s (paper, Table III)",
-        "step": f"{plan.step_time:g} s, {plan.speed * plan.step_time:.3f} m; both feet down for {100 * plan.double_support:g} % of it (assumed)",
-        "feet": f"leave pitched by {np.rad2deg(plan.pitch_off):.0f} deg, land at {np.rad2deg(plan.pitch_land):.0f} deg without impact (assumed)",
-        "pelvis": f"upright, as high as a knee of {np.rad2deg(plan.min_knee):.0f} deg lets it be (assumed)",
+        "step": f"{plan.step_time:g} s, {plan.speed * plan.step_time:.3f} m; both feet down for "
+        f"{100 * plan.double_support:g} % of it (assumed)",
+        "feet": f"leave pitched by {np.rad2deg(plan.pitch_off):.0f} deg, land at "
+        f"{np.rad2deg(plan.pitch_land):.0f} deg without impact (assumed)",
+        "pelvis": f"upright, as high as a knee of {np.rad2deg(plan.min_knee):.0f} deg lets it be "
+        f"(assumed)",
         "load": f"the vertical force swings by {100 * plan.load_swing:g} % of the weight (assumed)",
         "balance": "the zero-moment point runs from heel to toe and on to the other foot (assumed)",
     }
@@ -122,15 +163,24 @@ def _foot(design: Design, plan: WalkPlan, time: np.ndarray, side: str) -> FootPa
         x = plan.speed * (land - stride)
         steps.append(
             Step(
-                leaves + plan.heel_rise * both, leaves + both, land, land + plan.foot_flat * both,
-                (x, y, 0.0), (x + plan.speed * stride, y, 0.0), plan.pitch_off, plan.pitch_land, plan.clearance,
+                leaves + plan.heel_rise * both,
+                leaves + both,
+                land,
+                land + plan.foot_flat * both,
+                (x, y, 0.0),
+                (x + plan.speed * stride, y, 0.0),
+                plan.pitch_off,
+                plan.pitch_land,
+                plan.clearance,
             )
-        )  # fmt: skip
+        )
     return foot_path(design, time, steps)
 
 
 def _pressure(design: Design, plan: WalkPlan, time: np.ndarray) -> np.ndarray:
-    """Planned centre of pressure, `(n, 3)`: steady along the foot, then across to the other in double support."""
+    """Planned centre of pressure, `(n, 3)`: steady along the foot, then across to the other in
+    double support.
+    """
     radius = float(design.contact.pad_radius)
     back = plan.pressure_start * design.foot.ball_length
     front = design.foot.ball_length + plan.pressure_end * (design.toe.length - radius)
@@ -143,7 +193,9 @@ def _pressure(design: Design, plan: WalkPlan, time: np.ndarray) -> np.ndarray:
         x = plan.speed * index * step
         inside = (time >= index * step) & (time < (index + 1) * step)
         local = time[inside] - index * step
-        shift = quintic(local, 0, both, (x - plan.speed * step + front, rate, 0.0), (x + back, rate, 0.0))[0]
+        shift = quintic(
+            local, 0, both, (x - plan.speed * step + front, rate, 0.0), (x + back, rate, 0.0)
+        )[0]
         across = quintic(local, 0, both, (-sign * y, 0.0, 0.0), (sign * y, 0.0, 0.0))[0]
         found[inside, 0] = np.where(local < both, shift, x + back + rate * (local - both))
         found[inside, 1] = np.where(local < both, across, sign * y)

@@ -19,7 +19,11 @@ def test_cause_is_the_largest_change_over_its_usual_error(rig):
 
 
 def test_logs_without_targets_and_floating_bases_are_refused(rig):
-    bare = rig.logs[0].changed(signals={c: v for c, v in rig.logs[0].signals.items() if not c.startswith("position_target")})
+    bare = rig.logs[0].changed(
+        signals={
+            c: v for c, v in rig.logs[0].signals.items() if not c.startswith("position_target")
+        }
+    )
     torques = {"motor_torque/swing": np.zeros(len(bare.time))}
     signals = condition(bare.changed(signals={**bare.signals, **torques}), rig.signals[0].subject)
     for fit in (fit_own, fit_pace, fit_sysid):

@@ -14,6 +14,8 @@ def test_pace_gets_better_and_stays_within_bounds(rig):
     assert np.array_equal(found.values, again.values)
     assert (found.values >= rig.drives.low).all()
     assert (found.values <= rig.drives.high).all()
-    first, last = (float(position_gap(short, rig.drives, v)[0]) for v in (found.history[0][1], found.values))
+    first, last = (
+        float(position_gap(short, rig.drives, v)[0]) for v in (found.history[0][1], found.values)
+    )
     assert last < first
     assert found.evaluations == 120

@@ -14,12 +14,19 @@ from hyperleg_design.gap.blind.wrong import Wrong
 
 @pytest.mark.parametrize("name", ["arm", "servo"])
 def test_both_plants_move_alike_where_they_should(name):
-    """Smooth motion, no friction, stiff transmissions: two integrators, drives and controllers of the same physics."""
+    """Smooth motion, no friction, stiff transmissions: two integrators, drives and controllers of
+    the same physics.
+    """
     robot = replace(chain(name), coulomb=0 * chain(name).coulomb)
     targets = motion("multisine", robot, 1.5, 200.0, np.random.default_rng(0))[None]
     plant = build_rig(robot, perfect(robot))
-    first, second = simulate([plant], targets, 200.0, seeds=[0])[0], simulate_other([plant], targets, 200.0, seeds=[0])[0]
-    assert np.abs(first.position - second.position).max() < 0.06 * np.ptp(first.position, axis=0).max()
+    first, second = (
+        simulate([plant], targets, 200.0, seeds=[0])[0],
+        simulate_other([plant], targets, 200.0, seeds=[0])[0],
+    )
+    assert (
+        np.abs(first.position - second.position).max() < 0.06 * np.ptp(first.position, axis=0).max()
+    )
 
 
 def test_a_gear_sticks_until_its_breakaway():

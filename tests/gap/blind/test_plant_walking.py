@@ -5,7 +5,13 @@ import pytest
 
 from hyperleg_design.gap.blind.chain import GRAVITY, chain
 from hyperleg_design.gap.blind.nuisance import perfect
-from hyperleg_design.gap.blind.plant_walking import Ground, Stand, WalkingPlant, simulate_walking, walking_model
+from hyperleg_design.gap.blind.plant_walking import (
+    Ground,
+    Stand,
+    WalkingPlant,
+    simulate_walking,
+    walking_model,
+)
 from hyperleg_design.gap.blind.recorder import Recorder
 from hyperleg_design.gap.blind.residual import rms
 from hyperleg_design.gap.blind.rig_build import build_rig
@@ -23,7 +29,12 @@ def robot():
 
 def plant(robot, **changes):
     model = walking_model(robot, robot, Ground(1.0, *NOMINAL_GROUND), 1.0, GRAVITY)
-    return replace(WalkingPlant(model, build_rig(robot, perfect(robot)), np.zeros(3), np.zeros(3), np.zeros(3)), **changes)
+    return replace(
+        WalkingPlant(
+            model, build_rig(robot, perfect(robot)), np.zeros(3), np.zeros(3), np.zeros(3)
+        ),
+        **changes,
+    )
 
 
 def test_a_robot_that_stands_weighs_what_it_weighs(robot):
@@ -52,7 +63,13 @@ def test_a_load_on_the_pelvis_is_felt_by_the_ground(robot):
     for wrongs in ((), (Wrong("payload", "pelvis", 3.0, {"x": 0.0, "y": 0.0, "z": 0.1}),)):
         log = walker.log(walker.trace(wrongs, STILL, 1.0, 0), 0, "x")
         assert log is not None
-        weights.append(sum(v[100:].mean() for k, v in log.signals.items() if k.startswith("contact_force") and k.endswith("_z")))
+        weights.append(
+            sum(
+                v[100:].mean()
+                for k, v in log.signals.items()
+                if k.startswith("contact_force") and k.endswith("_z")
+            )
+        )
     assert weights[1] - weights[0] == pytest.approx(3.0 * 9.81, rel=0.03)
 
 

@@ -7,18 +7,35 @@ PAYLOAD = RealCase("x", "r", (), (), "payload", ("arm", "servo"), ("mass", 0.2))
 
 
 def cause(effect, location, **values):
-    parameters = {k: {"value": v, "low": v - 0.05, "high": v + 0.05, "unit": ""} for k, v in values.items()}
-    return {"effect": effect, "location": location, "probability": 0.9, "closed": 0.9, "parameters": parameters}
+    parameters = {
+        k: {"value": v, "low": v - 0.05, "high": v + 0.05, "unit": ""} for k, v in values.items()
+    }
+    return {
+        "effect": effect,
+        "location": location,
+        "probability": 0.9,
+        "closed": 0.9,
+        "parameters": parameters,
+    }
 
 
 def test_right_and_wrong_answers():
-    right = judged(PAYLOAD, {"verdict": "explained", "causes": [cause("payload", "servo", mass=0.22)]}, 1.0)
+    right = judged(
+        PAYLOAD, {"verdict": "explained", "causes": [cause("payload", "servo", mass=0.22)]}, 1.0
+    )
     assert right.right
     assert right.inside
     assert right.probability == 0.9
-    assert not judged(PAYLOAD, {"verdict": "explained", "causes": [cause("torque_constant", "servo")]}, 1.0).right
+    assert not judged(
+        PAYLOAD, {"verdict": "explained", "causes": [cause("torque_constant", "servo")]}, 1.0
+    ).right
     assert not judged(PAYLOAD, {"verdict": "none", "causes": []}, 1.0).right
-    assert judged(PAYLOAD, {"verdict": "explained", "causes": [cause("payload", "arm", mass=0.4)]}, 1.0).inside is False
+    assert (
+        judged(
+            PAYLOAD, {"verdict": "explained", "causes": [cause("payload", "arm", mass=0.4)]}, 1.0
+        ).inside
+        is False
+    )
 
 
 def test_healthy_logs_must_stay_quiet():
@@ -29,8 +46,12 @@ def test_healthy_logs_must_stay_quiet():
 
 def test_soft_gains_are_no_delay():
     go2 = RealCase("x", "r", (), (), "-")
-    assert not judged(go2, {"verdict": "explained", "causes": [cause("command_delay", "robot", delay=0.09)]}, 1.0).right
-    assert judged(go2, {"verdict": "explained", "causes": [cause("command_delay", "robot", delay=0.005)]}, 1.0).right
+    assert not judged(
+        go2, {"verdict": "explained", "causes": [cause("command_delay", "robot", delay=0.09)]}, 1.0
+    ).right
+    assert judged(
+        go2, {"verdict": "explained", "causes": [cause("command_delay", "robot", delay=0.005)]}, 1.0
+    ).right
     assert judged(go2, {"verdict": "unknown"}, 1.0).right
 
 
@@ -53,7 +74,9 @@ def test_cases_of_the_real_logs(tmp_path):
     doubled = next(c for c in cases if "XL330" in c.name and "double" in c.name)
     honest = next(c for c in cases if "XL330" in c.name and "as it is" in c.name)
     for wrong, true in zip(doubled.logs, honest.logs, strict=True):
-        assert wrong.metadata.gains["servo"][0] == pytest.approx(2 * true.metadata.gains["servo"][0])
+        assert wrong.metadata.gains["servo"][0] == pytest.approx(
+            2 * true.metadata.gains["servo"][0]
+        )
     for case in (cases[0], cases[12], cases[-1]):
         subject = load_subject(case.robot, [*case.logs, *case.references])
         assert set(case.logs[0].joints) <= set(subject.joints)

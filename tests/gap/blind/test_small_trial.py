@@ -1,4 +1,6 @@
-"""A whole trial, small: made in a process of its own, sealed, diagnosed by what users run, scored once. Servos, as they are quick."""
+"""A whole trial, small: made in a process of its own, sealed, diagnosed by what users run, scored
+once. Servos, as they are quick.
+"""
 
 import pytest
 
@@ -16,7 +18,9 @@ def trial(tmp_path_factory):
     return folder
 
 
-def test_friction_and_a_gain_are_named_a_healthy_servo_is_not_blamed_and_drag_is_not_in_the_catalogue(trial):
+def test_friction_and_a_gain_are_named_a_healthy_servo_is_not_blamed_and_drag_is_not_in_the_catalogue(  # noqa: E501
+    trial,
+):
     found = score(trial)
     truths = {t["case"]: t for t in open_key(trial)}
     assert {t["robot"] for t in truths.values()} == {"servo"}

@@ -21,7 +21,14 @@ def trial(tmp_path_factory):
 def knows_nothing(robot, logs, reference, *, seed, threads):
     assert logs
     assert threads == 1
-    return {"schema": 1, "verdict": "unknown", "causes": [], "rivals": [], "equivalent": [], "seen": [str(robot), len(logs), len(reference)]}
+    return {
+        "schema": 1,
+        "verdict": "unknown",
+        "causes": [],
+        "rivals": [],
+        "equivalent": [],
+        "seen": [str(robot), len(logs), len(reference)],
+    }
 
 
 def breaks_down(robot, logs, reference, *, seed, threads):
@@ -74,7 +81,10 @@ def test_diagnoses_go_on_where_they_stopped(trial):
     (trial / "diagnoses" / "001" / "seconds.json").unlink()
     assert diagnose_trial(trial, diagnose=breaks_down) == 1
     assert diagnose_trial(trial, diagnose=breaks_down) == 0
-    assert json.loads((trial / "diagnoses" / "001" / "diagnosis.json").read_text())["verdict"] == "error"
+    assert (
+        json.loads((trial / "diagnoses" / "001" / "diagnosis.json").read_text())["verdict"]
+        == "error"
+    )
     found = score(trial)
     assert found.diagnosed == 2
     assert found.row("diagnoses that raised an error").value == 0.5

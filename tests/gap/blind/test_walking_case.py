@@ -29,7 +29,9 @@ class Fragile:
 
 @pytest.fixture(autouse=True)
 def plainly_shown(monkeypatch):
-    monkeypatch.setattr(walking_case, "shown", lambda effect, logs, clean, robot: float(sum(logs[0])))
+    monkeypatch.setattr(
+        walking_case, "shown", lambda effect, logs, clean, robot: float(sum(logs[0]))
+    )
 
 
 def recorded(most, *wrongs):

@@ -26,7 +26,9 @@ def pendulum(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def simulated(pendulum):
-    """Signals of a simulation of the pendulum to which an effect was added: (identifier, values, **options) of `altered.altered`."""
+    """Signals of a simulation of the pendulum to which an effect was added: (identifier, values,
+    **options) of `altered.altered`.
+    """
     from altered import altered
     from pendulum import Wrong, waves
 
@@ -37,7 +39,11 @@ def simulated(pendulum):
     def signals(identifier, values, *, target=waves, **options):
         one = effect(identifier)
         location = one.locations(subject)[0]
-        added = (one.alteration(location, np.array(values, float), subject),) if values is not None else ()
+        added = (
+            (one.alteration(location, np.array(values, float), subject),)
+            if values is not None
+            else ()
+        )
         return altered(subject, added, lambda time: [target(time)], **options)
 
     return signals
@@ -56,7 +62,12 @@ def leg(tmp_path_factory):
     path = tmp_path_factory.mktemp("leg") / "leg.xml"
     path.write_text(robots.COUPLED)
     gains = {"hip": (40.0, 2.0), "knee": (30.0, 1.5)}
-    blank = Log("leg", np.array([0.0, 1.0]), {f"position/{j}": np.zeros(2) for j in gains}, Metadata(base="fixed", gains=gains))
+    blank = Log(
+        "leg",
+        np.array([0.0, 1.0]),
+        {f"position/{j}": np.zeros(2) for j in gains},
+        Metadata(base="fixed", gains=gains),
+    )
     subject = load_subject(path, [blank])
     target = robots.waves(2, [0.6, 0.6], 0.3, 1.5)
 

@@ -1,4 +1,6 @@
-"""A pendulum on a servo, integrated at 0.1 ms in plain numbers, away from the code under test: it has every effect built in."""
+"""A pendulum on a servo, integrated at 0.1 ms in plain numbers, away from the code under test: it
+has every effect built in.
+"""
 
 from __future__ import annotations
 
@@ -67,7 +69,9 @@ class Wrong:
 def waves(time: float) -> float:
     """Several frequencies, with two reversals a second."""
     ramp = 1 - math.exp(-((time / 0.5) ** 2))
-    return ramp * (0.5 * math.sin(1.9 * time) + 0.25 * math.sin(5.3 * time + 1) + 0.08 * math.sin(14.0 * time))
+    return ramp * (
+        0.5 * math.sin(1.9 * time) + 0.25 * math.sin(5.3 * time + 1) + 0.08 * math.sin(14.0 * time)
+    )
 
 
 def steps(time: float) -> float:
@@ -90,8 +94,17 @@ def voltage(time: float) -> float:
     return 24 - 0.5 * time
 
 
-def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tuple[str, ...] = ("motor_torque",), gains=(STIFFNESS, DAMPING)) -> Log:
-    """Log at 200 Hz; `sees` of motor_torque, motor_torque_command, motor_velocity, temperature, voltage. Targets and state always."""
+def run(
+    wrong: Wrong = Wrong(),
+    duration: float = 8.0,
+    target=waves,
+    *,
+    sees: tuple[str, ...] = ("motor_torque",),
+    gains=(STIFFNESS, DAMPING),
+) -> Log:
+    """Log at 200 Hz; `sees` of motor_torque, motor_torque_command, motor_velocity, temperature,
+    voltage. Targets and state always.
+    """
     link = INERTIA + MASS * LENGTH**2
     rotor = ROTOR + wrong.rotor
     two = wrong.compliance > 0 or wrong.play > 0
@@ -108,7 +121,10 @@ def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tu
         time = tick * STEP
         told, told_speed = (angle, speed) if wrong.motor_side else (q, v)
         told += wrong.offset
-        command = wrong.stiffness_scale * gains[0] * (target(max(time - wrong.late_target, 0.0)) - told) - wrong.damping_scale * gains[1] * told_speed
+        command = (
+            wrong.stiffness_scale * gains[0] * (target(max(time - wrong.late_target, 0.0)) - told)
+            - wrong.damping_scale * gains[1] * told_speed
+        )
         wanted = command
         if wrong.delay:
             late.append(command)
@@ -116,11 +132,17 @@ def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tu
         missing = 1 - voltage(time) / 24
         wanted *= 1 - wrong.follow * missing
         wanted = max(-wrong.limit, min(wrong.limit, wanted))
-        given = given + (wanted - given) * (1 - math.exp(-STEP / wrong.lag)) if wrong.lag and tick else wanted
+        given = (
+            given + (wanted - given) * (1 - math.exp(-STEP / wrong.lag))
+            if wrong.lag and tick
+            else wanted
+        )
         if tick % every == 0:
             rows.append((time, told, told_speed, target(time), command, given, speed))
         torque = given * wrong.constant * (1 - wrong.derating * (temperature(time) - 25))
-        torque -= wrong.cosine * math.cos(wrong.order * angle) + wrong.sine * math.sin(wrong.order * angle)
+        torque -= wrong.cosine * math.cos(wrong.order * angle) + wrong.sine * math.sin(
+            wrong.order * angle
+        )
         gravity = MASS * 9.81 * LENGTH * math.sin(q)
         load = torque * wrong.ratio
         if two:
@@ -132,7 +154,11 @@ def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tu
         elif wrong.share:
             # what reaches the joint of a rigid drive: less what turns the rotor
             load = torque - rotor * (torque - gravity - bristle) / (link + rotor)
-        size = wrong.coulomb + wrong.breakaway * math.exp(-((v / wrong.stribeck_speed) ** 2)) + wrong.share * abs(load)
+        size = (
+            wrong.coulomb
+            + wrong.breakaway * math.exp(-((v / wrong.stribeck_speed) ** 2))
+            + wrong.share * abs(load)
+        )
         pull = load if two else torque * wrong.ratio
         force = pull - gravity - wrong.viscous * v - wrong.stiffness * q - wrong.preload
         inertia = link if two else link + rotor * wrong.ratio**2
@@ -141,7 +167,9 @@ def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tu
             moved = bristle + size / bristle_way * STEP * v
             moved /= 1 + STEP * abs(v) / bristle_way
             damping = 0.5 * math.sqrt(size / bristle_way * inertia)
-            v = (v + STEP * (force - moved) / inertia) / (1 + STEP * (damping * (abs(moved) < 0.9 * size)) / inertia)
+            v = (v + STEP * (force - moved) / inertia) / (
+                1 + STEP * (damping * (abs(moved) < 0.9 * size)) / inertia
+            )
             bristle = moved
         else:
             v += STEP * force / inertia
@@ -150,7 +178,11 @@ def run(wrong: Wrong = Wrong(), duration: float = 8.0, target=waves, *, sees: tu
             angle, speed = q * wrong.ratio, v * wrong.ratio
     table = np.array(rows)
     time = table[:, 0]
-    signals = {"position/swing": table[:, 1], "velocity/swing": table[:, 2], "position_target/swing": table[:, 3]}
+    signals = {
+        "position/swing": table[:, 1],
+        "velocity/swing": table[:, 2],
+        "position_target/swing": table[:, 3],
+    }
     if "motor_torque_command" in sees:
         signals["motor_torque_command/swing"] = table[:, 4]
     if "motor_torque" in sees:

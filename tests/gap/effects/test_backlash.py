@@ -18,7 +18,9 @@ def test_angle_is_that_of_the_joint(leg):
     subject = leg(duration=1.0).subject
     ratio = np.abs(subject.joint_from_motor[:, 1]).max()
     assert ratio > 1
-    assert BACKLASH.alteration("m_back", np.array([0.01, 0.0, 1.0, 0.0]), subject).play == 0.01 * ratio
+    assert (
+        BACKLASH.alteration("m_back", np.array([0.01, 0.0, 1.0, 0.0]), subject).play == 0.01 * ratio
+    )
 
 
 def test_simulation_with_it_leaves_its_trace(pendulum):
@@ -27,9 +29,18 @@ def test_simulation_with_it_leaves_its_trace(pendulum):
     subject = pendulum(Wrong(), gains=SOFT).subject
     added = BACKLASH.alteration("swing", np.array([0.02, 0.0, 1.0, 0.0]), subject)
     signals = altered(subject, (added,), lambda time: [waves(time)])
-    assert misfit(signals, BACKLASH.trace(signals, "swing", np.array([[0.02, 0.0, 1.0, 0.0]]))) < 0.65
+    assert (
+        misfit(signals, BACKLASH.trace(signals, "swing", np.array([[0.02, 0.0, 1.0, 0.0]]))) < 0.65
+    )
 
 
 def test_rotors_show_it_beside_their_joints(pendulum):
     signals = pendulum(Wrong(play=0.02), gains=SOFT, sees=("motor_torque", "motor_velocity"))
-    assert misfit(signals, BACKLASH.trace(signals, "swing", np.array([[0.02, 0.0, 1.0, 0.0]])), "transmission") < 0.6
+    assert (
+        misfit(
+            signals,
+            BACKLASH.trace(signals, "swing", np.array([[0.02, 0.0, 1.0, 0.0]])),
+            "transmission",
+        )
+        < 0.6
+    )

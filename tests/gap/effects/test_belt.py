@@ -27,7 +27,11 @@ def test_stretch_is_compliance_times_load_and_play_is_bounded(pendulum):
 
 def test_a_belt_that_stiffens_stretches_by_the_root_of_its_cubic(pendulum):
     signals = pendulum(Wrong())
-    load, compliance, stiffening = belt.load(signals, 0), np.array([0.05, 0.05]), np.array([0.0, 30.0])
+    load, compliance, stiffening = (
+        belt.load(signals, 0),
+        np.array([0.05, 0.05]),
+        np.array([0.0, 30.0]),
+    )
     straight, found = belt.stretch(signals, load, 0, compliance, np.zeros(2), stiffening)
     np.testing.assert_allclose(found * (1 + (30.0 * found) ** 2), straight, atol=1e-12)
     assert np.abs(found).max() < 0.8 * np.abs(straight).max()
@@ -37,23 +41,35 @@ def test_joints_that_rub_behind_a_belt_turn_round_later_than_their_rotors(pendul
     subject = dataclasses.replace(pendulum(Wrong()).subject, coulomb=np.array([0.8]))
     signals = condition(run(Wrong(coulomb=0.8, compliance=0.03, motor_side=True)), subject)
     compliance, ratio = np.full(1, 0.03), np.full(1, 0.05)
-    own, needed = (belt.stretch(signals, through, 0, compliance, ratio) for through in (belt.given(signals, 0), belt.load(signals, 0)))
+    own, needed = (
+        belt.stretch(signals, through, 0, compliance, ratio)
+        for through in (belt.given(signals, 0), belt.load(signals, 0))
+    )
     behind = belt.trace(signals, 0, own, np.ones(1), None, np.ones(1))
-    assert misfit(signals, behind) < 0.5 * misfit(signals, belt.trace(signals, 0, needed, np.ones(1)))
+    assert misfit(signals, behind) < 0.5 * misfit(
+        signals, belt.trace(signals, 0, needed, np.ones(1))
+    )
     nothing = belt.trace(signals, 0, 0 * own, np.ones(1), None, np.ones(1))["motion"]
     assert not nothing.any(), "another law of friction alone is no belt"
 
 
 def test_friction_before_a_belt_is_in_neither_its_load_nor_what_stretches_it(pendulum):
-    subject = dataclasses.replace(pendulum(Wrong()).subject, coulomb=np.array([0.8]), viscous=np.array([0.1]))
+    subject = dataclasses.replace(
+        pendulum(Wrong()).subject, coulomb=np.array([0.8]), viscous=np.array([0.1])
+    )
     signals = condition(run(Wrong()), subject)
-    rubs = 0.8 * np.tanh(signals.velocity[:, 0] / subject.friction_speed[0]) + 0.1 * signals.velocity[:, 0]
+    rubs = (
+        0.8 * np.tanh(signals.velocity[:, 0] / subject.friction_speed[0])
+        + 0.1 * signals.velocity[:, 0]
+    )
     away = slice(100, -100)
     for with_it, without in (
         (belt.load(signals, 0), belt.frictionless(signals, 0)),
         (belt.given(signals, 0), belt.given(signals, 0, rubs=False)),
     ):
-        assert np.std((with_it - without - rubs)[away]) < 0.15 * np.std(rubs[away])  # all but what is too fast for belts
+        assert np.std((with_it - without - rubs)[away]) < 0.15 * np.std(
+            rubs[away]
+        )  # all but what is too fast for belts
 
 
 def test_a_joint_left_behind_in_its_play_is_slowed_by_its_own_friction(pendulum):
@@ -64,11 +80,20 @@ def test_a_joint_left_behind_in_its_play_is_slowed_by_its_own_friction(pendulum)
     width, on, off = np.full(1, 0.04), np.ones(1), np.zeros(1)
 
     def left(signals, behind):
-        return misfit(signals, belt.trace(signals, 0, belt.slack(signals, 0, width, on, on, behind), on, behind=behind))
+        return misfit(
+            signals,
+            belt.trace(
+                signals, 0, belt.slack(signals, 0, width, on, on, behind), on, behind=behind
+            ),
+        )
 
     assert left(rubbing, on) < 0.8 * left(rubbing, off)
     assert left(gliding, off) < 0.5
-    np.testing.assert_allclose(belt.slack(gliding, 0, width, on, on, on), belt.slack(gliding, 0, width, on, on, off), atol=1e-12)  # it has none
+    np.testing.assert_allclose(
+        belt.slack(gliding, 0, width, on, on, on),
+        belt.slack(gliding, 0, width, on, on, off),
+        atol=1e-12,
+    )  # it has none
 
 
 def test_side_one_is_another_posture(pendulum):
@@ -77,14 +102,21 @@ def test_side_one_is_another_posture(pendulum):
     found = belt.trace(signals, 0, moved, np.ones(1))["motion"][0, :, 0]
     from pendulum import LENGTH, MASS
 
-    expected = MASS * 9.81 * LENGTH * (np.sin(signals.position[:, 0] - 0.02) - np.sin(signals.position[:, 0]))
+    expected = (
+        MASS
+        * 9.81
+        * LENGTH
+        * (np.sin(signals.position[:, 0] - 0.02) - np.sin(signals.position[:, 0]))
+    )
     np.testing.assert_allclose(found, expected, atol=1e-6)
     assert np.abs(belt.trace(signals, 0, moved, np.zeros(1))["motion"]).max() < 1e-9
 
 
 def test_a_rotor_that_does_not_coast_lies_where_the_load_pushes_it(pendulum):
     signals = pendulum(Wrong())
-    pushed, half = (belt.slack(signals, 0, np.full(1, 0.02), np.zeros(1), np.full(1, c))[0] for c in (0.0, 0.5))
+    pushed, half = (
+        belt.slack(signals, 0, np.full(1, 0.02), np.zeros(1), np.full(1, c))[0] for c in (0.0, 0.5)
+    )
     load = belt.load(signals, 0)
     heavy = np.abs(load) > 1.5 * np.sqrt(np.mean(load**2))
     assert heavy.any()
@@ -99,7 +131,10 @@ def test_a_rotors_own_speed_tells_what_it_gives_its_belt(pendulum):
     assert belt.transmitted(blind, 0) is belt.load(blind, 0)
     stretched = np.cumsum(seeing.residual["transmission"][:, 0]) * seeing.step
     away = slice(100, -100)
-    through, needed = (values[away] - values[away].mean() for values in (belt.transmitted(seeing, 0), belt.load(seeing, 0)))
+    through, needed = (
+        values[away] - values[away].mean()
+        for values in (belt.transmitted(seeing, 0), belt.load(seeing, 0))
+    )
     stretched = stretched[away] - stretched[away].mean()
     # compliance is what relates the two, all along
     assert np.std(stretched - 0.01 * through) < 0.1 * np.std(stretched)

@@ -26,7 +26,9 @@ def test_starts_find_periods_of_a_rotor_behind_a_gear(pendulum):
 def test_a_gear_makes_as_many_more_periods_usual(pendulum):
     subject = pendulum(Wrong()).subject
     geared = replace(subject, gear=np.full(len(subject.motors), -9.0))
-    np.testing.assert_allclose(COGGING.usual("swing", geared) / COGGING.usual("swing", subject), [1.0, 1.0, 9.0])
+    np.testing.assert_allclose(
+        COGGING.usual("swing", geared) / COGGING.usual("swing", subject), [1.0, 1.0, 9.0]
+    )
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):
@@ -38,7 +40,11 @@ def test_a_coupled_motor_turns_with_both_joints(leg):
     signals = leg(duration=1.5)
     column = signals.subject.joint_from_motor[:, 1]
     wave = 0.1 * np.sin(3 * (signals.position @ column))
-    np.testing.assert_allclose(COGGING.trace(signals, "m_back", np.array([[0.0, 0.1, 3.0]]))["motion"][0], wave[:, None] * column, atol=1e-12)
+    np.testing.assert_allclose(
+        COGGING.trace(signals, "m_back", np.array([[0.0, 0.1, 3.0]]))["motion"][0],
+        wave[:, None] * column,
+        atol=1e-12,
+    )
 
 
 def test_people_read_amplitude_and_phase(pendulum):

@@ -15,8 +15,14 @@ def test_trace_is_what_late_commands_leave(pendulum):
 
 
 def test_trace_is_what_late_targets_leave(pendulum):
-    """In the drive, in the motion where nobody measured the drive, in the control where the controller's own commands are logged."""
-    for sees, balance in ((("motor_torque",), "drive"), ((), "motion"), (("motor_torque", "motor_torque_command"), "control")):
+    """In the drive, in the motion where nobody measured the drive, in the control where the
+    controller's own commands are logged.
+    """
+    for sees, balance in (
+        (("motor_torque",), "drive"),
+        ((), "motion"),
+        (("motor_torque", "motor_torque_command"), "control"),
+    ):
         signals = pendulum(Wrong(late_target=0.012), sees=sees)
         trace = DELAY.trace(signals, "robot", np.array([[0.012, 1.0]]))
         assert misfit(signals, trace, balance) < 0.02

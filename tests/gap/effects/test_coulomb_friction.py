@@ -14,7 +14,10 @@ def test_trace_is_what_a_pendulum_with_bristles_leaves(pendulum):
 
 def test_least_squares_find_the_torque_despite_holds(pendulum):
     signals = pendulum(Wrong(coulomb=0.5), target=steps)
-    rows, found = COULOMB.trace(signals, "swing", np.ones((1, 1)))["motion"][0], signals.residual["motion"]
+    rows, found = (
+        COULOMB.trace(signals, "swing", np.ones((1, 1)))["motion"][0],
+        signals.residual["motion"],
+    )
     use = signals.valid
     assert abs((rows[use] * found[use]).sum() / (rows[use] ** 2).sum() - 0.5) < 0.05
 

@@ -19,11 +19,31 @@ def signals(request, pendulum):
 
 def test_catalogue_has_the_interface_identifiers():
     assert set(EFFECTS) >= {
-        "coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction", "torque_constant", "torque_saturation",
-        "thermal_derating", "voltage_sag", "command_delay", "actuator_bandwidth", "rotor_inertia", "transmission_elasticity", "backlash",
-        "transmission_ratio", "encoder_offset", "controller_gain", "payload", "link_mass", "link_com", "cogging", "joint_spring", "imu_bias",
-        "ground_friction", "ground_compliance",
-    }  # fmt: skip
+        "coulomb_friction",
+        "viscous_friction",
+        "stribeck_friction",
+        "load_dependent_friction",
+        "torque_constant",
+        "torque_saturation",
+        "thermal_derating",
+        "voltage_sag",
+        "command_delay",
+        "actuator_bandwidth",
+        "rotor_inertia",
+        "transmission_elasticity",
+        "backlash",
+        "transmission_ratio",
+        "encoder_offset",
+        "controller_gain",
+        "payload",
+        "link_mass",
+        "link_com",
+        "cogging",
+        "joint_spring",
+        "imu_bias",
+        "ground_friction",
+        "ground_compliance",
+    }
     assert all(name == one.identifier == effect(name).identifier for name, one in EFFECTS.items())
 
 
@@ -49,7 +69,15 @@ def test_parameters_are_plausible(name):
 @pytest.mark.parametrize("name", FIXED)
 def test_nulls_leave_no_trace_and_nothing_is_written_to(name, signals):
     one = effect(name)
-    arrays = (signals.position, signals.velocity, signals.acceleration, signals.believed, signals.rigid, signals.command, signals.target)
+    arrays = (
+        signals.position,
+        signals.velocity,
+        signals.acceleration,
+        signals.believed,
+        signals.rigid,
+        signals.command,
+        signals.target,
+    )
     before = [array.copy() for array in arrays]
     for location in one.locations(signals.subject):
         for balance, rows in one.trace(signals, location, np.stack([one.nulls] * 2)).items():
@@ -78,15 +106,24 @@ def test_linear_says_whether_twice_the_size_is_twice_the_trace(name, pendulum):
     one = effect(name)
     signals = pendulum(Wrong(), duration=4.0, sees=())
     # a limit that binds, so that what is linear without limits only does not pass for linear
-    signals = dataclasses.replace(signals, subject=dataclasses.replace(signals.subject, torque_limit=np.array([1.0])))
+    signals = dataclasses.replace(
+        signals, subject=dataclasses.replace(signals.subject, torque_limit=np.array([1.0]))
+    )
     location = one.locations(signals.subject)[0]
     deviation = one.usual(location, signals.subject)
     if not one.linear:
         # of shapes or limits: some distance from the nulls is not half as good as twice that
-        deviation = np.where([p.shape for p in one.parameters], deviation, 1.5 * (one.example(location, signals.subject) - one.nulls))
+        deviation = np.where(
+            [p.shape for p in one.parameters],
+            deviation,
+            1.5 * (one.example(location, signals.subject) - one.nulls),
+        )
         deviation = np.clip(deviation, *(one.bounds(location, signals.subject) - one.nulls))
     deviation = deviation * np.linspace(1.0, 0.4, len(deviation))
-    single, double = (one.trace(signals, location, (one.nulls + share * deviation)[None])["motion"] for share in (0.5, 1.0))
+    single, double = (
+        one.trace(signals, location, (one.nulls + share * deviation)[None])["motion"]
+        for share in (0.5, 1.0)
+    )
     assert np.allclose(double, 2 * single, rtol=1e-6, atol=1e-9) == one.linear
 
 
@@ -96,7 +133,9 @@ def test_usual_and_starts_lie_inside_the_bounds(name, signals):
     for location in one.locations(signals.subject):
         low, high = one.bounds(location, signals.subject)
         assert np.all(one.usual(location, signals.subject) > 0)
-        assert np.all((low >= [p.low for p in one.parameters]) & (high <= [p.high for p in one.parameters]))
+        assert np.all(
+            (low >= [p.low for p in one.parameters]) & (high <= [p.high for p in one.parameters])
+        )
         steps = one.steps(location, signals.subject)
         assert np.all((steps > 0) & (steps <= one.usual(location, signals.subject)))
         starts = one.starts(signals, location)
@@ -120,7 +159,12 @@ def test_nulls_change_no_simulation(name, pendulum):
     signals = pendulum(Wrong(), duration=4.0, sees=())
     location = one.locations(signals.subject)[0]
     windows = short_windows(signals, 0.25, 1.0)
-    plain, added = replay(signals, ((), (one.alteration(location, one.nulls, signals.subject),)), windows, follow="target").position
+    plain, added = replay(
+        signals,
+        ((), (one.alteration(location, one.nulls, signals.subject),)),
+        windows,
+        follow="target",
+    ).position
     np.testing.assert_allclose(added, plain, atol=1e-9)
 
 

@@ -27,5 +27,7 @@ def test_trace_is_exact_at_any_offset(leg):
             position = signals.position.copy()
             position[:, joint] -= offset
             motion = signals.velocity, signals.acceleration
-            expected = rigid.inverse_dynamics(subject, position, *motion) - rigid.inverse_dynamics(subject, signals.position, *motion)
+            expected = rigid.inverse_dynamics(subject, position, *motion) - rigid.inverse_dynamics(
+                subject, signals.position, *motion
+            )
             np.testing.assert_allclose(found[row], expected, atol=1e-10)

@@ -63,8 +63,23 @@ def test_holds_of_a_sticking_pendulum_rest(pendulum):
 
 def test_friction_in_a_simulation_is_a_damping_that_gives_its_torque():
     one = np.ones(1)
-    machine = Machine(("a",), ("a",), np.eye(1), np.eye(1), one, one, 0.1 * one, np.inf * one, np.inf * one, np.inf * one, 0 * one, np.inf * one)
-    friction = JointFriction("a", coulomb=np.array([1.0, 0.0]), viscous=0.5, breakaway=2.0, speed=0.1)
+    machine = Machine(
+        ("a",),
+        ("a",),
+        np.eye(1),
+        np.eye(1),
+        one,
+        one,
+        0.1 * one,
+        np.inf * one,
+        np.inf * one,
+        np.inf * one,
+        0 * one,
+        np.inf * one,
+    )
+    friction = JointFriction(
+        "a", coulomb=np.array([1.0, 0.0]), viscous=0.5, breakaway=2.0, speed=0.1
+    )
     assert friction.live is not None
     live = friction.live(friction, machine, 2, 0.001)
     tick = SimpleNamespace(velocity=np.array([[0.1], [-0.1]]), joint_torque=np.zeros((2, 1)))

@@ -25,8 +25,14 @@ def thrown(biped_runs):
     """A biped in the air, told by an exact sensor and by a biased one."""
     log = biped_runs["thrown"]
     subject = load_subject("hyperleg", [log])
-    added = {f"{kind}/{axis}": BIAS[3 * k + i] for k, kind in enumerate(("gyro", "accelerometer")) for i, axis in enumerate("xyz")}
-    told = dataclasses.replace(log, signals={name: values + added.get(name, 0.0) for name, values in log.signals.items()})
+    added = {
+        f"{kind}/{axis}": BIAS[3 * k + i]
+        for k, kind in enumerate(("gyro", "accelerometer"))
+        for i, axis in enumerate("xyz")
+    }
+    told = dataclasses.replace(
+        log, signals={name: values + added.get(name, 0.0) for name, values in log.signals.items()}
+    )
     return condition(log, subject), condition(told, subject)
 
 
@@ -35,7 +41,11 @@ def test_trace_is_what_the_bias_does_to_the_residual(thrown):
     if not np.isfinite(true.log.vector("gyro")).all():
         pytest.skip("this log has no sensor")
     trace = effect("imu_bias").trace(told, "imu", BIAS[None])
-    known = np.isfinite(told.residual["motion"]) & np.isfinite(true.residual["motion"]) & told.valid[:, None]
+    known = (
+        np.isfinite(told.residual["motion"])
+        & np.isfinite(true.residual["motion"])
+        & told.valid[:, None]
+    )
     left = (told.residual["motion"] - true.residual["motion"])[known]
     assert known.sum() > 500
     assert np.sqrt(np.mean(left**2)) > 0.1
@@ -56,19 +66,29 @@ def test_gyro_and_accelerometer_tell_their_biases():
     design = load_design()
     subject = subject_of(design)
     values = np.stack([np.zeros(6), np.array([0.1, 0.2, 0.3, 9.81, 0.0, 0.0])])
-    chain = Chain(machine_of(design), (effect("imu_bias").alteration("imu", values, subject),), 2, 0.005)
+    chain = Chain(
+        machine_of(design), (effect("imu_bias").alteration("imu", values, subject),), 2, 0.005
+    )
     rate, force = chain.imu(np.ones((2, 3)), np.tile([0.0, 0.0, 9.81], (2, 1)))
     np.testing.assert_allclose(rate, [[1, 1, 1], [1.1, 1.2, 1.3]])
     np.testing.assert_allclose(force, [[0, 0, 9.81], [9.81, 0, 9.81]], atol=1e-12)
 
 
 def test_a_policy_is_told_a_tilted_gravity():
-    """An accelerometer that reads one g more along x takes down to lie halfway between -x and -z."""
+    """An accelerometer that reads one g more along x takes down to lie halfway between -x and
+    -z.
+    """
     values = np.array([0.0, 0.0, 0.0, 9.81, 0.0, 0.0])
     design = load_design()
     task = load_task("walk").changed(start=Start(tilt=0.0))
     alterations = (effect("imu_bias").alteration("imu", values, subject_of(design)),)
-    environment = Environment(design, task, simulations=2, seed=1, threads=1, alterations=alterations)
+    environment = Environment(
+        design, task, simulations=2, seed=1, threads=1, alterations=alterations
+    )
     told = environment.reset()["policy"]
-    columns = [i for i, name in enumerate(environment.observation_columns["policy"]) if "gravity" in name]
-    np.testing.assert_allclose(told[:, columns], np.tile([-np.sqrt(0.5), 0, -np.sqrt(0.5)], (2, 1)), atol=1e-6)
+    columns = [
+        i for i, name in enumerate(environment.observation_columns["policy"]) if "gravity" in name
+    ]
+    np.testing.assert_allclose(
+        told[:, columns], np.tile([-np.sqrt(0.5), 0, -np.sqrt(0.5)], (2, 1)), atol=1e-6
+    )

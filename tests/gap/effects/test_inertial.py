@@ -1,4 +1,6 @@
-"""Masses: what the trace says is what inverse dynamics of the changed model says, in MuJoCo and in Pinocchio."""
+"""Masses: what the trace says is what inverse dynamics of the changed model says, in MuJoCo and in
+Pinocchio.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,11 @@ from hyperleg_design.gap.mechanism import mechanism_of, pinocchio_model
 from hyperleg_design.gap.subject import load_subject
 from hyperleg_design.simulation.alteration import edited
 
-VALUES = {"payload": [0.7, 0.03, -0.05, 0.12, 0.004], "link_mass": [0.4], "link_com": [0.02, -0.01, 0.03]}
+VALUES = {
+    "payload": [0.7, 0.03, -0.05, 0.12, 0.004],
+    "link_mass": [0.4],
+    "link_com": [0.02, -0.01, 0.03],
+}
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +40,11 @@ def in_mujoco(model, signals, ticks):
     model.dof_damping[:] = 0
     found = []
     for tick in ticks:
-        data.qpos[:], data.qvel[:], data.qacc[:] = signals.position[tick], signals.velocity[tick], signals.acceleration[tick]
+        data.qpos[:], data.qvel[:], data.qacc[:] = (
+            signals.position[tick],
+            signals.velocity[tick],
+            signals.acceleration[tick],
+        )
         mujoco.mj_inverse(model, data)
         found.append(data.qfrc_inverse.copy())
     return np.array(found)
@@ -56,8 +66,17 @@ def test_trace_is_the_difference_of_inverse_dynamics(name, link, arm):
     for model in (changed, arm.subject.model):
         rigid = pinocchio_model(mechanism_of(model), arm.subject.gravity)
         rigid.armature[:] = 0
-        needs.append([pinocchio.rnea(rigid, rigid.createData(), arm.position[t], arm.velocity[t], arm.acceleration[t]) for t in ticks])
-    np.testing.assert_allclose(trace[1], np.array(needs[0]) - np.array(needs[1]), atol=1e-7 * np.abs(expected).max() + 1e-9)
+        needs.append(
+            [
+                pinocchio.rnea(
+                    rigid, rigid.createData(), arm.position[t], arm.velocity[t], arm.acceleration[t]
+                )
+                for t in ticks
+            ]
+        )
+    np.testing.assert_allclose(
+        trace[1], np.array(needs[0]) - np.array(needs[1]), atol=1e-7 * np.abs(expected).max() + 1e-9
+    )
 
 
 @pytest.mark.parametrize("name", VALUES)
@@ -70,7 +89,10 @@ def test_rows_of_joints_beyond_the_link_are_untouched(name, arm):
 
 def test_a_payload_weighs_what_it_weighs(arm):
     model = arm.subject.model
-    changed = edited(model, (effect("payload").alteration("wrist_3", np.array([2.5, 0, 0.02, 0.1, 0]), arm.subject),))
+    changed = edited(
+        model,
+        (effect("payload").alteration("wrist_3", np.array([2.5, 0, 0.02, 0.1, 0]), arm.subject),),
+    )
     body = model.body("wrist_3_link").id
     assert changed.body_mass[body] - model.body_mass[body] == pytest.approx(2.5)
     moments = [m.body_mass[body] * m.body_ipos[body] for m in (changed, model)]
@@ -88,7 +110,9 @@ def test_simulations_have_their_own_rows(arm):
 
 def test_inertia_stays_that_of_a_body(arm):
     values = np.array([1.0, 0.3, -0.2, 0.1, 0.01])
-    changed = edited(arm.subject.model, (effect("payload").alteration("forearm", values, arm.subject),))
+    changed = edited(
+        arm.subject.model, (effect("payload").alteration("forearm", values, arm.subject),)
+    )
     inertia = changed.body_inertia[changed.body("forearm").id]
     assert np.all(inertia > 0)
     assert inertia.max() <= inertia.sum() - inertia.max() + 1e-12
@@ -110,7 +134,9 @@ def test_places_are_one_for_each_body_that_moves(arm):
 
 def test_usual_masses_follow_the_robot(arm):
     assert carried_mass(arm.subject, "upper_arm") == pytest.approx(8.4 + 2.3 + 1.2 + 1.2 + 0.19)
-    assert effect("payload").usual("upper_arm", arm.subject)[0] == pytest.approx(0.2 * carried_mass(arm.subject, "upper_arm"))
+    assert effect("payload").usual("upper_arm", arm.subject)[0] == pytest.approx(
+        0.2 * carried_mass(arm.subject, "upper_arm")
+    )
     assert effect("link_mass").usual("forearm", arm.subject)[0] == pytest.approx(0.23)
     assert effect("payload").example("forearm", arm.subject)[3] == pytest.approx(1.5 * 0.196)
 
@@ -121,8 +147,12 @@ def test_a_link_moved_keeps_its_mass_and_shape(arm):
     model, changed = arm.subject.model, edited(arm.subject.model, (added,))
     body = model.body("forearm").id
     assert changed.body_mass[body] == pytest.approx(model.body_mass[body])
-    np.testing.assert_allclose(changed.body_ipos[body] - model.body_ipos[body], [0.01, 0.0, -0.02], atol=1e-12)
-    np.testing.assert_allclose(np.sort(changed.body_inertia[body]), np.sort(model.body_inertia[body]), rtol=1e-9)
+    np.testing.assert_allclose(
+        changed.body_ipos[body] - model.body_ipos[body], [0.01, 0.0, -0.02], atol=1e-12
+    )
+    np.testing.assert_allclose(
+        np.sort(changed.body_inertia[body]), np.sort(model.body_inertia[body]), rtol=1e-9
+    )
 
 
 def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):
@@ -130,7 +160,11 @@ def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):
 
     values = np.array([2.0, 0.05, -0.02, 0.15, 0.0])
     one = effect("payload")
-    residual = {**arm.residual, "motion": arm.residual["motion"] + one.trace(arm, "wrist_1_link", values[None])["motion"][0]}
+    residual = {
+        **arm.residual,
+        "motion": arm.residual["motion"]
+        + one.trace(arm, "wrist_1_link", values[None])["motion"][0],
+    }
     loaded = dataclasses.replace(arm, residual=residual)
     start = one.starts(loaded, "wrist_1_link")[0]
     assert start[0] == pytest.approx(2.0, rel=0.15)
@@ -140,7 +174,11 @@ def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):
 def test_a_load_out_of_its_links_reach_is_rather_none(arm):
     one, reach = effect("payload"), NEAR * arm.subject.tree.length
     assert reach == pytest.approx(NEAR * sum(np.linalg.norm(arm.subject.tree.offset[1:], axis=1)))
-    for away, own, likely in ((0.9 * reach, 0.0, True), (1.1 * reach, 0.0, False), (0.9 * reach, reach, False)):
+    for away, own, likely in (
+        (0.9 * reach, 0.0, True),
+        (1.1 * reach, 0.0, False),
+        (0.9 * reach, reach, False),
+    ):
         values = np.array([0.5, 0.0, 0.0, away, own**2])
         assert one.odds("wrist_3_link", arm.subject, values) == (0.0 if likely else -FAR)
 
@@ -156,7 +194,9 @@ def test_bounds_leave_something_of_a_link(arm):
 def test_a_start_is_near_what_is_there_wherever_it_lies(name, values, arm):
     one, link = effect(name), "forearm"
     truth = np.array(values if name == "payload" else values[1:4])
-    wrong = replace(arm, residual=arm.residual | {"motion": one.trace(arm, link, truth[None])["motion"][0]})
+    wrong = replace(
+        arm, residual=arm.residual | {"motion": one.trace(arm, link, truth[None])["motion"][0]}
+    )
     first = one.starts(wrong, link)[0]
     there, found = one.trace(arm, link, np.stack([truth, first]))["motion"]
     assert np.square(there - found).mean() < 0.05 * np.square(there).mean()
@@ -164,5 +204,7 @@ def test_a_start_is_near_what_is_there_wherever_it_lies(name, values, arm):
 
 def test_without_a_residual_the_usual_starts_are_left(arm):
     for name in ("payload", "link_com"):
-        still = replace(arm, residual=arm.residual | {"motion": np.full_like(arm.residual["motion"], np.nan)})
+        still = replace(
+            arm, residual=arm.residual | {"motion": np.full_like(arm.residual["motion"], np.nan)}
+        )
         assert len(effect(name).starts(still, "forearm")) == (2 if name == "payload" else 6)

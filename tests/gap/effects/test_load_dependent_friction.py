@@ -21,5 +21,7 @@ def test_rotors_of_a_coupled_leg_do_not_load_its_gears(leg):
     trace = LOAD.trace(signals, "knee", np.array([[1.0]]))["motion"][0]
     link = signals.rigid - signals.acceleration @ signals.subject.armature.T
     moving = signals.valid & (np.abs(signals.velocity[:, 1]) > 0.2)
-    np.testing.assert_allclose(np.abs(trace[moving, 1]), np.abs(link[moving, 1]), atol=0.05 * np.abs(link).max())
+    np.testing.assert_allclose(
+        np.abs(trace[moving, 1]), np.abs(link[moving, 1]), atol=0.05 * np.abs(link).max()
+    )
     assert np.all(trace[:, 0] == 0)

@@ -34,7 +34,9 @@ def test_limits_are_those_of_conditioning():
     whole = limited_torque(subject, torque.copy(), velocity)
     assert not np.allclose(whole, torque)
     for motor in range(14):
-        np.testing.assert_allclose(placing.limited(signals, motor, torque[:, motor]), whole[:, motor], rtol=1e-10)
+        np.testing.assert_allclose(
+            placing.limited(signals, motor, torque[:, motor]), whole[:, motor], rtol=1e-10
+        )
 
 
 def test_strength_is_the_torque_of_the_motors_or_what_gravity_needs(pendulum):

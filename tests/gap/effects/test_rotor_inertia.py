@@ -17,7 +17,10 @@ def test_simulation_with_it_leaves_its_trace_at_all_joints_of_the_motor(leg):
     signals = leg(one.alteration("m_back", np.array([0.01]), subject))
     trace = one.trace(signals, "m_back", np.array([[0.01]]))["motion"][0]
     use = signals.valid
-    assert np.sqrt(np.mean((signals.residual["motion"] - trace)[use] ** 2) / np.mean(trace[use] ** 2)) < 0.02
+    assert (
+        np.sqrt(np.mean((signals.residual["motion"] - trace)[use] ** 2) / np.mean(trace[use] ** 2))
+        < 0.02
+    )
 
 
 def test_no_rotor_is_lighter_than_none(pendulum):

@@ -9,14 +9,18 @@ TIME = np.arange(4000) * STEP
 
 def test_delay_is_exact_for_straight_lines():
     found = delayed(3.0 * TIME + 1, np.array([0.0, 0.0125, 0.02]), STEP)
-    np.testing.assert_allclose(found[:, 10:], 3.0 * (TIME[10:] - np.array([[0.0], [0.0125], [0.02]])) + 1, atol=1e-12)
+    np.testing.assert_allclose(
+        found[:, 10:], 3.0 * (TIME[10:] - np.array([[0.0], [0.0125], [0.02]])) + 1, atol=1e-12
+    )
     assert found[2, 0] == 1
 
 
 def test_delay_keeps_the_unknown_where_it_is():
     values = TIME.copy()
     values[100] = np.nan
-    assert np.flatnonzero(np.isnan(delayed(values, np.array([2 * STEP]), STEP)[0])).tolist() == [102]
+    assert np.flatnonzero(np.isnan(delayed(values, np.array([2 * STEP]), STEP)[0])).tolist() == [
+        102
+    ]
 
 
 def test_lag_is_that_of_the_differential_equation():
@@ -49,4 +53,6 @@ def test_second_derivative_and_band():
     assert np.abs(band_limited(wave, STEP, 20.0) - wave)[100:-100].max() < 1e-3
     fast = np.sin(2 * np.pi * 80 * TIME)
     assert np.abs(band_limited(fast, STEP, 10.0))[100:-100].max() < 1e-3
-    assert band_limited(np.full(5, np.nan), STEP, 10.0) == pytest.approx(np.full(5, np.nan), nan_ok=True)
+    assert band_limited(np.full(5, np.nan), STEP, 10.0) == pytest.approx(
+        np.full(5, np.nan), nan_ok=True
+    )

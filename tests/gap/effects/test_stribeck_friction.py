@@ -12,7 +12,9 @@ def slow(time):
 
 def test_trace_is_what_a_sticking_pendulum_leaves_in_slow_motion(pendulum):
     signals = pendulum(Wrong(breakaway=0.5, stribeck_speed=0.1), target=slow, duration=20.0)
-    right, wrong = (STRIBECK.trace(signals, "swing", np.array([[0.5, speed]])) for speed in (0.1, 0.02))
+    right, wrong = (
+        STRIBECK.trace(signals, "swing", np.array([[0.5, speed]])) for speed in (0.1, 0.02)
+    )
     assert misfit(signals, right) < 0.35
     assert misfit(signals, wrong) > 2 * misfit(signals, right)
 

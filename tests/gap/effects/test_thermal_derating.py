@@ -18,13 +18,23 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 
 
 def test_without_a_thermometer_squared_torque_heats_the_motor(pendulum, simulated):
-    from hyperleg_design.gap.effects.thermal_derating import RATED_RISE, TIME_CONSTANT, rated_torque, rise
+    from hyperleg_design.gap.effects.thermal_derating import (
+        RATED_RISE,
+        TIME_CONSTANT,
+        rated_torque,
+        rise,
+    )
 
     signals = pendulum(Wrong())
     found = rise(signals, 0)
     assert found[0] == 0
     assert np.all(found >= 0)
-    heat = RATED_RISE / TIME_CONSTANT * np.sum((signals.believed[:, 0] / rated_torque(signals.subject, 0)) ** 2) * signals.step
+    heat = (
+        RATED_RISE
+        / TIME_CONSTANT
+        * np.sum((signals.believed[:, 0] / rated_torque(signals.subject, 0)) ** 2)
+        * signals.step
+    )
     assert abs(found[-1] / heat - 1) < 0.15
     signals = simulated("thermal_derating", [0.01])
     assert misfit(signals, DERATING.trace(signals, "swing", np.array([[0.01]]))) < 0.2

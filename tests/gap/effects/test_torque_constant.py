@@ -28,7 +28,9 @@ def test_a_wrong_reading_leaves_the_motion_and_shows_in_both_balances(simulated)
     np.testing.assert_allclose(0.85 * signals.measured, healthy.measured, atol=1e-9)
     trace = CONSTANT.trace(signals, "swing", np.array([[0.85, 1.0]]))
     for balance in ("motion", "drive"):
-        assert misfit(signals, trace, balance) < 0.08  # the simulation's controller runs between the log's ticks
+        assert (
+            misfit(signals, trace, balance) < 0.08
+        )  # the simulation's controller runs between the log's ticks
 
 
 def test_a_wrong_reading_is_tried_where_the_log_tells_both_torques(pendulum):
@@ -37,13 +39,19 @@ def test_a_wrong_reading_is_tried_where_the_log_tells_both_torques(pendulum):
 
 
 def test_torque_that_targets_alone_tell_is_scaled_as_both_gains_would(pendulum):
-    """They are one cause there; noise of the sensors by which the torque is worked out is scaled by neither."""
+    """They are one cause there; noise of the sensors by which the torque is worked out is scaled by
+    neither.
+    """
     gain = effect("controller_gain")
     signals = pendulum(Wrong(constant=0.85), sees=())
     believed, rng = signals.believed, np.random.default_rng(0)
-    noisy = replace(signals, believed=believed + 0.3 * believed.std() * rng.standard_normal(believed.shape))
+    noisy = replace(
+        signals, believed=believed + 0.3 * believed.std() * rng.standard_normal(believed.shape)
+    )
     for one in (signals, noisy):
         scaled = CONSTANT.trace(one, "swing", np.array([[0.85, 0.0]]))["motion"]
-        np.testing.assert_allclose(scaled, gain.trace(one, "swing", np.array([[0.85, 0.85]]))["motion"], atol=1e-9)
+        np.testing.assert_allclose(
+            scaled, gain.trace(one, "swing", np.array([[0.85, 0.85]]))["motion"], atol=1e-9
+        )
     measured = pendulum(Wrong(constant=0.85), sees=("motor_torque",))
     assert np.array_equal(given(measured, 0), measured.believed[:, 0])

@@ -9,9 +9,15 @@ SOFT = (8.0, 0.3)
 
 def test_trace_is_what_a_belt_leaves_with_encoders_on_either_side(pendulum):
     joint = pendulum(Wrong(compliance=0.005), gains=SOFT)
-    assert misfit(joint, ELASTICITY.trace(joint, "swing", np.array([[0.005, 0.05, 0.0, 0.0, 0.0]]))) < 0.15
+    assert (
+        misfit(joint, ELASTICITY.trace(joint, "swing", np.array([[0.005, 0.05, 0.0, 0.0, 0.0]])))
+        < 0.15
+    )
     motor = pendulum(Wrong(compliance=0.01, motor_side=True))
-    right, wrong = (ELASTICITY.trace(motor, "swing", np.array([[0.01, 0.05, side, 0.0, 0.0]])) for side in (1.0, 0.0))
+    right, wrong = (
+        ELASTICITY.trace(motor, "swing", np.array([[0.01, 0.05, side, 0.0, 0.0]]))
+        for side in (1.0, 0.0)
+    )
     assert misfit(motor, right) < 0.2
     assert misfit(motor, wrong) > 1
 
@@ -23,7 +29,10 @@ def test_simulation_with_it_leaves_its_trace(pendulum):
     subject = pendulum(Wrong(), gains=SOFT).subject
     added = ELASTICITY.alteration("swing", np.array([0.01, 0.05, 0.0, 0.0, 0.0]), subject)
     signals = altered(subject, (added,), lambda time: [waves(time)])
-    assert misfit(signals, ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, 0.0, 0.0, 0.0]]))) < 0.45
+    assert (
+        misfit(signals, ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, 0.0, 0.0, 0.0]])))
+        < 0.45
+    )
 
 
 def test_usual_compliance_rings_at_the_usual_frequency(pendulum):
@@ -44,7 +53,10 @@ def test_people_read_stiffness_and_resonance(pendulum):
 
 def test_simulation_with_encoders_at_the_rotor_leaves_the_trace_of_these(simulated):
     signals = simulated("transmission_elasticity", [0.01, 0.05, 1.0, 0.0, 0.0])
-    right, wrong = (ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, side, 0.0, 0.0]])) for side in (1.0, 0.0))
+    right, wrong = (
+        ELASTICITY.trace(signals, "swing", np.array([[0.01, 0.05, side, 0.0, 0.0]]))
+        for side in (1.0, 0.0)
+    )
     assert misfit(signals, right) < 0.2
     assert misfit(signals, wrong) > 1
 
@@ -56,19 +68,32 @@ def test_rotors_show_it_beside_their_joints(pendulum):
     from altered import altered
 
     added = ELASTICITY.alteration("swing", values[0], signals.subject)
-    simulated = altered(signals.subject, (added,), lambda time: [waves(time)], sees=("motor_torque", "motor_velocity"))
+    simulated = altered(
+        signals.subject,
+        (added,),
+        lambda time: [waves(time)],
+        sees=("motor_torque", "motor_velocity"),
+    )
     assert misfit(simulated, ELASTICITY.trace(simulated, "swing", values), "transmission") < 0.1
     # positions told by the rotor agree with it
-    rotor = pendulum(Wrong(compliance=0.01, motor_side=True), sees=("motor_torque", "motor_velocity"))
+    rotor = pendulum(
+        Wrong(compliance=0.01, motor_side=True), sees=("motor_torque", "motor_velocity")
+    )
     assert np.abs(rotor.residual["transmission"]).max() < 0.02 * np.abs(rotor.velocity).max()
-    assert not ELASTICITY.trace(rotor, "swing", np.array([[0.01, 0.05, 1.0, 0.0, 0.0]]))["transmission"].any()
+    assert not ELASTICITY.trace(rotor, "swing", np.array([[0.01, 0.05, 1.0, 0.0, 0.0]]))[
+        "transmission"
+    ].any()
 
 
-def test_a_search_does_not_leave_the_side_where_joints_rub_and_a_belt_before_them_is_straight(pendulum):
+def test_a_search_does_not_leave_the_side_where_joints_rub_and_a_belt_before_them_is_straight(
+    pendulum,
+):
     starts = ELASTICITY.starts(pendulum(Wrong()), "swing")
     assert {(bool(s[3]), tuple(ELASTICITY.fixed(s).tolist())) for s in starts} == {
-        (False, (False, False, False, True, True)), (False, (False, False, True, True, False)), (True, (False, False, True, True, False)),
-    }  # fmt: skip
+        (False, (False, False, False, True, True)),
+        (False, (False, False, True, True, False)),
+        (True, (False, False, True, True, False)),
+    }
     assert all(s[2] == 1 for s in starts if s[3])
     subject = pendulum(Wrong()).subject
     found = ELASTICITY.alteration("swing", np.array([0.01, 0.05, 1.0, 1.0, 20.0]), subject)

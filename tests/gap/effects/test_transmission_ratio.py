@@ -12,7 +12,9 @@ def test_trace_is_what_another_ratio_leaves(pendulum):
     trace = RATIO.trace(signals, "swing", np.array([[1.1, 0.0]]))
     assert misfit(signals, trace) < 0.03
     # its rotor tells it from a torque constant
-    assert misfit(signals, effect("torque_constant").trace(signals, "swing", np.array([[1.1, 0.0]]))) > 5 * misfit(signals, trace)
+    assert misfit(
+        signals, effect("torque_constant").trace(signals, "swing", np.array([[1.1, 0.0]]))
+    ) > 5 * misfit(signals, trace)
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):
@@ -24,7 +26,9 @@ def test_simulations_have_ratios_of_their_own(leg):
     from hyperleg_design.gap.machine import machine_of
 
     subject = leg(duration=1.0).subject
-    machine = RATIO.alteration("m_back", np.array([[1.0, 0.0], [0.9, 0.0]]), subject).machine(machine_of(subject))
+    machine = RATIO.alteration("m_back", np.array([[1.0, 0.0], [0.9, 0.0]]), subject).machine(
+        machine_of(subject)
+    )
     np.testing.assert_allclose(machine.joint_from_motor[0], subject.joint_from_motor)
     np.testing.assert_allclose(machine.joint_from_motor[1], subject.joint_from_motor * [1.0, 0.9])
     np.testing.assert_allclose(machine.motor_from_joint, subject.motor_from_joint)
@@ -47,4 +51,7 @@ def test_joints_told_from_rotors_stand_elsewhere(leg, motor):
 
 def test_rotors_show_it_beside_their_joints(pendulum):
     signals = pendulum(Wrong(ratio=1.1), sees=("motor_torque", "motor_velocity"))
-    assert misfit(signals, RATIO.trace(signals, "swing", np.array([[1.1, 0.0]])), "transmission") < 0.03
+    assert (
+        misfit(signals, RATIO.trace(signals, "swing", np.array([[1.1, 0.0]])), "transmission")
+        < 0.03
+    )

@@ -18,7 +18,9 @@ def test_trace_is_what_a_falling_voltage_leaves(pendulum):
 
 def test_simulation_with_it_leaves_its_trace(simulated):
     signals = simulated("voltage_sag", [0.0, 1.0, 10.0], battery=voltage)
-    assert misfit(signals, SAG.trace(signals, "battery", np.array([[0.0, 1.0, 10.0]])), "drive") < 0.25
+    assert (
+        misfit(signals, SAG.trace(signals, "battery", np.array([[0.0, 1.0, 10.0]])), "drive") < 0.25
+    )
 
 
 def test_limits_follow_the_voltage_of_a_design_whose_line_is_known():
@@ -71,4 +73,6 @@ def test_a_line_that_a_motor_falls_short_of_is_read_off_its_torque(pendulum, sim
     line, *usual = SAG.starts(weak, "battery")
     assert line[0] == pytest.approx(4.0, rel=0.25)
     assert line[2] == pytest.approx(4.0, rel=0.25)
-    assert np.array_equal(usual, SAG.starts(pendulum(Wrong(), sees=("motor_torque", "voltage")), "battery")), "a healthy motor gives what it is told"
+    assert np.array_equal(
+        usual, SAG.starts(pendulum(Wrong(), sees=("motor_torque", "voltage")), "battery")
+    ), "a healthy motor gives what it is told"

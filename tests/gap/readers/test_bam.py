@@ -17,10 +17,27 @@ def recording(ticks=200, kp=200, volts=7.4, motor="xl330", **changes):
         goal, position, speed = math.sin(3 * t), 0.8 * math.sin(3 * t), 2.4 * math.cos(3 * t)
         counts = round(servo.full_duty * servo.error_gain * kp * (goal - position))
         entries.append(
-            {"timestamp": t, "position": position, "speed": speed, "load": counts % 2**16, "input_volts": volts, "temp": 30, "goal_position": goal,
-             "torque_enable": i >= 5} | changes
-        )  # fmt: skip
-    return {"mass": 0.49, "length": 0.1, "kp": kp, "vin": 7.4, "motor": motor, "trajectory": "sin", "entries": entries}
+            {
+                "timestamp": t,
+                "position": position,
+                "speed": speed,
+                "load": counts % 2**16,
+                "input_volts": volts,
+                "temp": 30,
+                "goal_position": goal,
+                "torque_enable": i >= 5,
+            }
+            | changes
+        )
+    return {
+        "mass": 0.49,
+        "length": 0.1,
+        "kp": kp,
+        "vin": 7.4,
+        "motor": motor,
+        "trajectory": "sin",
+        "entries": entries,
+    }
 
 
 def write(path, content):
@@ -50,7 +67,9 @@ def test_other_motors_have_no_gains(tmp_path):
 
 def test_own_current_and_side_file(tmp_path):
     path = write(tmp_path / "run.json", recording(present_current=2**16 - 100))
-    (tmp_path / "run.meta.json").write_text(json.dumps({"joints": ["hinge"], "gains": {"hinge": [1, 0.1]}, "role": "reference"}))
+    (tmp_path / "run.meta.json").write_text(
+        json.dumps({"joints": ["hinge"], "gains": {"hinge": [1, 0.1]}, "role": "reference"})
+    )
     (log,) = open_log(path)
     np.testing.assert_allclose(log.signals["motor_current/hinge"], -0.1)
     assert (log.metadata.gains["hinge"], log.metadata.role) == ((1, 0.1), "reference")
@@ -58,9 +77,14 @@ def test_own_current_and_side_file(tmp_path):
 
 @pytest.mark.parametrize(
     ("content", "message"),
-    [({"mass": 1}, "entries.*missing"), (recording(1), "at least two"), (recording(position="far"), r"entries\[0\].position = 'far'"),
-     ({"mass": 1, "entries": [1, 2]}, r"entries.timestamp.*missing"), ([1], "entries")],
-)  # fmt: skip
+    [
+        ({"mass": 1}, "entries.*missing"),
+        (recording(1), "at least two"),
+        (recording(position="far"), r"entries\[0\].position = 'far'"),
+        ({"mass": 1, "entries": [1, 2]}, r"entries.timestamp.*missing"),
+        ([1], "entries"),
+    ],
+)
 def test_bad_files(tmp_path, content, message):
     with pytest.raises(InputError, match=message):
         open_log(write(tmp_path / "run.json", content))
@@ -81,8 +105,12 @@ def test_xl330(real_logs):
         error = log.signals["position_target/servo"] - log.signals["position/servo"]
         duty = np.abs(error) * stiffness / log.metadata.supply["servo"][1]
         free = duty < 0.9  # the firmware's duty is not clipped
-        asked = stiffness * error * log.signals["battery_voltage"] / 7.4 - damping * log.signals["velocity/servo"]
+        asked = (
+            stiffness * error * log.signals["battery_voltage"] / 7.4
+            - damping * log.signals["velocity/servo"]
+        )
         given = log.metadata.torque_constant["servo"] * log.signals["motor_current/servo"]
-        # the duty that the firmware reports is the one that goal, position and gain make, a read-out later
+        # the duty that the firmware reports is the one that goal, position and gain make, a
+        # read-out later
         assert np.std((given - asked)[free]) < 0.03 * np.std(given)
         assert np.polyfit(asked[free], given[free], 1)[0] == pytest.approx(1, abs=0.02)

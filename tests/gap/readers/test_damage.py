@@ -29,7 +29,13 @@ def tensors():
             "ctorch._utils\n_rebuild_tensor_v2\n((Vstorage\nctorch\nDoubleStorage\nV{}\nVcpu\nI20\ntQI0\n"
             "(I20\n{}t(I{}\n{}tI00\nccollections\nOrderedDict\n)RtR"
         )
-        text = "(dVtime\n" + item.format(0, "", 1, "") + "sVdof_pos\n" + item.format(1, "I1\n", 1, "I1\n") + "s."
+        text = (
+            "(dVtime\n"
+            + item.format(0, "", 1, "")
+            + "sVdof_pos\n"
+            + item.format(1, "I1\n", 1, "I1\n")
+            + "s."
+        )
         target.writestr("x/data.pkl", text)
         target.writestr("x/data/0", np.arange(20.0).tobytes())
         target.writestr("x/data/1", np.sin(np.arange(20.0)).tobytes())
@@ -37,12 +43,19 @@ def tensors():
 
 
 def table():
-    return b"t,position/knee [deg],velocity/knee\n" + b"".join(b"%d,%d,1\n" % (i, i * i) for i in range(50))
+    return b"t,position/knee [deg],velocity/knee\n" + b"".join(
+        b"%d,%d,1\n" % (i, i * i) for i in range(50)
+    )
 
 
 def recording():
-    entries = [{"timestamp": i * 0.005, "position": 0.1, "goal_position": 0.2, "speed": 0.0, "load": 3} for i in range(30)]
-    return json.dumps({"mass": 1, "length": 0.1, "kp": 100, "vin": 7.4, "motor": "xl330", "entries": entries}).encode()
+    entries = [
+        {"timestamp": i * 0.005, "position": 0.1, "goal_position": 0.2, "speed": 0.0, "load": 3}
+        for i in range(30)
+    ]
+    return json.dumps(
+        {"mass": 1, "length": 0.1, "kp": 100, "vin": 7.4, "motor": "xl330", "entries": entries}
+    ).encode()
 
 
 SOUND = {"log.parquet": parquet(), "log.pt": tensors(), "log.csv": table(), "log.json": recording()}
@@ -81,7 +94,17 @@ def opened(path):
 @settings(max_examples=60, deadline=None)
 @given(
     content=st.binary(max_size=400),
-    head=st.sampled_from([b"", b"PAR1", b"PK\x03\x04", b"\x89MCAP0\r\n", b"SQLite format 3\0", b"{", b"t,position/a\n"]),
+    head=st.sampled_from(
+        [
+            b"",
+            b"PAR1",
+            b"PK\x03\x04",
+            b"\x89MCAP0\r\n",
+            b"SQLite format 3\0",
+            b"{",
+            b"t,position/a\n",
+        ]
+    ),
 )
 def test_any_bytes(tmp_path_factory, content, head):
     path = tmp_path_factory.mktemp("bytes") / "log.bin"

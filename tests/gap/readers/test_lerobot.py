@@ -12,16 +12,34 @@ NAMES = ["shoulder_pan.pos", "gripper.pos"]
 
 
 def write(folder, robot="so101_follower", version="v2.1", names=NAMES, scale=30.0, action=True):
-    features = {"observation.state": {"dtype": "float32", "shape": [2], "names": names}, "timestamp": {"dtype": "float32", "shape": [1]}}
+    features = {
+        "observation.state": {"dtype": "float32", "shape": [2], "names": names},
+        "timestamp": {"dtype": "float32", "shape": [1]},
+    }
     if action:
         features["action"] = features["observation.state"]
     (folder / "meta").mkdir(parents=True)
-    (folder / "meta" / "info.json").write_text(json.dumps({"codebase_version": version, "robot_type": robot, "fps": 30, "features": features}))
+    (folder / "meta" / "info.json").write_text(
+        json.dumps(
+            {"codebase_version": version, "robot_type": robot, "fps": 30, "features": features}
+        )
+    )
     tables = []
     for episode in range(3):
         time = np.arange(40, dtype="f4") / 30
-        state = np.stack([scale * np.sin(time + episode), scale + 20 + 0 * time if scale > 1 else 0.5 + 0 * time], -1).astype("f4")
-        columns = {"observation.state": list(state), "timestamp": time, "episode_index": np.full(40, episode), "frame_index": np.arange(40)}
+        state = np.stack(
+            [
+                scale * np.sin(time + episode),
+                scale + 20 + 0 * time if scale > 1 else 0.5 + 0 * time,
+            ],
+            -1,
+        ).astype("f4")
+        columns = {
+            "observation.state": list(state),
+            "timestamp": time,
+            "episode_index": np.full(40, episode),
+            "frame_index": np.arange(40),
+        }
         tables.append(pyarrow.table(columns | ({"action": list(state + 1)} if action else {})))
     chunk = folder / "data" / "chunk-000"
     chunk.mkdir(parents=True)
@@ -39,8 +57,14 @@ def test_episodes_in_degrees(tmp_path, version):
     assert [log.name for log in found] == ["set_000000", "set_000001", "set_000002"]
     log = found[1]
     assert log.joints == ("shoulder_pan", "gripper")
-    np.testing.assert_allclose(log.signals["position/shoulder_pan"], np.radians(30 * np.sin(log.time + 1)), atol=1e-5)
-    np.testing.assert_allclose(log.signals["position_target/shoulder_pan"] - log.signals["position/shoulder_pan"], np.radians(1), atol=1e-5)
+    np.testing.assert_allclose(
+        log.signals["position/shoulder_pan"], np.radians(30 * np.sin(log.time + 1)), atol=1e-5
+    )
+    np.testing.assert_allclose(
+        log.signals["position_target/shoulder_pan"] - log.signals["position/shoulder_pan"],
+        np.radians(1),
+        atol=1e-5,
+    )
     np.testing.assert_allclose(log.signals["position/gripper"], 0.5)
     text = " ".join(log.metadata.remarks)
     assert "degrees" in text

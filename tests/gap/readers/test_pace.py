@@ -20,7 +20,9 @@ def test_positions_and_targets(tmp_path):
     (log,) = open_log(save(tmp_path / "traj.pt"))
     assert log.joints == ("joint_0", "joint_1")
     np.testing.assert_allclose(log.signals["position/joint_1"], np.cos(log.time), atol=1e-6)
-    np.testing.assert_allclose(log.signals["position_target/joint_1"], np.cos(log.time) + 0.1, atol=1e-6)
+    np.testing.assert_allclose(
+        log.signals["position_target/joint_1"], np.cos(log.time) + 0.1, atol=1e-6
+    )
     text = " ".join(log.metadata.remarks)
     assert "names no joints" in text
     assert "lacks velocities, torques" in text
@@ -28,7 +30,9 @@ def test_positions_and_targets(tmp_path):
 
 
 def test_side_file_names_joints_and_gains(tmp_path):
-    (tmp_path / "traj.json").write_text(json.dumps({"joints": ["hip", "knee"], "gains": {"hip": [20, 1.5], "knee": [20, 1.5]}}))
+    (tmp_path / "traj.json").write_text(
+        json.dumps({"joints": ["hip", "knee"], "gains": {"hip": [20, 1.5], "knee": [20, 1.5]}})
+    )
     (log,) = open_log(save(tmp_path / "traj.pt", dof_vel=torch.zeros(50, 2)))
     assert log.joints == ("hip", "knee")
     assert log.has("velocity", "hip")
@@ -50,8 +54,15 @@ def test_bad_files(tmp_path):
 
 
 def test_go2(real_logs):
-    legs = [f"{leg}_{joint}_joint" for leg in ("FL", "FR", "RL", "RR") for joint in ("hip", "thigh", "calf")]
-    (log,) = open_log(real_logs / "go2_air" / "traj_0.pt", metadata={"joints": legs, "gains": {leg: [20, 1.5] for leg in legs}})
+    legs = [
+        f"{leg}_{joint}_joint"
+        for leg in ("FL", "FR", "RL", "RR")
+        for joint in ("hip", "thigh", "calf")
+    ]
+    (log,) = open_log(
+        real_logs / "go2_air" / "traj_0.pt",
+        metadata={"joints": legs, "gains": {leg: [20, 1.5] for leg in legs}},
+    )
     assert log.joints == tuple(legs)
     assert log.step == pytest.approx(0.005, rel=0.01)
     assert log.duration == pytest.approx(23.5, abs=0.1)

@@ -68,12 +68,27 @@ def test_bounds_of_tensors(tmp_path):
     numbers = np.arange(10.0).tobytes()
     found = read_tensors(archive(tmp_path / "x.pt", pickled((3, 2), (2, 1), 2), **{"0": numbers}))
     np.testing.assert_array_equal(found["a"], np.arange(2.0, 8).reshape(3, 2))
-    for size, stride, offset in (((6, 2), (2, 1), 0), ((3,), (1,), 8), ((2,), (-1,), 5), ((2,), (1,), -1)):
+    for size, stride, offset in (
+        ((6, 2), (2, 1), 0),
+        ((3,), (1,), 8),
+        ((2,), (-1,), 5),
+        ((2,), (1,), -1),
+    ):
         with pytest.raises(InputError, match="reaches past"):
-            read_tensors(archive(tmp_path / "x.pt", pickled(size, stride, offset), **{"0": numbers}))
+            read_tensors(
+                archive(tmp_path / "x.pt", pickled(size, stride, offset), **{"0": numbers})
+            )
 
 
-@pytest.mark.parametrize("data", [b"", b"\x80\x02garbage", pickle.dumps([1], protocol=2), pickle.dumps(OrderedDict(a=1), protocol=2)[:-3]])
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b"\x80\x02garbage",
+        pickle.dumps([1], protocol=2),
+        pickle.dumps(OrderedDict(a=1), protocol=2)[:-3],
+    ],
+)
 def test_damage(tmp_path, data):
     with pytest.raises(InputError, match=r"x.pt"):
         read_tensors(archive(tmp_path / "x.pt", data))

@@ -7,11 +7,21 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.readers import open_log
-from hyperleg_design.gap.readers.cdr import BATTERY, IMU, JOINT_STATE, CdrError, Cursor, imu, joint_state
+from hyperleg_design.gap.readers.cdr import (
+    BATTERY,
+    IMU,
+    JOINT_STATE,
+    CdrError,
+    Cursor,
+    imu,
+    joint_state,
+)
 
 
 class Writer:
-    """CDR as the wire format defines it: numbers aligned to their size behind the four bytes of the encapsulation."""
+    """CDR as the wire format defines it: numbers aligned to their size behind the four bytes of the
+    encapsulation.
+    """
 
     def __init__(self, order="<"):
         self.order, self.data = order, b""
@@ -46,14 +56,22 @@ def state(t, names, *values, order="<"):
 
 def inertial(t):
     writer = Writer().header(t, "imu_link").put("d", 0.1, 0.2, 0.3, 0.9).put("d", -1, *[0] * 8)
-    return writer.put("d", t, 2 * t, 3 * t).put("d", *[0] * 9).put("d", 0, 0, 9.81).put("d", *[0] * 9).done()
+    return (
+        writer.put("d", t, 2 * t, 3 * t)
+        .put("d", *[0] * 9)
+        .put("d", 0, 0, 9.81)
+        .put("d", *[0] * 9)
+        .done()
+    )
 
 
 @pytest.mark.parametrize("order", "<>")
 def test_joint_states(order):
     found = joint_state(state(12.5, ["hip", "left_knee"], [1, 2], [3, 4], [5, 6], order=order))
     assert (found.stamp, found.names) == (12.5, ("hip", "left_knee"))
-    np.testing.assert_array_equal([found.position, found.velocity, found.effort], [[1, 2], [3, 4], [5, 6]])
+    np.testing.assert_array_equal(
+        [found.position, found.velocity, found.effort], [[1, 2], [3, 4], [5, 6]]
+    )
 
 
 def test_unknown_orientation_is_nan():
@@ -77,10 +95,17 @@ def test_other_encodings_and_lengths():
 
 
 def traffic():
-    """(topic, type, time logged, bytes) of two seconds: states at 100 Hz, targets at 50 Hz, an IMU at 200 Hz, a battery."""
+    """(topic, type, time logged, bytes) of two seconds: states at 100 Hz, targets at 50 Hz, an IMU
+    at 200 Hz, a battery.
+    """
     for i in range(200):
         t = 5 + i * 0.01
-        yield "/joint_states", JOINT_STATE, t, state(t, ["hip", "knee"], [np.sin(t), np.cos(t)], [np.cos(t), -np.sin(t)], [t, -t])
+        yield (
+            "/joint_states",
+            JOINT_STATE,
+            t,
+            state(t, ["hip", "knee"], [np.sin(t), np.cos(t)], [np.cos(t), -np.sin(t)], [t, -t]),
+        )
     for i in range(100):
         t = 5.003 + i * 0.02
         yield "/leg/command", JOINT_STATE, t, state(t, ["knee", "hip"], [2 * t, t])
@@ -95,14 +120,26 @@ def traffic():
 
 def sqlite_bag(path, messages, encoding="cdr"):
     with sqlite3.connect(path) as base:
-        base.execute("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT, offered_qos_profiles TEXT)")
-        base.execute("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB)")
+        base.execute(
+            "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, "
+            "serialization_format TEXT, offered_qos_profiles TEXT)"
+        )
+        base.execute(
+            "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, "
+            "data BLOB)"
+        )
         topics = {}
         for topic, kind, time, data in messages:
             if topic not in topics:
                 topics[topic] = len(topics) + 1
-                base.execute("INSERT INTO topics VALUES(?, ?, ?, ?, '')", (topics[topic], topic, kind, encoding))
-            base.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)", (topics[topic], round(time * 1e9), data))
+                base.execute(
+                    "INSERT INTO topics VALUES(?, ?, ?, ?, '')",
+                    (topics[topic], topic, kind, encoding),
+                )
+            base.execute(
+                "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)",
+                (topics[topic], round(time * 1e9), data),
+            )
     base.close()
     return path
 
@@ -120,14 +157,39 @@ def mcap_file(path, messages, compression="", cut=0):
     for topic, kind, time, data in messages:
         if kind not in kinds:
             kinds[kind] = len(kinds) + 1
-            inside += record(3, struct.pack("<H", kinds[kind]) + text(kind) + text("ros2msg") + struct.pack("<I", 3) + b"...")
+            inside += record(
+                3,
+                struct.pack("<H", kinds[kind])
+                + text(kind)
+                + text("ros2msg")
+                + struct.pack("<I", 3)
+                + b"...",
+            )
         if topic not in topics:
             topics[topic] = len(topics) + 1
-            inside += record(4, struct.pack("<HH", topics[topic], kinds[kind]) + text(topic) + text("cdr") + struct.pack("<I", 0))
-        inside += record(5, struct.pack("<HIQQ", topics[topic], 0, round(time * 1e9), round(time * 1e9)) + data)
+            inside += record(
+                4,
+                struct.pack("<HH", topics[topic], kinds[kind])
+                + text(topic)
+                + text("cdr")
+                + struct.pack("<I", 0),
+            )
+        inside += record(
+            5, struct.pack("<HIQQ", topics[topic], 0, round(time * 1e9), round(time * 1e9)) + data
+        )
     packed = pyarrow.compress(inside, codec=compression, asbytes=True) if compression else inside
-    chunk = struct.pack("<QQQI", 0, 0, len(inside), 0) + text(compression) + struct.pack("<Q", len(packed)) + packed
-    whole = b"\x89MCAP0\r\n" + record(1, text("ros2") + text("test")) + record(6, chunk) + record(7, b"\0" * 6)
+    chunk = (
+        struct.pack("<QQQI", 0, 0, len(inside), 0)
+        + text(compression)
+        + struct.pack("<Q", len(packed))
+        + packed
+    )
+    whole = (
+        b"\x89MCAP0\r\n"
+        + record(1, text("ros2") + text("test"))
+        + record(6, chunk)
+        + record(7, b"\0" * 6)
+    )
     whole += record(15, b"\0" * 4) + record(2, b"\0" * 20) + b"\x89MCAP0\r\n"
     path.write_bytes(whole[: len(whole) - cut])
     return path
@@ -152,7 +214,9 @@ def check(log):
 @pytest.mark.parametrize("kind", ["sqlite", "", "zstd", "lz4"])
 def test_bags(tmp_path, kind):
     path = tmp_path / ("run.db3" if kind == "sqlite" else "run.mcap")
-    (log,) = open_log(sqlite_bag(path, traffic()) if kind == "sqlite" else mcap_file(path, traffic(), kind))
+    (log,) = open_log(
+        sqlite_bag(path, traffic()) if kind == "sqlite" else mcap_file(path, traffic(), kind)
+    )
     assert log.name == "run"
     check(log)
 

@@ -16,20 +16,34 @@ def write(folder, names=("hip", "knee"), ticks=100, control_step=0.02, sign=True
         return "[" + ", ".join(f"{wave(t + i):.6f}" for i in range(len(names))) + "]"
 
     times = [i * 0.02 for i in range(ticks)]
-    states = [f'STATE_MOTOR,{t * 1e6},"{row(t, np.sin)}","{row(t, np.cos)}","{row(t, np.cos if sign else lambda x: abs(np.cos(x)))}"' for t in times]
-    (folder / "state_motor.csv").write_text("type,timestamp,positions,velocities,torques\n" + "\n".join(states))
-    controls = [f'CONTROL,{i * control_step * 1e6},"{row(i * control_step, np.sin)}"' for i in range(int(ticks * 0.02 / control_step))]
+    states = [
+        f'STATE_MOTOR,{t * 1e6},"{row(t, np.sin)}","{row(t, np.cos)}","{row(t, np.cos if sign else lambda x: abs(np.cos(x)))}"'  # noqa: E501
+        for t in times
+    ]
+    (folder / "state_motor.csv").write_text(
+        "type,timestamp,positions,velocities,torques\n" + "\n".join(states)
+    )
+    controls = [
+        f'CONTROL,{i * control_step * 1e6},"{row(i * control_step, np.sin)}"'
+        for i in range(int(ticks * 0.02 / control_step))
+    ]
     (folder / "control.csv").write_text("type,timestamp,positions\n" + "\n".join(controls))
     return folder
 
 
 def test_pairs(tmp_path):
-    for source in (write(tmp_path / "run"), tmp_path / "run" / "state_motor.csv", tmp_path / "run" / "control.csv"):
+    for source in (
+        write(tmp_path / "run"),
+        tmp_path / "run" / "state_motor.csv",
+        tmp_path / "run" / "control.csv",
+    ):
         (log,) = open_log(source)
         assert log.name == "run"
         assert log.joints == ("hip", "knee")
         np.testing.assert_allclose(log.time, np.arange(100) * 0.02)
-        np.testing.assert_allclose(log.signals["position_target/knee"], np.sin(log.time + 1), atol=1e-6)
+        np.testing.assert_allclose(
+            log.signals["position_target/knee"], np.sin(log.time + 1), atol=1e-6
+        )
         np.testing.assert_allclose(log.signals["joint_torque/hip"], np.cos(log.time), atol=1e-6)
         assert any("lacks the controller's gains" in remark for remark in log.metadata.remarks)
 
@@ -42,7 +56,11 @@ def test_torques_without_sign_are_left_out(tmp_path):
 
 def test_targets_on_a_clock_of_their_own(tmp_path):
     (log,) = open_log(write(tmp_path / "run", control_step=0.0473))
-    np.testing.assert_allclose(log.signals["position_target/hip"], np.sin(np.floor(log.time / 0.0473 + 1e-9) * 0.0473), atol=1e-5)
+    np.testing.assert_allclose(
+        log.signals["position_target/hip"],
+        np.sin(np.floor(log.time / 0.0473 + 1e-9) * 0.0473),
+        atol=1e-5,
+    )
     assert any("clock of their own" in remark for remark in log.metadata.remarks)
 
 
@@ -63,7 +81,10 @@ def test_bad_tables(tmp_path):
     for text, message in (
         ("type,timestamp\n", "positions.*missing"),
         ("type,timestamp,positions\n", "empty log"),
-        ('type,timestamp,positions\nS,0,"[1, 2]"\nS,1,"[1]"\n', r"positions, row 1 = 1: expects 2 values"),
+        (
+            'type,timestamp,positions\nS,0,"[1, 2]"\nS,1,"[1]"\n',
+            r"positions, row 1 = 1: expects 2 values",
+        ),
         ('type,timestamp,positions\nS,0,"[1, x]"\nS,1,"[1]"\n', r"positions, row 0 = '\[1, x\]'"),
         (whole[: len(whole) // 2 + 7], "row|table"),
     ):

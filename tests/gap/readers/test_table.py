@@ -14,7 +14,11 @@ def write(path, text):
 
 
 def test_our_names_with_units(tmp_path):
-    path = write(tmp_path / "run.csv", "t [ms],position/knee [deg],motor_current/m [mA],comment\n0,90,1500,a\n5,180,,b\n10,0,500,c\n")
+    path = write(
+        tmp_path / "run.csv",
+        "t [ms],position/knee [deg],motor_current/m "
+        "[mA],comment\n0,90,1500,a\n5,180,,b\n10,0,500,c\n",
+    )
     (log,) = open_log(path)
     np.testing.assert_allclose(log.time, [0, 0.005, 0.01])
     np.testing.assert_allclose(log.signals["position/knee"], [np.pi / 2, np.pi, 0])
@@ -27,7 +31,9 @@ def test_mapping_of_other_names(tmp_path, way):
     path = write(tmp_path / "run.csv", "stamp;q1 (deg);u1\n0,0;90,0;1,5\n0,01;180,0;1,6\n")
     mapping = {"stamp": "t", "q1": "position/knee", "u1": "position_target/knee [rad]"}
     if way == "side file":
-        (tmp_path / "run.json").write_text(json.dumps({"columns": mapping, "gains": {"knee": [20, 1]}}))
+        (tmp_path / "run.json").write_text(
+            json.dumps({"columns": mapping, "gains": {"knee": [20, 1]}})
+        )
         (log,) = open_log(path)
         assert log.metadata.gains == {"knee": (20, 1)}
     else:
@@ -58,7 +64,9 @@ def test_bad_files(tmp_path, text, mapping, message):
 
 
 def test_clock_that_counts_from_the_epoch(tmp_path):
-    (log,) = open_log(write(tmp_path / "run.csv", "timestamp,position/knee\n1700000000.0,1\n1700000000.5,2\n"))
+    (log,) = open_log(
+        write(tmp_path / "run.csv", "timestamp,position/knee\n1700000000.0,1\n1700000000.5,2\n")
+    )
     np.testing.assert_allclose(log.time, [0, 0.5])
     assert log.metadata.extra["start_time"] == 1700000000.0
 

@@ -13,12 +13,19 @@ def test_interpolates_lines_exactly_and_leaves_gaps():
 
 
 def test_targets_hold_until_the_next():
-    found = onto(np.array([-1, 0, 0.5, 1, 1.9, 2.5]), np.array([0.0, 1, 2]), {"a": np.array([10.0, 11, 12])}, hold=True)["a"]
+    found = onto(
+        np.array([-1, 0, 0.5, 1, 1.9, 2.5]),
+        np.array([0.0, 1, 2]),
+        {"a": np.array([10.0, 11, 12])},
+        hold=True,
+    )["a"]
     np.testing.assert_array_equal(found, [np.nan, 10, 10, 11, 11, 12])
 
 
 def test_sorting():
-    time, signals, disorder = sorted_stream(np.array([0.0, 2, 1, 1]), {"a": np.array([0.0, 2, 1, 5])})
+    time, signals, disorder = sorted_stream(
+        np.array([0.0, 2, 1, 1]), {"a": np.array([0.0, 2, 1, 5])}
+    )
     np.testing.assert_array_equal(time, [0, 1, 2])
     np.testing.assert_array_equal(signals["a"], [0, 1, 2])
     assert disorder == 1

@@ -21,9 +21,16 @@ def test_headers(header, found):
 
 @pytest.mark.parametrize(
     ("column", "unit", "value"),
-    [("position/knee", "deg", math.pi / 180), ("motor_velocity/m", "rpm", math.pi / 30), ("motor_current/m", "mA", 1e-3), ("t", "us", 1e-6),
-     ("accelerometer/x", "g", 9.80665), ("battery_voltage", "", 1.0), ("joint_torque/knee", "Nm", 1.0)],
-)  # fmt: skip
+    [
+        ("position/knee", "deg", math.pi / 180),
+        ("motor_velocity/m", "rpm", math.pi / 30),
+        ("motor_current/m", "mA", 1e-3),
+        ("t", "us", 1e-6),
+        ("accelerometer/x", "g", 9.80665),
+        ("battery_voltage", "", 1.0),
+        ("joint_torque/knee", "Nm", 1.0),
+    ],
+)
 def test_factors(column, unit, value):
     assert factor(column, unit, "run.csv") == pytest.approx(value)
 

@@ -14,8 +14,14 @@ def test_derivatives_of_harmonics_are_exact():
     wave = np.sin(3 * np.pi * TIME) + 0.5 * np.cos(np.pi * TIME)
     value, rate, turn = PERIODIC.derivatives(wave)
     np.testing.assert_allclose(value, wave, atol=1e-12)
-    np.testing.assert_allclose(rate, 3 * np.pi * np.cos(3 * np.pi * TIME) - 0.5 * np.pi * np.sin(np.pi * TIME), atol=1e-10)
-    np.testing.assert_allclose(turn, -9 * np.pi**2 * np.sin(3 * np.pi * TIME) - 0.5 * np.pi**2 * np.cos(np.pi * TIME), atol=1e-9)
+    np.testing.assert_allclose(
+        rate, 3 * np.pi * np.cos(3 * np.pi * TIME) - 0.5 * np.pi * np.sin(np.pi * TIME), atol=1e-10
+    )
+    np.testing.assert_allclose(
+        turn,
+        -9 * np.pi**2 * np.sin(3 * np.pi * TIME) - 0.5 * np.pi**2 * np.cos(np.pi * TIME),
+        atol=1e-9,
+    )
 
 
 def test_filter_solves_its_equation():
@@ -26,12 +32,16 @@ def test_filter_solves_its_equation():
 
 def test_integral_undoes_derivative():
     wave = np.sin(5 * np.pi * TIME)
-    np.testing.assert_allclose(PERIODIC.integrated_twice(PERIODIC.derivatives(wave)[2] + 7.0), wave, atol=1e-10)
+    np.testing.assert_allclose(
+        PERIODIC.integrated_twice(PERIODIC.derivatives(wave)[2] + 7.0), wave, atol=1e-10
+    )
 
 
 def test_mirrored_motion_rests_at_its_ends():
     time = np.linspace(0, 1, 101)
-    value, rate, _ = Series(0.01, mirrored=True).derivatives(np.stack([time**2 * (3 - 2 * time), 1 - time], -1))
+    value, rate, _ = Series(0.01, mirrored=True).derivatives(
+        np.stack([time**2 * (3 - 2 * time), 1 - time], -1)
+    )
     np.testing.assert_allclose(rate[[0, -1]], 0.0, atol=1e-9)
     assert value.shape == (101, 2)
 

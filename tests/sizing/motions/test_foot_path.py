@@ -6,7 +6,17 @@ from hypothesis import strategies as st
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.sizing.kinematics import about_y
-from hyperleg_design.sizing.motions.foot_path import FLAT, ON_HEEL, ON_TOE, SWING, Step, bump, foot_path, quintic, rolling
+from hyperleg_design.sizing.motions.foot_path import (
+    FLAT,
+    ON_HEEL,
+    ON_TOE,
+    SWING,
+    Step,
+    bump,
+    foot_path,
+    quintic,
+    rolling,
+)
 
 STEP = Step(0.1, 0.2, 0.6, 0.7, (0.0, 0.1, 0.0), (0.5, 0.12, 0.1), 0.5, -0.2, 0.05)
 NUMBER = st.floats(-3, 3)
@@ -35,14 +45,26 @@ def test_rolling_pads_stay_on_the_floor_and_do_not_slip(variant, row):
     moved = rolling(design, row, np.stack([angle, rate, 0 * rate]))
     radius = design.contact.pad_radius
     hinge = row == "tip" and design.toe.joint == "active"
-    forward = -design.foot.heel_length + radius if row == "heel" else design.foot.ball_length + (0 if hinge else design.toe.length - radius)
+    forward = (
+        -design.foot.heel_length + radius
+        if row == "heel"
+        else design.foot.ball_length + (0 if hinge else design.toe.length - radius)
+    )
     below = -design.foot.ankle_height + (design.toe.axis_height if hinge else radius)
     turned = about_y(angle) @ np.array([forward, 0.0, below])
-    center = np.array([0.0, 0.0, design.foot.ankle_height]) + np.stack([moved[0, :, 0], 0 * angle, moved[0, :, 1]], -1) + turned
-    np.testing.assert_allclose(center[:, 2], design.toe.axis_height if hinge else radius, atol=1e-12)
+    center = (
+        np.array([0.0, 0.0, design.foot.ankle_height])
+        + np.stack([moved[0, :, 0], 0 * angle, moved[0, :, 1]], -1)
+        + turned
+    )
+    np.testing.assert_allclose(
+        center[:, 2], design.toe.axis_height if hinge else radius, atol=1e-12
+    )
     # the ankle's velocity plus w x r gives what touches the floor no velocity
     arm = turned - np.array([0, 0, 0.0 if hinge else radius])
-    velocity = np.stack([moved[1, :, 0], 0 * angle, moved[1, :, 1]], -1) + np.cross(np.array([0.0, 1.7, 0.0]), arm)
+    velocity = np.stack([moved[1, :, 0], 0 * angle, moved[1, :, 1]], -1) + np.cross(
+        np.array([0.0, 1.7, 0.0]), arm
+    )
     np.testing.assert_allclose(velocity, 0.0, atol=1e-12)
 
 
@@ -60,7 +82,9 @@ def test_path_is_smooth_through_all_phases(variant):
             size = np.abs(value[order + 1]).max() + 1e-9
             assert np.abs(slope - value[order + 1, 1:-1]).max() < 2e-2 * size + 1e-9
             assert np.abs(np.diff(value[order], axis=0)).max() <= 1.01 * step * size
-    np.testing.assert_allclose(path.position[0, -1], [0.5, 0.12, 0.1 + design.foot.ankle_height], atol=1e-12)
+    np.testing.assert_allclose(
+        path.position[0, -1], [0.5, 0.12, 0.1 + design.foot.ankle_height], atol=1e-12
+    )
     assert (np.ptp(path.toe[0]) > 0.4) == (variant == "toe")
 
 

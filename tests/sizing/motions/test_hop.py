@@ -15,7 +15,9 @@ def motion():
 def test_force_is_the_pulse_and_nothing_in_flight(motion):
     force, moment = ground_wrench(motion.model, motion.q, motion.v, motion.a)
     weight = GRAVITY * 32.0
-    np.testing.assert_allclose(force[:, 2], weight * load_pulse(HopPlan(), motion.time)[2], atol=1e-6)
+    np.testing.assert_allclose(
+        force[:, 2], weight * load_pulse(HopPlan(), motion.time)[2], atol=1e-6
+    )
     np.testing.assert_allclose(force[:, :2], 0.0, atol=1e-6)
     flying = ~motion.contact.any(1)
     assert flying.sum() == pytest.approx(42 * 0.12 / 0.42, abs=1)
@@ -48,7 +50,9 @@ def test_pulse_lifts_the_body_as_high_as_the_flight_needs():
     assert height[-1] == pytest.approx(height[0], abs=1e-9)
     np.testing.assert_allclose(np.gradient(height, time)[1:-1], rate[1:-1], atol=1e-3)
     np.testing.assert_allclose(np.gradient(rate, time)[5:-5], GRAVITY * (load[5:-5] - 1), atol=1e-1)
-    assert height.max() - load_pulse(plan, np.array([plan.stance]))[0, 0] == pytest.approx(plan.rise, rel=1e-4)
+    assert height.max() - load_pulse(plan, np.array([plan.stance]))[0, 0] == pytest.approx(
+        plan.rise, rel=1e-4
+    )
 
 
 def test_bad_plan():

@@ -17,7 +17,9 @@ CASES = [(v, m) for v in VARIANTS for m in MOTIONS if m != "hop" or v in ("toe",
 
 @cache
 def planned(variant: str, name: str) -> Motion:
-    return reference_motion(load_design(variant=variant), name, samples=40 if name == "hop" else None)
+    return reference_motion(
+        load_design(variant=variant), name, samples=40 if name == "hop" else None
+    )
 
 
 @pytest.fixture(params=CASES, ids=lambda c: f"{c[0]}-{c[1]}")
@@ -36,8 +38,12 @@ def test_forward_kinematics_reproduce_the_planned_feet(motion):
             path, frame = motion.feet[leg], model.model.getFrameId(f"{side}_foot")
             place = model.data.oMf[frame]
             np.testing.assert_allclose(place.translation, path.position[0, n], atol=1e-9)
-            np.testing.assert_allclose(np.arctan2(-place.rotation[2, 0], place.rotation[0, 0]), path.pitch[0, n], atol=1e-9)
-            velocity = pin.getFrameVelocity(model.model, model.data, frame, pin.LOCAL_WORLD_ALIGNED).vector
+            np.testing.assert_allclose(
+                np.arctan2(-place.rotation[2, 0], place.rotation[0, 0]), path.pitch[0, n], atol=1e-9
+            )
+            velocity = pin.getFrameVelocity(
+                model.model, model.data, frame, pin.LOCAL_WORLD_ALIGNED
+            ).vector
             np.testing.assert_allclose(velocity, path.twist(1, n), atol=1e-8)
 
 
@@ -56,8 +62,11 @@ def test_velocities_are_those_of_the_positions(motion):
 
     step, model = motion.time_step, motion.model.model
     inner = range(1, len(motion.time) - 1)
-    moved = np.array([pin.difference(model, motion.q[n - 1], motion.q[n + 1]) / (2 * step) for n in inner])
-    # central differences err by step^2 / 6 of the third derivative, and feet change phase with a jump in that
+    moved = np.array(
+        [pin.difference(model, motion.q[n - 1], motion.q[n + 1]) / (2 * step) for n in inner]
+    )
+    # central differences err by step^2 / 6 of the third derivative, and feet change phase with a
+    # jump in that
     jerk = np.abs(np.gradient(motion.a, step, axis=0)).max(0)
     assert np.all(np.abs(moved - motion.v[1:-1]) < step**2 * (jerk + 5) + 2e-3)
     gained = (motion.v[2:] - motion.v[:-2]) / (2 * step)
@@ -82,7 +91,10 @@ def test_centre_of_pressure_is_the_planned_one_inside_the_loaded_pads(motion):
         return  # feet on two levels have no polygon of support
     for n in np.flatnonzero(stands):
         points, _ = contact_kinematics(motion.model, motion.q[n])
-        assert inside(motion.pressure[n, :2], points[motion.contact[n], :2]) < 5e-3, (n, motion.time[n])
+        assert inside(motion.pressure[n, :2], points[motion.contact[n], :2]) < 5e-3, (
+            n,
+            motion.time[n],
+        )
 
 
 def inside(point: np.ndarray, corners: np.ndarray) -> float:
@@ -94,7 +106,10 @@ def inside(point: np.ndarray, corners: np.ndarray) -> float:
 
 def test_knees_bend_forward_and_joints_stay_in_range(motion):
     limits = motion.model.design.joints
-    for index, name in enumerate(j.name.removeprefix("left_") for j in motion.model.tree.moving[: motion.joint_position.shape[2]]):
+    for index, name in enumerate(
+        j.name.removeprefix("left_")
+        for j in motion.model.tree.moving[: motion.joint_position.shape[2]]
+    ):
         joint = getattr(limits, name)
         angles = np.rad2deg(motion.joint_position[..., index])
         assert angles.min() >= joint.lower_deg - 1e-6

@@ -8,7 +8,9 @@ from hyperleg_design.sizing.motions.walk import WalkPlan
 
 
 def test_plan_fields_reach_the_planner():
-    assert reference_motion(load_design(), "walk", samples=41, speed=1.0).distance == pytest.approx(1.0 * 2 * WalkPlan().step_time)
+    assert reference_motion(load_design(), "walk", samples=41, speed=1.0).distance == pytest.approx(
+        1.0 * 2 * WalkPlan().step_time
+    )
 
 
 def test_unknown_motion_and_field():

@@ -26,7 +26,9 @@ def test_too_high_a_step_says_why():
         stair(load_design(), StairPlan(step_height=0.55))
 
 
-@pytest.mark.parametrize(("field", "value"), [("step_height", -0.1), ("swing", 0.0), ("pitch_off", 1.5)])
+@pytest.mark.parametrize(
+    ("field", "value"), [("step_height", -0.1), ("swing", 0.0), ("pitch_off", 1.5)]
+)
 def test_bad_plans_name_the_field(field, value):
     with pytest.raises(InputError, match=field):
         StairPlan(**{field: value})

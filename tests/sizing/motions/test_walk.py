@@ -18,7 +18,9 @@ def test_travels_at_its_speed(stride):
 
 def test_legs_alternate(stride):
     half = len(stride.time) // 2
-    np.testing.assert_allclose(np.roll(stride.joint_position[:, 0], half, 0), stride.joint_position[:, 1], atol=1e-6)
+    np.testing.assert_allclose(
+        np.roll(stride.joint_position[:, 0], half, 0), stride.joint_position[:, 1], atol=1e-6
+    )
     loaded = np.stack([stride.contact[:, :6].any(1), stride.contact[:, 6:].any(1)], -1)
     assert loaded.any(1).all()
     both = loaded.all(1).mean()
@@ -26,7 +28,9 @@ def test_legs_alternate(stride):
 
 
 def test_trunk_is_upright_and_level(stride):
-    np.testing.assert_allclose(stride.q[:, 3:7], np.array([0, 0, 0, 1.0]) * np.ones((100, 1)), atol=1e-15)
+    np.testing.assert_allclose(
+        stride.q[:, 3:7], np.array([0, 0, 0, 1.0]) * np.ones((100, 1)), atol=1e-15
+    )
     assert np.ptp(stride.q[:, 2]) < 0.05
     assert np.ptp(stride.q[:, 1]) < 0.08
 
@@ -44,7 +48,14 @@ def test_too_long_a_step_says_so():
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("speed", 0.0), ("speed", -1.0), ("step_time", float("nan")), ("double_support", 1.0), ("heel_rise", -0.1), ("pitch_off", 2.0)],
+    [
+        ("speed", 0.0),
+        ("speed", -1.0),
+        ("step_time", float("nan")),
+        ("double_support", 1.0),
+        ("heel_rise", -0.1),
+        ("pitch_off", 2.0),
+    ],
 )
 def test_bad_plans_name_the_field(field, value):
     with pytest.raises(InputError, match=field):
