@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 from pathlib import Path
 from typing import Any
@@ -113,3 +114,8 @@ class _Loader(_BASE):  # type: ignore[misc]
 def short_name(path: Path) -> str:
     """Folder and name of a file, for messages."""
     return f"{path.parent.name}/{path.name}" if path.parent.name else path.name
+
+
+def summary_line(documented: object) -> str:
+    """First paragraph of an object's docstring as one line, however the source wraps it."""
+    return " ".join((inspect.getdoc(documented) or "").split("\n\n")[0].split())

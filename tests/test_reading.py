@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import MAX_DEPTH, parse_yaml, read_yaml, short_name
+from hyperleg_design.reading import MAX_DEPTH, parse_yaml, read_yaml, short_name, summary_line
 
 
 def test_a_mapping_is_read(write):
@@ -81,3 +81,17 @@ def test_any_bytes_are_read_or_refused(tmp_path_factory, content):
 def test_short_name():
     assert short_name(Path("/a/b/c.yaml")) == "b/c.yaml"
     assert short_name(Path("c.yaml")) == "c.yaml"
+
+
+def test_a_summary_line_joins_what_the_source_wraps_and_leaves_out_what_follows():
+    def documented():
+        """One sentence that
+        is wrapped.
+
+        Another paragraph.
+        """
+
+    def silent(): ...
+
+    assert summary_line(documented) == "One sentence that is wrapped."
+    assert summary_line(silent) == ""

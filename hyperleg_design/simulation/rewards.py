@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hyperleg_design.reading import summary_line
 from hyperleg_design.simulation.layout import Layout
 from hyperleg_design.simulation.model import foot_loads
 from hyperleg_design.simulation.settings import Clock
@@ -43,8 +44,8 @@ class Term:
 
     @property
     def description(self) -> str:
-        """First line of its docstring."""
-        return (self.function.__doc__ or "").split("\n")[0]
+        """First paragraph of its docstring."""
+        return summary_line(self.function)
 
     @property
     def parameters(self) -> dict[str, float]:

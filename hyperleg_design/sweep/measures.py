@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from hyperleg_design.reading import summary_line
 from hyperleg_design.robot import masses, transmission
 from hyperleg_design.robot.consistency import leg_length
 from hyperleg_design.robot.design import Design
@@ -113,11 +114,11 @@ def measure(
 
     def register(function: Callable[[Batch], np.ndarray]) -> Callable[[Batch], np.ndarray]:
         name = function.__name__
-        if name in MEASURES or better not in ("low", "high") or not function.__doc__:
+        if name in MEASURES or better not in ("low", "high") or not summary_line(function):
             raise ValueError(
                 f"measure {name} is there already, or lacks a docstring or a direction"
             )
-        MEASURES[name] = Measure(name, unit, better, parts, function.__doc__, function)
+        MEASURES[name] = Measure(name, unit, better, parts, summary_line(function), function)
         return function
 
     return register

@@ -129,3 +129,9 @@ def test_goal_terms(state, robot):
     np.testing.assert_allclose(value("goal_facing", state, robot), [1.0, 0.0], atol=1e-12)
     np.testing.assert_allclose(value("goal_turning", state, robot), [1.0, np.exp(-9.0) - 0.6])
     np.testing.assert_allclose(value("path_deviation", state, robot), [0.3, 1.5])
+
+
+def test_descriptions_are_whole_sentences():
+    for term in TERMS.values():
+        assert "\n" not in term.description
+        assert term.description.endswith(".")
