@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 
 import pytest
 
+import hyperleg_design
 from hyperleg_design import cli
 
 
@@ -49,12 +51,14 @@ def test_set_is_repeatable_and_reaches_the_design(capsys):
     assert json.loads(out)["total_mass"] == pytest.approx(33.16, abs=1e-12)
 
 
-def test_overlay_is_applied_before_set(capsys, tmp_path: Path):
+def test_a_file_of_parameters_is_applied_before_set(capsys, tmp_path: Path):
     overlay = tmp_path / "heavy.yaml"
     overlay.write_text(
         "toe: {mass: 0.5}\npelvis: {mass: {value: 10, label: assumed, source: test}}\n"
     )
-    _, out, _ = run(capsys, "analyze", "--overlay", str(overlay), "--set", "toe.mass=0.3", "--json")
+    _, out, _ = run(
+        capsys, "analyze", "--set-file", str(overlay), "--set", "toe.mass=0.3", "--json"
+    )
     assert json.loads(out)["total_mass"] == pytest.approx(10 + 2 * (8.27 + 0.08), abs=1e-12)
 
 
@@ -94,10 +98,10 @@ def test_list_speaks_json(capsys):
         (["evaluate", "no/such/policy.onnx", "--out", "x"], ["no/such/policy.onnx"]),
         (["campaign", "start"], ["start", "status"]),
         (["campaign", "status", "no-campaign"], ["no-campaign", "campaign"]),
-        (["train", "--seed", "-1", "--out", "x"], ["seed", "-1", "from 0 on"]),
+        (["train", "--seed", "-1", "--out", "x"], ["--seed", "-1", "at least 0"]),
         (
             ["gap", "blind", "--cases", "2", "--seed", "-1", "--out", "x"],
-            ["seed", "-1", "from 0 on"],
+            ["--seed", "-1", "at least 0"],
         ),
     ],
 )
@@ -261,6 +265,46 @@ def test_gap_apply_writes_what_training_and_evaluation_read(capsys, tmp_path):
     )
     assert code == 2
     assert "none.yaml: cannot be read" in err
+
+
+def test_the_version_is_an_option_too(capsys):
+    code, out, _ = run(capsys, "--version")
+    assert code == 0
+    assert out == f"hyperleg {hyperleg_design.__version__}\n"
+
+
+def test_every_verb_but_training_prints_json_on_request():
+    for verb, command in {**cli.VERBS, **cli.gap.VERBS}.items():
+        if verb not in ("train", "gap"):
+            assert "json" in {field.name for field in dataclasses.fields(command)}, verb
+
+
+def test_completion_knows_every_verb(capsys):
+    code, out, _ = run(capsys, "--tyro-print-completion", "bash")
+    assert code == 0
+    for verb in (*cli.VERBS, *cli.gap.VERBS):
+        assert verb in out
+
+
+def test_campaign_speaks_json(capsys, tmp_path: Path):
+    code, out, _ = run(capsys, "campaign", "status", "--out", str(tmp_path / "none"), "--json")
+    assert code == 0
+    found = json.loads(out)
+    assert len(found) == 36
+    assert {row["state"] for row in found} <= {"missing", "shipped"}
+
+
+def test_missing_trainings_are_named(tmp_path: Path):
+    from hyperleg_design.report.evaluated import coverage, coverage_text
+
+    (tmp_path / "walk-toe-0").mkdir()
+    (tmp_path / "walk-toe-0" / "policy.onnx").write_bytes(b"x")
+    found = coverage(tmp_path)
+    assert found["evaluated"] == ["walk-toe-0"]
+    assert len(found["missing"]) == 35
+    text = coverage_text(found)
+    assert text.startswith("1 trainings are evaluated; 35 of the campaign's are missing: ")
+    assert "walk toe (seed 1, 2, 3, 4)" in text
 
 
 def test_gap_alone_shows_its_verbs(capsys):

@@ -6,22 +6,40 @@ import contextlib
 import io
 import re
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any, Union
 
 import tyro
 
+from hyperleg_design import __version__
 from hyperleg_design.cli import design, gap, policies
+from hyperleg_design.cli.arguments import check_bounds
 from hyperleg_design.errors import HyperlegError, InputError
+
+ABOUT = (
+    "Design, size and compare legged robots with cooperative actuation. "
+    "--version prints the version; --tyro-print-completion bash (or zsh) prints a script for the "
+    "shell that completes verbs and options."
+)
+
+
+def _union(verbs: Mapping[str, Any]) -> Any:
+    """Type of a command that is one of several verbs, each under its name."""
+    named = (Annotated[command, tyro.conf.subcommand(name)] for name, command in verbs.items())
+    return Union[tuple(named)]  # noqa: UP007  # the members are known only when this runs
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gap:
     """Diagnose the gap between simulation and robot; `hyperleg gap --help` lists its verbs."""
 
+    verb: Annotated[_union(gap.VERBS), tyro.conf.arg(name="")]  # type: ignore[valid-type]
+    """One of `gap.VERBS`."""
+
     def run(self) -> None:
-        """Show its verbs."""
-        _parse(["gap", "--help"])
+        """Run the verb."""
+        self.verb.run()
 
 
 VERBS: dict[str, Any] = {
@@ -40,29 +58,25 @@ VERBS: dict[str, Any] = {
     "gap": Gap,
     "version": design.Version,
 }
+"""Commands by name: dataclasses whose fields are options, with a method `run`."""
 
 
 def _parse(arguments: list[str]) -> Any:
-    """The command asked for; what is wrong with the arguments goes into one line."""
+    """The command that the arguments name.
+
+    Raises:
+        InputError: the arguments are wrong; says how in one line.
+        SystemExit: help or a completion script was printed.
+    """
+    if arguments in ([], ["gap"]):
+        arguments = [*arguments, "--help"]
     errors = io.StringIO()
-    verbs, prog, about = (
-        VERBS,
-        "hyperleg",
-        "Design, size and compare legged robots with cooperative actuation.",
-    )
-    if arguments[:1] == ["gap"]:
-        verbs, prog, about = (
-            gap.VERBS,
-            "hyperleg gap",
-            "Diagnose the gap between simulation and robot: where they differ, and why.",
-        )
-        arguments = arguments[1:] or ["--help"]
     try:
         with contextlib.redirect_stderr(errors):
-            command = tyro.extras.subcommand_cli_from_dict(
-                verbs,
-                prog=prog,
-                description=about,
+            command = tyro.cli(
+                _union(VERBS),
+                prog="hyperleg",
+                description=ABOUT,
                 args=arguments,
                 config=(tyro.conf.FlagCreatePairsOff,),
             )
@@ -71,19 +85,29 @@ def _parse(arguments: list[str]) -> Any:
             raise
         text = re.sub(r"[╭╮╰╯│─]+|-{3,}", " ", errors.getvalue())
         text = re.sub(r"\s+", " ", text).strip()
-        text = re.sub(
-            r"^(.+?) \1", r"\1", text
-        )  # a box whose title is the first words of what is in it
+        # tyro's box has a title that the first words in it repeat
+        text = re.sub(r"^(.+?) \1", r"\1", text, flags=re.IGNORECASE)
         raise InputError("arguments", "", None, text or "see hyperleg --help") from None
-    if (seed := getattr(command, "seed", None)) is not None and seed < 0:
-        raise InputError("arguments", "seed", seed, "expects a whole number from 0 on")
+    check_bounds(command)
     return command
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Entry point; returns the exit code: 0, or 2 on bad input."""
+    """Run the command line.
+
+    Args:
+        arguments: without the program's name; the process's own by default.
+
+    Returns:
+        The exit code: 0 where all went well, 2 on bad input, 3 where a training or campaign was
+        stopped before it was done, 130 where the user interrupted.
+    """
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    if given == ["--version"]:
+        print(f"hyperleg {__version__}")
+        return 0
     try:
-        _parse(list(sys.argv[1:] if arguments is None else arguments) or ["--help"]).run()
+        _parse(given).run()
     except HyperlegError as error:
         print(f"hyperleg: {error}", file=sys.stderr)
         return 2

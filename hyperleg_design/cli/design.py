@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
 from hyperleg_design import __version__, resources
-from hyperleg_design.cli.output import emit
-from hyperleg_design.errors import InputError
+from hyperleg_design.cli.output import Printing, emit
 from hyperleg_design.robot.design import Design, load_design
 
 
 @dataclass(frozen=True, kw_only=True)
-class Chosen:
+class Chosen(Printing):
     """A design, and what to change of it."""
 
     design: str = "hyperleg"
@@ -24,24 +23,24 @@ class Chosen:
     """Ablation to make of it: toe, toe_locked, toe_removed_matched or toe_removed."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """PATH=VALUE, such as toe.mass=0.3."""
-    overlay: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """YAML file with leaves that differ, applied before --set."""
+    set_file: Annotated[
+        tyro.conf.UseAppendAction[tuple[str, ...]], tyro.conf.arg(aliases=("--overlay",))
+    ] = ()
+    """YAML file of parameters that differ, applied before --set."""
 
     def load(self) -> Design:
         """The design asked for."""
         return load_design(
-            self.design, overrides=self.set, overlays=self.overlay, variant=self.variant or None
+            self.design, overrides=self.set, overlays=self.set_file, variant=self.variant or None
         )
 
 
 @dataclass(frozen=True, kw_only=True)
-class List:
+class List(Printing):
     """What is shipped: designs, motors, sweeps, policies."""
 
     kind: Annotated[str, tyro.conf.Positional] = "all"
     """designs, variants, motors, sweeps, policies, parameters, or all."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Print it."""
@@ -60,8 +59,6 @@ class Build(Chosen):
 
     out: Path
     """Folder to write; replaced if hyperleg made it."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Build it."""
@@ -81,13 +78,11 @@ class Build(Chosen):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Check:
+class Check(Printing):
     """Check files: designs, motors, sweeps, URDF, MJCF. Exit code 2 if any is wrong."""
 
     paths: Annotated[tuple[str, ...], tyro.conf.Positional]
     """Files, or names of shipped designs."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Check them."""
@@ -108,9 +103,6 @@ class Analyze(Chosen):
     design.
     """
 
-    json: bool = False
-    """Print JSON."""
-
     def run(self) -> None:
         """Analyse it."""
         from hyperleg_design.report.text import analysis_text
@@ -124,7 +116,7 @@ class Analyze(Chosen):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Compare:
+class Compare(Printing):
     """Several designs beside each other."""
 
     designs: Annotated[tuple[str, ...], tyro.conf.Positional] = (
@@ -138,8 +130,6 @@ class Compare:
     """PATH=VALUE, applied to all."""
     demand: bool = False
     """Add what a planned walk at 1.33 m/s asks of each (seconds a design)."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Compare them."""
@@ -155,27 +145,23 @@ class Compare:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sweep:
+class Sweep(Printing):
     """Evaluate a sweep of designs; killed, it goes on where it stopped."""
 
-    action: Annotated[str, tyro.conf.Positional]
-    """run"""
+    action: Annotated[Literal["run"], tyro.conf.Positional]
+    """What to do; there is only run."""
     file: Annotated[str, tyro.conf.Positional]
     """Shipped name or YAML file."""
     out: Path
     """Folder to write."""
     restart: bool = False
     """Throw away what an earlier run left there."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Run it."""
         from hyperleg_design.report.sweep_page import sweep_report
         from hyperleg_design.sweep.run import run_sweep
 
-        if self.action != "run":
-            raise InputError("sweep", "", self.action, "expects: hyperleg sweep run FILE --out DIR")
         result = run_sweep(self.file, self.out, resume=not self.restart, progress=not self.json)
         summary = sweep_report(result)
         if self.json:
@@ -188,7 +174,7 @@ class Sweep:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Study:
+class Study(Printing):
     """The whole study: analyse the paper's biped and its ablations, sweep, and write a page."""
 
     out: Path = Path("results/study")
@@ -196,26 +182,25 @@ class Study:
     policies: Path | None = None
     """Folder of trainings to evaluate, such as results/campaign; the shipped policies by
     default."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Run it."""
+        from hyperleg_design.report.evaluated import coverage, coverage_text
         from hyperleg_design.report.study import run_study
 
+        trainings = coverage(self.policies)
+        if not self.json and (text := coverage_text(trainings)):
+            print(text, flush=True)
         page = run_study(self.out, policies=self.policies, progress=not self.json)
         if self.json:
-            emit({"page": str(page)})
+            emit({"page": str(page), "trainings": trainings})
         else:
             print(f"open {page}")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Version:
+class Version(Printing):
     """Versions of this package and of what it builds on."""
-
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Print them."""

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import json as json_module
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 import tyro
 
-from hyperleg_design.cli.output import emit
+from hyperleg_design.cli.arguments import AtLeast
+from hyperleg_design.cli.output import Printing, emit
 from hyperleg_design.errors import InputError
 
 
 @dataclass(frozen=True, kw_only=True)
-class Check:
+class Check(Printing):
     """Say what logs can and cannot show: rates, jitter, dropouts, units, excitation of each effect.
     Exit code 2 on errors.
     """
@@ -27,8 +29,6 @@ class Check:
     """THEIRS=OURS, a CSV file's column and ours, such as q1=position/knee."""
     out: Path | None = None
     """Folder to write check.json and the logs as Parquet to."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Check them."""
@@ -45,13 +45,10 @@ class Check:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effects:
+class Effects(Printing):
     """The catalogue of effects: where each can sit, its parameters, usual magnitudes and their
     source.
     """
-
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Print it."""
@@ -66,7 +63,7 @@ class Effects:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Show:
+class Show(Printing):
     """One effect alone: the trace it leaves on a standard motion, and how a closed loop moves with
     and without it.
     """
@@ -82,8 +79,6 @@ class Show:
     """PARAMETER=VALUE; a usual magnitude by default."""
     out: Path = Path("results/gap_show")
     """Folder of the figure."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Draw it."""
@@ -102,7 +97,7 @@ class Show:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Apply:
+class Apply(Printing):
     """Write the causes of a diagnosis as an overlay that simulator, training and evaluation accept;
     say what it changes.
     """
@@ -120,8 +115,6 @@ class Apply:
     """ONNX file, or name of a shipped training, to evaluate without and with the effect."""
     protocol: str = ""
     """walk, t_test, or a YAML file; what suits the policy's task by default."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Write it."""
@@ -162,7 +155,7 @@ class Apply:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Measure:
+class Measure(Printing):
     """Measure the gap by signal, joint, motor and regime against the repeatability floor."""
 
     robot: str = ""
@@ -173,8 +166,6 @@ class Measure:
     """Logs of the healthy robot."""
     out: Path | None = None
     """Folder to write gap.json to."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Measure."""
@@ -195,7 +186,7 @@ class Measure:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Diagnose:
+class Diagnose(Printing):
     """Say where hardware and simulation differ, which effect is the cause, and how far the gap
     shrinks once it is added.
     """
@@ -208,14 +199,12 @@ class Diagnose:
     """Logs of the healthy robot: they set the floor and the calibration."""
     out: Path
     """Folder to write diagnosis.json, index.html and its figures to."""
-    seed: int = 0
+    seed: Annotated[int, AtLeast(0)] = 0
     """Of everything random."""
     thresholds: str = ""
     """Rules of the decision, a YAML file; the shipped ones by default."""
-    threads: int = 2
+    threads: Annotated[int, AtLeast(1)] = 2
     """The answer does not depend on them."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Diagnose."""
@@ -241,26 +230,24 @@ class Diagnose:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Excite:
+class Excite(Printing):
     """Design the experiments for a rig: targets inside all limits, and which effects each can tell
     apart.
     """
 
-    design: str = ""
-    """Shipped design or YAML file."""
-    robot: str = ""
-    """Or an MJCF or URDF file."""
-    base: str = "fixed"
+    robot: Annotated[str, tyro.conf.arg(aliases=("--design",))]
+    """Shipped design, YAML, MJCF or URDF."""
+    base: Literal["fixed"] = "fixed"
     """The rig holds the robot."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """PATH=VALUE of a design."""
-    rate: float = 200.0
+    rate: Annotated[float, AtLeast(0, exclusive=True)] = 200.0
     """Of the targets [Hz]."""
     without_torque: bool = False
     """The rig measures neither torque nor current."""
-    format: str = "csv"
-    """csv, parquet or both."""
-    seed: int = 0
+    format: Literal["csv", "parquet", "both"] = "csv"
+    """Of the targets' files."""
+    seed: Annotated[int, AtLeast(0)] = 0
     """Of the multi-sines' phases."""
     out: Path
     """Folder to write targets, plan.json and figures to."""
@@ -269,36 +256,36 @@ class Excite:
         """Design them."""
         from hyperleg_design.report.gap_report import excite_to_folder
 
-        if bool(self.design) == bool(self.robot):
-            raise InputError("gap excite", "", None, "expects --design or --robot")
-        print(
-            excite_to_folder(
-                self.robot or self.design,
-                self.out,
-                base=self.base,
-                rate=self.rate,
-                torque=not self.without_torque,
-                kinds=self.format,
-                seed=self.seed,
-                overrides=self.set,
-                progress=True,
-            )
+        text = excite_to_folder(
+            self.robot,
+            self.out,
+            base=self.base,
+            rate=self.rate,
+            torque=not self.without_torque,
+            kinds=self.format,
+            seed=self.seed,
+            overrides=self.set,
+            progress=not self.json,
         )
+        if self.json:
+            emit(json_module.loads((self.out / "plan.json").read_text()))
+        else:
+            print(text)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Blind:
+class Blind(Printing):
     """Make a trial with sealed truth in a process of its own, and diagnose its cases; goes on where
     it was stopped.
     """
 
-    cases: int = 240
+    cases: Annotated[int, AtLeast(1)] = 240
     """How many."""
-    seed: int
+    seed: Annotated[int, AtLeast(0)]
     """Of the trial; never tune on one that is to be scored."""
     plants: tuple[str, ...] = ("rig", "other", "walking")
     """That make the logs."""
-    workers: int = 2
+    workers: Annotated[int, AtLeast(1)] = 2
     """Processes side by side."""
     only_make: bool = False
     """Do not diagnose yet."""
@@ -310,16 +297,25 @@ class Blind:
         from hyperleg_design.gap.blind.trial import diagnose_trial, make_trial
 
         seal = make_trial(
-            self.cases, self.seed, self.out, plants=self.plants, workers=self.workers, progress=True
+            self.cases,
+            self.seed,
+            self.out,
+            plants=self.plants,
+            workers=self.workers,
+            progress=not self.json,
         )
-        print(f"{seal.cases} cases, key sealed: sha256 {seal.sha256}")
+        if not self.json:
+            print(f"{seal.cases} cases, key sealed: sha256 {seal.sha256}", flush=True)
         if not self.only_make:
-            diagnose_trial(self.out, workers=self.workers, progress=True)
+            diagnose_trial(self.out, workers=self.workers, progress=not self.json)
+        if self.json:
+            emit({"folder": self.out, "seal": seal, "diagnosed": not self.only_make})
+        elif not self.only_make:
             print(f"now, once: hyperleg gap score {self.out}")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Score:
+class Score(Printing):
     """Open a trial's key, once, and compare its diagnoses with the truth; or score the real logs
     with withheld truth.
     """
@@ -343,15 +339,21 @@ class Score:
                 None,
                 "expects the folder of a trial, or --real with the folder of the real logs",
             )
-        print(
-            score_real(self.real, progress=True).markdown()
+        if self.real and not Path(self.real).is_dir():
+            raise InputError("gap score", "--real", self.real, "no such folder")
+        found = (
+            score_real(self.real, progress=not self.json)
             if self.real
-            else score(self.folder, reread=self.reread).markdown()
+            else score(self.folder, reread=self.reread)
         )
+        if self.json:
+            emit(found)
+        else:
+            print(found.markdown())
 
 
 @dataclass(frozen=True, kw_only=True)
-class Baselines:
+class Baselines(Printing):
     """Fit PACE's parameter set (CMA-ES), mujoco.sysid and ours to a trial's cases: gap closed,
     cause named, time, in one table.
     """
@@ -362,9 +364,9 @@ class Baselines:
     """Some of these; diagnosis is what the trial's folder holds."""
     cases: tuple[str, ...] = ()
     """Some of the cases, such as 003 017; all by default."""
-    budget: float = 300.0
+    budget: Annotated[float, AtLeast(0, exclusive=True)] = 300.0
     """Of one fit [s]."""
-    seed: int = 0
+    seed: Annotated[int, AtLeast(0)] = 0
     """Of CMA-ES."""
 
     def run(self) -> None:
@@ -377,12 +379,15 @@ class Baselines:
             cases=self.cases,
             budget=self.budget,
             seed=self.seed,
-            progress=True,
+            progress=not self.json,
         )
-        print(table.markdown())
+        if self.json:
+            emit(table)
+        else:
+            print(table.markdown())
 
 
-VERBS = {
+VERBS: dict[str, Any] = {
     "check": Check,
     "effects": Effects,
     "show": Show,

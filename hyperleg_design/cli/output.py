@@ -1,15 +1,35 @@
-"""What verbs print besides plain text, and what they need installed."""
+"""What verbs print: text for people, or one JSON document for programs."""
 
 from __future__ import annotations
 
 import json as json_module
+import os
+from dataclasses import asdict, dataclass, is_dataclass
+from typing import Any
 
 from hyperleg_design.errors import InputError
 
 
+@dataclass(frozen=True, kw_only=True)
+class Printing:
+    """Options of a verb that prints a result."""
+
+    json: bool = False
+    """Print one JSON document instead of text."""
+
+
 def emit(content: object) -> None:
-    """Print as JSON."""
-    print(json_module.dumps(content, indent=2, allow_nan=False))
+    """Print as JSON; a dataclass becomes a mapping of its fields."""
+    print(json_module.dumps(content, indent=2, allow_nan=False, default=_plain))
+
+
+def _plain(value: Any) -> Any:
+    """What JSON lacks, in what it has."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return asdict(value)
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError(f"{type(value).__name__} cannot be written as JSON")
 
 
 def require(*modules: str) -> None:

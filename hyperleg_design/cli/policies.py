@@ -5,11 +5,12 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
-from hyperleg_design.cli.output import emit, require
+from hyperleg_design.cli.arguments import AtLeast
+from hyperleg_design.cli.output import Printing, emit, require
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import load_design
 
@@ -22,7 +23,7 @@ class Train:
     """walk, walk_paper, goal, goal_paper, or a YAML file."""
     design: str = "toe"
     """Shipped name or YAML file."""
-    seed: int = 0
+    seed: Annotated[int, AtLeast(0)] = 0
     """Of everything random."""
     preset: str = "laptop"
     """laptop, paper, or a YAML file."""
@@ -30,7 +31,7 @@ class Train:
     """ONNX policy of another task to start from; from scratch by default."""
     out: Path
     """Folder of the training."""
-    threads: int = 1
+    threads: Annotated[int, AtLeast(1)] = 1
     """Of this process; two trainings of one thread each are the best use of two cores."""
     overlay: str = ""
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
@@ -70,13 +71,13 @@ class Train:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Campaign:
+class Campaign(Printing):
     """Train whatever a campaign still lacks, side by side, show where it stands, or pack its
     policies for shipping.
     """
 
-    action: Annotated[str, tyro.conf.Positional]
-    """run, status or pack"""
+    action: Annotated[Literal["run", "status", "pack"], tyro.conf.Positional]
+    """Train what is missing, print where every training stands, or pack finished policies."""
     file: Annotated[str, tyro.conf.Positional] = "campaign"
     """Shipped name or YAML file."""
     out: Path = Path("results/campaign")
@@ -96,22 +97,28 @@ class Campaign:
             status_table,
         )
 
-        if self.action not in ("run", "status", "pack"):
-            raise InputError("campaign", "", self.action, "expects run, status or pack")
         if self.action == "pack":
-            print(pack_text(pack(self.source, self.target)))
+            packed = pack(self.source, self.target)
+            if self.json:
+                emit(packed)
+            else:
+                print(pack_text(packed))
             return
         campaign = load_campaign(self.file)
-        if self.action == "status":
+        finished = True
+        if self.action == "run":
+            require("torch", "rsl_rl")
+            finished = run_campaign(campaign, self.out, show=None if self.json else print)
+        if self.json:
+            emit(campaign_status(campaign, self.out))
+        elif self.action == "status":
             print(status_table(campaign_status(campaign, self.out)))
-            return
-        require("torch", "rsl_rl")
-        if not run_campaign(campaign, self.out, show=print):
+        if not finished:
             raise SystemExit(3)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Evaluate:
+class Evaluate(Printing):
     """Evaluate policies (ONNX): 20 m walks or Robot T-tests, falls counted, numbers with
     intervals.
     """
@@ -122,14 +129,12 @@ class Evaluate:
     """walk, t_test, or a YAML file; what suits the policy's task by default."""
     out: Path
     """Folder to write tables to."""
-    workers: int = 2
+    workers: Annotated[int, AtLeast(1)] = 2
     """Processes side by side."""
     overlay: str = ""
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
     logs: Path | None = None
     """Folder to write a log of every trial to, as `hyperleg gap` reads them; none by default."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Evaluate them."""
@@ -175,7 +180,7 @@ class Evaluate:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Paper:
+class Paper(Printing):
     """Evaluate the shipped policies, and put Tables III and IV and Figs. 4 to 7 beside the paper's
     on a page.
     """
@@ -184,35 +189,35 @@ class Paper:
     """Folder of trainings, such as results/campaign; the shipped policies by default."""
     out: Path = Path("results/paper")
     """Folder to write; its index.html is the page."""
-    workers: int = 0
-    """Processes side by side; 0 for as many as the machine has processors."""
-    json: bool = False
-    """Print JSON."""
+    workers: Annotated[int | None, AtLeast(1)] = None
+    """Processes side by side; as many as the machine has processors by default."""
 
     def run(self) -> None:
         """Evaluate and write."""
+        from hyperleg_design.report.evaluated import coverage, coverage_text
         from hyperleg_design.report.paper_page import read_tables, run_paper, tables_text
 
-        page = run_paper(
-            self.policies, self.out, workers=self.workers or None, progress=not self.json
-        )
+        trainings = coverage(self.policies)
+        if not self.json and (text := coverage_text(trainings)):
+            print(text, flush=True)
+        page = run_paper(self.policies, self.out, workers=self.workers, progress=not self.json)
         tables = read_tables(self.out)
         if self.json:
-            emit({"page": str(page), "tables": tables})
+            emit({"page": str(page), "trainings": trainings, "tables": tables})
         else:
             print(tables_text(tables))
             print(f"open {page}")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Replay:
+class Replay(Printing):
     """Show one trial of a policy: as a GIF file, or in the browser."""
 
     policy: Annotated[str, tyro.conf.Positional]
     """ONNX file, or name of a shipped training such as walk-toe-0."""
     protocol: str = ""
     """walk, t_test, or a YAML file; what suits the policy's task by default."""
-    seed: int | None = None
+    seed: Annotated[int | None, AtLeast(0)] = None
     """Of the starting state; the protocol's by default."""
     gif: Path | None = None
     """File to write."""
@@ -228,12 +233,21 @@ class Replay:
         if self.viser:
             replay.check_browser()
         found = replay.replay(self.policy, self.protocol or None, seed=self.seed)
-        print(
-            f"{found.policy}: {found.outcomes[0].replace('_', ' ')} after {found.end_times[0]:.2f} "
-            f"s"
-        )
-        if self.gif is not None:
-            print(f"written to {replay.replay_gif(found, self.gif)}")
+        if self.json:
+            summary = {
+                "policy": found.policy,
+                "outcome": found.outcomes[0],
+                "end_time": float(found.end_times[0]),
+                "gif": None if self.gif is None else str(replay.replay_gif(found, self.gif)),
+            }
+            emit(summary)
         else:
-            print("open http://localhost:8080; Ctrl-C to stop", flush=True)
+            print(
+                f"{found.policy}: {found.outcomes[0].replace('_', ' ')} after "
+                f"{found.end_times[0]:.2f} s"
+            )
+        if self.gif is not None and not self.json:
+            print(f"written to {replay.replay_gif(found, self.gif)}")
+        if self.viser:
+            print("open http://localhost:8080; Ctrl-C to stop", file=sys.stderr, flush=True)
             replay.replay_in_browser(found)

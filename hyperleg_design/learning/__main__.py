@@ -59,7 +59,7 @@ def main(
             show=_show,
         )
     except HyperlegError as error:
-        sys.stderr.write(f"{error}\n")
+        sys.stderr.write(f"hyperleg: {error}\n")
         return 2
     return 0 if done else 3
 

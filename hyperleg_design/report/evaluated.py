@@ -167,9 +167,54 @@ def evaluate_shipped(
     over: dict[str, dict[float, list[Evaluation]]] = {}
     for (policy, constant), one in zip(jobs, walks, strict=True):
         over.setdefault(policy.design, {}).setdefault(constant, []).append(one)
+    return Evaluated(
+        policies, [found[i] for i in range(len(policies))], missing_trainings(policies), over
+    )
+
+
+def missing_trainings(policies: Sequence[Shipped]) -> list[str]:
+    """Names of the trainings of the shipped campaign that none of the policies comes from."""
     there = {p.training for p in policies}
-    missing = [run.name for run in load_campaign().runs if run.name not in there]
-    return Evaluated(policies, [found[i] for i in range(len(policies))], missing, over)
+    return [run.name for run in load_campaign().runs if run.name not in there]
+
+
+def missing_text(names: Sequence[str]) -> str:
+    """Names of trainings by group and design, such as `walk toe (seed 0, 1)`."""
+    seeds: dict[str, list[str]] = {}
+    for name in names:
+        training, seed = name.rsplit("-", 1)
+        seeds.setdefault(training.replace("-", " "), []).append(seed)
+    return "; ".join(f"{training} (seed {', '.join(some)})" for training, some in seeds.items())
+
+
+def coverage(folder: str | Path | None = None) -> dict[str, list[str]]:
+    """Trainings of a folder that will be evaluated, and those of the campaign that it lacks.
+
+    Args:
+        folder: of trainings; the shipped policies by default.
+
+    Returns:
+        Names of trainings under `evaluated` and `missing`.
+
+    Raises:
+        InputError: no such folder.
+    """
+    policies = shipped_policies(folder, late=False)
+    return {
+        "evaluated": [policy.training for policy in policies],
+        "missing": missing_trainings(policies),
+    }
+
+
+def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:
+    """`coverage` as one sentence; empty where nothing is missing."""
+    evaluated, missing = trainings["evaluated"], trainings["missing"]
+    if not missing:
+        return ""
+    return (
+        f"{len(evaluated)} trainings are evaluated; {len(missing)} of the campaign's are missing: "
+        f"{missing_text(missing)}"
+    )
 
 
 def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:

@@ -22,7 +22,7 @@ from hyperleg_design.writing import check_output_folder, output_folder, write_js
 TABLES, RESULTS = "tables.json", "evaluation"
 """Rows beside the paper, and the trials' tables, beside the page."""
 NO_POLICY = (
-    "No trained policy is shipped with this version, so walks and T-tests are not shown; "
+    "The folder of trainings holds no finished one, so walks and T-tests are not shown; "
     "hyperleg campaign run trains them."
 )
 LEAD = (

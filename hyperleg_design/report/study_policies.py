@@ -15,7 +15,7 @@ from hyperleg_design.report import study_walks as walks
 from hyperleg_design.report.beside_paper import beside, differences, rows_beside_paper, toe_sentence
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.envelope_figures import torque_speed_figure
-from hyperleg_design.report.evaluated import T_TEST, WALK, Evaluated
+from hyperleg_design.report.evaluated import T_TEST, WALK, Evaluated, missing_text
 from hyperleg_design.report.learning_figures import learning_figure
 from hyperleg_design.report.page import Cell, Details, Table
 from hyperleg_design.report.style import later, save
@@ -95,21 +95,12 @@ def _what(found: Evaluated) -> Part:
         ),
     ]
     content.append(
-        f"Of the campaign's trainings {len(found.missing)} are not there: {_missing(found)}."
+        f"Of the campaign's trainings {len(found.missing)} are not there: {missing_text(found.missing)}."
         if found.missing
         else "All trainings of the campaign are there."
     )
     content.append(_deviations(found))
     return Part("What was evaluated", content)
-
-
-def _missing(found: Evaluated) -> str:
-    """Trainings that are not there, by group and design."""
-    seeds: dict[str, list[str]] = {}
-    for name in found.missing:
-        training, seed = name.rsplit("-", 1)
-        seeds.setdefault(training.replace("-", " "), []).append(seed)
-    return "; ".join(f"{training} (seed {', '.join(some)})" for training, some in seeds.items())
 
 
 def _deviations(found: Evaluated) -> Any:

@@ -72,6 +72,7 @@ def check_urdf(source: str | Path) -> list[Finding]:
     carried = {_ends(joint)[1] for joint in joints if joint.get("type") == "fixed"}
     for link in links:
         found += _inertial(link, link.get("name") in carried) + _drawings(link)
+        found += _meshes(link, source)
     for joint in joints:
         found += _joint(joint, {j.get("name") for j in joints})
     found += _weightless(links, joints)
@@ -366,6 +367,25 @@ def _drawings(link: Any) -> list[Finding]:
                         "expects positive lengths in m",
                     )
                 )
+    return found
+
+
+def _meshes(link: Any, source: str | Path) -> list[Finding]:
+    """Mesh files of a link that are not where the URDF says; `package://` names are left to ROS."""
+    found = []
+    for mesh in link.iter("mesh"):
+        name = (mesh.get("filename") or "").removeprefix("file://")
+        if "://" in name or (isinstance(source, str) and source.lstrip().startswith("<")):
+            continue
+        if not name or not (Path(source).parent / name).is_file():
+            found.append(
+                Finding(
+                    "error",
+                    _place(link),
+                    f"has a mesh that is missing: filename = {name!r}",
+                    "correct the path, which starts at the URDF's folder, or add the file",
+                )
+            )
     return found
 
 

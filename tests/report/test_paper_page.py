@@ -71,7 +71,7 @@ def test_without_policies_the_page_is_one_sentence(tmp_path, capsys):
         == 0
     )
     assert json.loads(capsys.readouterr().out)["tables"] == {}
-    assert "No trained policy is shipped" in (tmp_path / "out" / "index.html").read_text()
+    assert "holds no finished one" in (tmp_path / "out" / "index.html").read_text()
 
 
 def test_bad_folders_stop_before_any_work(tmp_path):

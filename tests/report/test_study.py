@@ -31,7 +31,7 @@ def test_every_part_is_on_the_page(page):
         "Cassie",
         "RI70",
         "toe_removed_matched",
-        "No trained policy is shipped",
+        "holds no finished one",
     ):
         assert word in html
 

@@ -44,7 +44,7 @@ def main() -> int:
             say=say,
         )
     except HyperlegError as error:
-        sys.stderr.write(f"{error}\n")
+        sys.stderr.write(f"hyperleg: {error}\n")
         return 2
     return 0
 
