@@ -13,7 +13,7 @@ from typing import Annotated, Any, Union
 import tyro
 
 from hyperleg_design import __version__
-from hyperleg_design.cli import design, gap, policies
+from hyperleg_design.cli import design, gap, policies, validate
 from hyperleg_design.cli.arguments import check_bounds
 from hyperleg_design.errors import HyperlegError, InputError
 
@@ -56,6 +56,7 @@ VERBS: dict[str, Any] = {
     "replay": policies.Replay,
     "paper": policies.Paper,
     "gap": Gap,
+    "validate": validate.Validate,
     "version": design.Version,
 }
 """Commands by name: dataclasses whose fields are options, with a method `run`."""

@@ -1,0 +1,58 @@
+"""Verb `hyperleg validate`: the frozen benchmark of the diagnosis; no logic of its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from hyperleg_design.cli.output import emit
+
+
+@dataclass(frozen=True, kw_only=True)
+class Validate:
+    """Run the frozen benchmark of the diagnosis: real logs, newcomers' robots, blind plants; goes
+    on where it was stopped.
+    """
+
+    out: Path = Path("results/validation")
+    """Folder of the results, one a checkout."""
+    suites: tuple[str, ...] = ("real", "newcomers", "blind")
+    """Which parts."""
+    splits: tuple[str, ...] = ("development", "held out")
+    """Development cases may be looked at while a diagnosis is being improved; held-out ones not."""
+    only: tuple[str, ...] = ()
+    """Cases whose names hold one of these texts."""
+    data: Path | None = None
+    """Folder of the real logs; by default HYPERLEG_DATA, else ../shared/data beside the
+    checkout."""
+    checkout: Path | None = None
+    """Folder of another checkout whose diagnosis is to be scored."""
+    workers: int = 1
+    """Processes side by side, each on one thread."""
+    list_cases: bool = False
+    """List the cases instead."""
+    json: bool = False
+    """Print JSON."""
+
+    def run(self) -> None:
+        """Run it."""
+        from hyperleg_design.validation.benchmark.runner import chosen_cases, run_benchmark
+        from hyperleg_design.validation.real.cases import data_folder
+
+        cases = chosen_cases(self.suites, self.splits, self.only)
+        if self.list_cases:
+            for case in cases:
+                print(f"{case.name} ({case.split}): {case.about}")
+            return
+        outcome = run_benchmark(
+            self.out,
+            cases,
+            self.data or data_folder(),
+            checkout=self.checkout,
+            workers=self.workers,
+            progress=not self.json,
+        )
+        if self.json:
+            emit({"cases": list(outcome.rows), "skipped": list(outcome.skipped)})
+            return
+        print("\n".join([*outcome.remarks, outcome.markdown()]))
