@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -22,6 +23,10 @@ class Demand:
     why: str
 
 
+def _degrees(measure: str, low: float, high: float, why: str) -> Demand:
+    return Demand(measure, math.radians(low), math.radians(high), why)
+
+
 DEMANDS = (
     Demand("fell", 0.0, 0.0, "no fall"),
     Demand("arrived", 1.0, 1.0, "every walk reaches the distance"),
@@ -29,13 +34,22 @@ DEMANDS = (
     Demand("alternation", 0.98, 1.0, "left and right by turns, no hopping"),
     Demand("double_support", 0.02, 0.6, "walking, neither running nor shuffling"),
     Demand("flight", 0.0, 0.02, "no flight"),
+    _degrees("knee_touchdown", -5, 20, "knee nearly straight at touchdown, 20 deg at most [rad]"),
+    _degrees("knee_midstance", -5, 25, "knee nearly straight in mid-stance, 25 deg at most [rad]"),
+    _degrees("knee_swing", 50, 70, "knee bent by 50 to 70 deg in the swing [rad]"),
+    _degrees("ankle_dorsiflexion", -10, 20, "ankle bent up by 20 deg at most [rad]"),
+    Demand("event_order", 0.9, 1.0, "heel strike, foot flat, heel off, toe off in this order"),
+    Demand("force_humps", 2, 2, "two humps of the vertical force"),
+    Demand("push_off_force", 0.9, 1.6, "push-off with 0.9 body weights or more"),
+    Demand("ankle_push_off_power", 0.0, math.inf, "ankles that push off [W]"),
     Demand("heel_or_flat", 0.9, 1.0, "heel or flat touchdown"),
     Demand("foot_drift", 0.0, 0.02, "feet that do not slide away while they stand [m]"),
-    Demand("mean_tilt", 0.0, 0.2, "upright torso [rad]"),
+    _degrees("mean_tilt", 0, 6, "trunk within 6 deg of upright [rad]"),
     Demand("stop_share", 0.0, 0.3, "no joint that rests on a stop"),
     Demand("vibration", 0.0, 1.0, "nothing vibrates [rad/s]"),
 )
-"""Cadence, slip, falls and speed are the study's demands; the other bounds are assumed.
+"""Angles, order of events, shape of the force, push-off, cadence, slip, falls and speed are the
+study's demands, after human walking (`landmarks`); the other bounds are assumed.
 
 Slip is how far a foot has moved, straight, between first and last standing flat. `slip_per_step`,
 which is reported beside it and not asked for, is longer: it adds the skid of the landing and every

@@ -10,6 +10,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import bearing, course, gait, rollout
+from hyperleg_design.evaluation.landmarks import LANDMARKS, landmark_measures
 from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
 from hyperleg_design.evaluation.policy import Policy
 from hyperleg_design.evaluation.power import LEG_MEANS, CyclePower, cycle_power, flows, ledger
@@ -253,6 +254,7 @@ _STEADY = (
     "slip_per_step",
     "foot_drift",
     "largest_slip",
+    *LANDMARKS,
     "mean_tilt",
     "stop_share",
     "vibration",
@@ -334,6 +336,7 @@ def _steady_measures(
         "steady_battery_cost_of_transport": transport["battery"],
         **impact_measures(trial, steps, protocol.impact),
         **step_measures(trial, steps, window, protocol.events),
+        **landmark_measures(trial, steps, protocol.events),
         "mean_tilt": float(bearing.tilt(trial.base_orientation[part]).mean()),
         "stop_share": float(
             bearing.stop_share(trial.joint_position[part], layout.lower, layout.upper).max()
