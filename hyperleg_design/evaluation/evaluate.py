@@ -17,8 +17,8 @@ from hyperleg_design.evaluation.protocol import (
     protocol_from_mapping,
     protocol_mapping,
 )
-from hyperleg_design.evaluation.t_test import evaluate_t_test
-from hyperleg_design.evaluation.walk import evaluate_walk
+from hyperleg_design.evaluation.t_test import evaluate_t_test, evaluate_t_tests
+from hyperleg_design.evaluation.walk import evaluate_walk, evaluate_walks
 from hyperleg_design.simulation.commands import WaypointCommands
 
 if TYPE_CHECKING:
@@ -67,6 +67,39 @@ def evaluate(
         return evaluate_walk(
             chosen, run, design=design, task=task, threads=threads, alterations=alterations
         )
+    raise InputError("evaluate", "protocol", run.name, "expects a WalkProtocol or a TTestProtocol")
+
+
+def evaluate_designs(
+    policy: Policy | str | Path,
+    designs: Design,
+    protocol: Protocol | str | Path | None = None,
+    *,
+    task: Task | None = None,
+    threads: int | None = None,
+) -> list[Evaluation]:
+    """`evaluate` of every design of a batch, side by side; the same numbers to the last digit.
+
+    Args:
+        policy: as in `evaluate`.
+        designs: robots with the same joints, motors and pads.
+        protocol: as in `evaluate`.
+        task: as in `evaluate`.
+        threads: as in `evaluate`.
+
+    Returns:
+        One a design.
+
+    Raises:
+        InputError: as `evaluate`; where designs of the batch cannot stand, its `bad` says which.
+    """
+    chosen = load_policy(policy) if isinstance(policy, str | Path) else policy
+    run = protocol_for(chosen, task) if protocol is None else protocol
+    run = load_protocol(run) if isinstance(run, str | Path) else run
+    if isinstance(run, TTestProtocol):
+        return evaluate_t_tests(chosen, run, design=designs, task=task, threads=threads)
+    if isinstance(run, WalkProtocol):
+        return evaluate_walks(chosen, run, design=designs, task=task, threads=threads)
     raise InputError("evaluate", "protocol", run.name, "expects a WalkProtocol or a TTestProtocol")
 
 

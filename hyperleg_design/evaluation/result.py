@@ -18,6 +18,7 @@ from hyperleg_design.evaluation.course import in_start_frame
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, policy_name
 from hyperleg_design.evaluation.protocol import protocol_mapping
 from hyperleg_design.evaluation.rollout import ARRIVED
+from hyperleg_design.evaluation.training_fit import UNKNOWN, TrainingFit, training_fit
 from hyperleg_design.provenance import git_commit, versions
 from hyperleg_design.writing import output_folder, write_bytes, write_json
 
@@ -66,6 +67,8 @@ class Evaluation:
     """Of each trial; None where it gives none."""
     cycles: list[CyclePower | None] = field(default_factory=list)
     """Right-leg power over the steady strides of each walk; None where there is none."""
+    trained: TrainingFit = field(default_factory=lambda: TrainingFit(UNKNOWN))
+    """Whether the policy was trained for this design."""
     trials: list[Trial] = field(default_factory=list)
     """All signals, of some trials where others were let go by `light`."""
 
@@ -118,12 +121,34 @@ def evaluation_of(
         measures=measures,
         motors=motors,
         cycles=list(cycles),
+        trained=training_fit(policy, design),
     )
 
 
+def evaluations_of(
+    policy: Policy,
+    designs: Sequence[Design],
+    protocol: Any,
+    trials: list[Trial],
+    measures: list[dict[str, float]],
+    motors: list[MotorUse | None],
+    cycles: Sequence[CyclePower | None] = (),
+) -> list[Evaluation]:
+    """`evaluation_of` of designs whose trials follow each other, equally many of each."""
+    each = len(trials) // len(designs)
+    parts = [slice(i * each, (i + 1) * each) for i in range(len(designs))]
+    return [
+        evaluation_of(
+            policy, design, protocol, trials[own], measures[own], motors[own], cycles[own]
+        )
+        for design, own in zip(designs, parts, strict=True)
+    ]
+
+
 def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
-    """One row a trial: policy, variant, design, training seed, training steps, protocol, trial,
-    outcome, end time, all measures.
+    """One row a trial: policy, variant, design, training seed, training steps, whether it was
+    trained for this design, parameters outside its trained range, protocol, trial, outcome, end
+    time, all measures.
     """
     import pandas as pd
 
@@ -135,6 +160,8 @@ def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
             "design": one.design,
             "seed": one.seed,
             "steps": one.steps,
+            "trained": one.trained.kind,
+            "outside": ", ".join(one.trained.outside),
         }
         for index, measures in enumerate(one.measures):
             ended = {
@@ -256,6 +283,7 @@ def write_results(folder: str | os.PathLike[str], evaluations: Sequence[Evaluati
                 "variant": one.variant,
                 "seed": one.seed,
                 "steps": one.steps,
+                "trained": one.trained.text(),
                 **one.origin,
             }
             for one in evaluations

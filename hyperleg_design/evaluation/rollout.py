@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.chunk import Divergence
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
@@ -209,9 +210,9 @@ def record(
     length[running], ended_at[running] = limit * substeps, limit * duration
     return [
         Trial(
-            design=environment.design,
-            layout=environment.layout,
-            model=environment.model,
+            design=environment.designs[environment.design_index[i]],
+            layout=environment.layouts[environment.design_index[i]],
+            model=environment.models[environment.design_index[i]],
             time_step=environment.task.physics.time_step,
             substeps=substeps,
             outcome=outcomes[i],
@@ -247,6 +248,33 @@ def resolved(policy: Policy, design: Design | None, task: Task | None) -> tuple[
     assert design is not None
     assert task is not None
     return design, task
+
+
+def one_robot(design: Design | None, several: str) -> Design | None:
+    """The design of an evaluation of one robot.
+
+    Raises:
+        InputError: a batch; names the function for `several`.
+    """
+    if design is not None and design.batch_shape:
+        raise InputError(
+            design.name, "", None, f"holds a batch of designs; use {several} for all of them"
+        )
+    return design
+
+
+def robots(design: Design, alterations: Alterations | None) -> int:
+    """Robots of a batch.
+
+    Raises:
+        InputError: a batch with alterations, which are made for one robot.
+    """
+    count = (design.batch_shape or (1,))[0]
+    if count > 1 and alterations is not None:
+        raise InputError(
+            design.name, "alterations", None, "are made for one robot; evaluate each by itself"
+        )
+    return count
 
 
 def under_protocol(task: Task, protocol: Any) -> Task:

@@ -13,7 +13,7 @@ from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
 from hyperleg_design.evaluation.policy import Policy
 from hyperleg_design.evaluation.power import flows, ledger
 from hyperleg_design.evaluation.protocol import TTestProtocol, load_protocol
-from hyperleg_design.evaluation.result import Evaluation, evaluation_of
+from hyperleg_design.evaluation.result import Evaluation, evaluations_of
 from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
 from hyperleg_design.simulation.commands import WaypointCommands
 from hyperleg_design.simulation.environment import Environment
@@ -35,7 +35,7 @@ def evaluate_t_test(
     threads: int | None = None,
     alterations: Alterations | None = None,
 ) -> Evaluation:
-    """Run the T-test protocol on a policy: deterministic, without assist.
+    """Run the T-test protocol on a policy and one robot: deterministic, without assist.
 
     Args:
         policy: an `OnnxPolicy`, or any callable from observations `(n, k)` to actions `(n, J)`.
@@ -50,6 +50,43 @@ def evaluate_t_test(
         InputError: another kind of protocol or task, a policy for another layout, or one whose
         output is not finite.
     """
+    return evaluate_t_tests(
+        policy,
+        protocol,
+        design=rollout.one_robot(design, "evaluate_t_tests"),
+        task=task,
+        threads=threads,
+        alterations=alterations,
+    )[0]
+
+
+def evaluate_t_tests(
+    policy: Policy,
+    protocol: TTestProtocol | str = "t_test",
+    *,
+    design: Design | None = None,
+    task: Task | None = None,
+    threads: int | None = None,
+    alterations: Alterations | None = None,
+) -> list[Evaluation]:
+    """`evaluate_t_test` of each design of a batch, side by side; the same numbers to the last
+    digit.
+
+    Args:
+        policy: as in `evaluate_t_test`.
+        protocol: as in `evaluate_t_test`.
+        design: a robot, or a batch of robots with the same joints, motors and pads.
+        task: as in `evaluate_t_test`.
+        threads: as in `evaluate_t_test`.
+        alterations: as in `evaluate_t_test`; of single robots only.
+
+    Returns:
+        One a design.
+
+    Raises:
+        InputError: as `evaluate_t_test`; where designs of the batch cannot stand, its `bad` says
+        which.
+    """
     chosen = load_protocol(protocol) if isinstance(protocol, str) else protocol
     if not isinstance(chosen, TTestProtocol):
         raise InputError("t_test", "protocol", chosen.name, "expects a protocol of kind t_test")
@@ -57,18 +94,19 @@ def evaluate_t_test(
     environment = Environment(
         robot,
         t_test_task(task, chosen),
-        simulations=int(chosen.trials),
+        simulations=int(chosen.trials) * rollout.robots(robot, alterations),
         seed=int(chosen.seed),
         threads=threads,
         alterations=alterations,
+        common_random_numbers=True,
     )
     try:
         trials = rollout.record(policy, environment, chosen.time_limit)
     finally:
         environment.close()
     found = [measure_t_test(trial, chosen) for trial in trials]
-    return evaluation_of(
-        policy, robot, chosen, trials, [f[0] for f in found], [f[1] for f in found]
+    return evaluations_of(
+        policy, environment.designs, chosen, trials, [f[0] for f in found], [f[1] for f in found]
     )
 
 

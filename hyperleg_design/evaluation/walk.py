@@ -15,7 +15,7 @@ from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
 from hyperleg_design.evaluation.policy import Policy
 from hyperleg_design.evaluation.power import LEG_MEANS, CyclePower, cycle_power, flows, ledger
 from hyperleg_design.evaluation.protocol import WalkProtocol, load_protocol
-from hyperleg_design.evaluation.result import Evaluation, evaluation_of
+from hyperleg_design.evaluation.result import Evaluation, evaluations_of
 from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
 from hyperleg_design.simulation.commands import VelocityCommands
 from hyperleg_design.simulation.environment import Environment
@@ -42,7 +42,7 @@ def evaluate_walk(
     threads: int | None = None,
     alterations: Alterations | None = None,
 ) -> Evaluation:
-    """Run the walk protocol on a policy: deterministic, without assist.
+    """Run the walk protocol on a policy and one robot: deterministic, without assist.
 
     Args:
         policy: an `OnnxPolicy`, or any callable from observations `(n, k)` to actions `(n, J)`.
@@ -57,6 +57,43 @@ def evaluate_walk(
         InputError: another kind of protocol or task, a policy for another layout, or one whose
         output is not finite.
     """
+    return evaluate_walks(
+        policy,
+        protocol,
+        design=rollout.one_robot(design, "evaluate_walks"),
+        task=task,
+        threads=threads,
+        alterations=alterations,
+    )[0]
+
+
+def evaluate_walks(
+    policy: Policy,
+    protocol: WalkProtocol | str = "walk",
+    *,
+    design: Design | None = None,
+    task: Task | None = None,
+    threads: int | None = None,
+    alterations: Alterations | None = None,
+) -> list[Evaluation]:
+    """`evaluate_walk` of each design of a batch, side by side; the same numbers to the last
+    digit.
+
+    Args:
+        policy: as in `evaluate_walk`.
+        protocol: as in `evaluate_walk`.
+        design: a robot, or a batch of robots with the same joints, motors and pads.
+        task: as in `evaluate_walk`.
+        threads: as in `evaluate_walk`.
+        alterations: as in `evaluate_walk`; of single robots only.
+
+    Returns:
+        One a design.
+
+    Raises:
+        InputError: as `evaluate_walk`; where designs of the batch cannot stand, its `bad` says
+        which.
+    """
     chosen = load_protocol(protocol) if isinstance(protocol, str) else protocol
     if not isinstance(chosen, WalkProtocol):
         raise InputError("walk", "protocol", chosen.name, "expects a protocol of kind walk")
@@ -64,10 +101,11 @@ def evaluate_walk(
     environment = Environment(
         robot,
         walk_task(task, chosen),
-        simulations=int(chosen.trials),
+        simulations=int(chosen.trials) * rollout.robots(robot, alterations),
         seed=int(chosen.seed),
         threads=threads,
         alterations=alterations,
+        common_random_numbers=True,
     )
     try:
         trials = rollout.record(
@@ -82,9 +120,9 @@ def evaluate_walk(
     finally:
         environment.close()
     found = [measure_walk(trial, chosen) for trial in trials]
-    return evaluation_of(
+    return evaluations_of(
         policy,
-        robot,
+        environment.designs,
         chosen,
         trials,
         [f[0] for f in found],

@@ -152,6 +152,26 @@ class Design:
         plain = {path: str(v) if isinstance(v, str) else v for path, v in values.items()}
         return parameters.with_values(self, plain, f"{self.name}[{index}]")
 
+    def rows(self, index: np.ndarray) -> Design:
+        """A batch of the robots with these numbers, which may repeat.
+
+        All its number leaves are arrays with the batch in front, whichever differ, so that what is
+        computed of a robot does not depend on what others of the batch differ in, to the last
+        digit.
+
+        Args:
+            index: `(n,)`, of robots of a batch; zeros for copies of a single robot.
+        """
+        rules, values = parameters.rules(Design), {}
+        for path, value in parameters.leaves(self).items():
+            own = np.asarray(value)
+            if rules[path].kind != "number" and not own.ndim:
+                continue
+            core = 1 if rules[path].size else 0
+            batch = own if own.ndim > core else own[None]
+            values[path] = batch[np.zeros_like(index) if len(batch) == 1 else index]
+        return parameters.with_values(self, values, self.name)
+
     def to_mapping(self) -> dict[str, Any]:
         """All leaves as nested plain mappings, each with value, label and source where known."""
         result: dict[str, Any] = {"name": self.name, "variant": self.variant}

@@ -27,6 +27,7 @@ from hyperleg_design.simulation.layout import GRAVITY, Layout
 from hyperleg_design.simulation.observations import observe
 from hyperleg_design.simulation.rewards import TERMS, Robot
 from hyperleg_design.simulation.state import Goal, Motion, Sensed, State, read_motion
+from hyperleg_design.simulation.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task
 from hyperleg_design.simulation.thermal import ThermalState
 from hyperleg_design.simulation.told import Told
@@ -98,11 +99,10 @@ class Chunk:
         design: Design,
         task: Task,
         layout: Layout,
-        model: mujoco.MjModel,
-        designs_models: list[mujoco.MjModel] | None,
+        models: Sequence[mujoco.MjModel],
         first: int,
         count: int,
-        rng: np.random.Generator,
+        rng: RowStreams,
         turn: threading.Lock,
         threads: int,
         alterations: Sequence[Alteration] = (),
@@ -112,13 +112,14 @@ class Chunk:
         self._turn = turn
 
         self.task, self.layout, self.first, self.count, self.rng = task, layout, first, count, rng
+        model = models[0]
         self.batch = batch.Batch(model, count, threads)
         # A second batch finds how high to start: what is bound in the first is copied out after
         # each of its steps.
         self._starter = batch.Batch(model, count, 1)
-        if designs_models is not None:
-            _give_models(self.batch, designs_models)
-            _give_models(self._starter, designs_models)
+        if len(models) > 1:
+            _give_models(self.batch, models)
+            _give_models(self._starter, models)
         _vary_models(self.batch, task, rng)
         self.drive = Drive(
             design, layout, task.physics, self.batch, task.randomisation, rng, alterations
@@ -133,7 +134,7 @@ class Chunk:
         self._standing = self.batch.state.copy()
         self._pelvis = model.body("pelvis").id
         self._pad_ids = [model.geom(pad).id for pad in layout.pads]
-        self._pad_radius = float(model.geom(layout.pads[0]).size[0])
+        self._pad_radius = np.array([m.geom_size[self._pad_ids[0], 0] for m in models])
         joints, motors, substeps = (
             len(layout.joints),
             len(layout.motors),
@@ -169,6 +170,7 @@ class Chunk:
         self.rewards: dict[str, Reward] = dict(task.rewards)
         self.assist: Assist | None = None
         self.robot = Robot(layout, task.clock)
+        """Of this chunk's simulations."""
         self.episode_step = np.zeros(count, int)
         self._clock_start = np.zeros(count)
         self.motion: Motion
@@ -220,7 +222,7 @@ class Chunk:
             self.motion.put(ended, fresh.motion)
             if self.goal is not None and fresh.goal is not None:
                 self.goal.put(ended, fresh.goal)
-            for group, values in observe(task.observations, fresh, self.robot).items():
+            for group, values in observe(task.observations, fresh, self.robot.take(ended)).items():
                 observations[group][ended] = values
         return Step(
             observations=observations,
@@ -359,7 +361,7 @@ class Chunk:
     def _started(self, ids: np.ndarray) -> State:
         """Start simulations and give the state of their rows; nothing has touched or moved yet."""
         motion = self._start(ids)
-        goal = self.commander.reset(ids, motion, self.rng)
+        goal = self.commander.reset(ids, motion, self.rng.of(ids))
         count, substeps, joints = len(ids), len(self.sensors), len(self.layout.joints)
         motors, pads = (
             np.zeros((substeps, count, len(self.layout.motors))),
@@ -441,8 +443,8 @@ class Chunk:
 
     def _start(self, ids: np.ndarray) -> Motion:
         """Put robots on the floor near their default posture; motion of these rows."""
-        layout, count, joints = self.layout, len(ids), len(self.layout.joints)
-        drawn = self.rng.uniform(-1.0, 1.0, (count, len(self._spread) + 1))
+        layout, count, joints = self.layout.take(ids), len(ids), len(self.layout.joints)
+        drawn = self.rng.of(ids).uniform(-1.0, 1.0, (count, len(self._spread) + 1))
         offset = drawn[:, :-1] * self._spread
         self.batch.state[ids] = self._standing[ids]
         self.batch.warning[ids] = 0
@@ -457,7 +459,8 @@ class Chunk:
         )
         self._tried[ids] = position
         self._starter.forward(ids, 1)
-        position[:, 2] -= self._places[ids][:, self._pad_ids, 2].min(-1) - self._pad_radius
+        radius = self._pad_radius[ids] if len(self._pad_radius) > 1 else self._pad_radius
+        position[:, 2] -= self._places[ids][:, self._pad_ids, 2].min(-1) - radius
         self.drive.qpos[ids], self.drive.qvel[ids] = position, velocity
         self._clock_start[ids] = 0.5 + 0.5 * drawn[:, -1]
         self.episode_step[ids] = 0
@@ -500,22 +503,31 @@ class Chunk:
         return {name: np.moveaxis(values, 0, 1) for name, values in found.items()}
 
 
-def _give_models(batch: Any, models: list[mujoco.MjModel]) -> None:
+def _give_models(batch: Any, models: Sequence[mujoco.MjModel]) -> None:
     """Give each simulation the values of a model of its own; all are compiled from designs with the
     same structure.
     """
     from mujoco.batch import MODEL_FIELDS
 
+    distinct = {id(model): model for model in models}
+    place = {key: i for i, key in enumerate(distinct)}
+    rows = [place[id(model)] for model in models]
     for name in sorted(MODEL_FIELDS):
-        first = getattr(models[0], name, None)
-        if isinstance(first, np.ndarray) and any(
-            not np.array_equal(first, getattr(m, name)) for m in models[1:]
-        ):
-            own = batch.expand(name)
-            own[:] = np.stack([getattr(m, name) for m in models])[:, : own.shape[1]]
+        values = [_field(model, name) for model in distinct.values()]
+        if all(np.array_equal(values[0], v) for v in values[1:]):
+            continue
+        own = batch.expand(name)
+        # MuJoCo shares what lies past a field's first rows, such as bounding volumes of meshes
+        wanted = np.stack(values)
+        own[:] = (wanted if wanted.ndim < 2 else wanted[:, : own.shape[1]])[rows].reshape(own.shape)
 
 
-def _vary_models(batch: Any, task: Task, rng: np.random.Generator) -> None:
+def _field(model: mujoco.MjModel, name: str) -> Any:
+    place, _, option = name.partition(".")
+    return np.asarray(getattr(getattr(model, place), option) if option else getattr(model, name))
+
+
+def _vary_models(batch: Any, task: Task, rng: RowStreams) -> None:
     settings = task.randomisation
     if settings.mass:
         factor = rng.uniform(1 - settings.mass, 1 + settings.mass, (batch.nsim, batch.model.nbody))

@@ -11,6 +11,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters import number
 from hyperleg_design.simulation.settings import Checked
 from hyperleg_design.simulation.state import Goal, Motion, to_world, to_yaw_frame
+from hyperleg_design.simulation.streams import Random, of_rows
 
 SIGHT = 3.0
 """Length to which the observed offset of a waypoint is clipped [m]; assumed."""
@@ -87,7 +88,7 @@ class Commander(Protocol):
 
     settings: Any
 
-    def reset(self, ids: np.ndarray, motion: Motion, rng: np.random.Generator) -> Goal | None:
+    def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> Goal | None:
         """New commands at the start of episodes, and where they stand to them; `motion` holds the
         rows of `ids`.
         """
@@ -95,9 +96,7 @@ class Commander(Protocol):
     def judge(self, motion: Motion) -> Goal | None:
         """Where each simulation stands to its waypoint, if there are any."""
 
-    def advance(
-        self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator
-    ) -> None:
+    def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: Random) -> None:
         """Go on by one policy step, after it was judged; rows of `goal` that got a new waypoint
         then describe that.
         """
@@ -117,7 +116,7 @@ class VelocityCommander:
         self.values = np.zeros((count, 3))
         self.left = np.zeros(count)
 
-    def reset(self, ids: np.ndarray, motion: Motion, rng: np.random.Generator) -> None:
+    def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> None:
         """New commands for `ids`."""
         s, count = self.settings, len(ids)
         drawn = np.empty((count, 3))
@@ -133,14 +132,12 @@ class VelocityCommander:
     def judge(self, motion: Motion) -> None:
         """No waypoints."""
 
-    def advance(
-        self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator
-    ) -> None:
+    def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: Random) -> None:
         """New commands where the old ones' time is over."""
         self.left -= duration
         over = np.flatnonzero(self.left < 0.5 * duration)
         if len(over):
-            self.reset(over, motion, rng)
+            self.reset(over, motion, of_rows(rng, over))
 
     def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
         """Forward, sideways, turning."""
@@ -169,7 +166,7 @@ class WaypointCommander:
         """Course that each simulation runs; -1 for none."""
         self._origin, self._heading = np.zeros((count, 2)), np.zeros((count, 2))
 
-    def reset(self, ids: np.ndarray, motion: Motion, rng: np.random.Generator) -> Goal:
+    def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> Goal:
         """First waypoints, from where the robots stand, ahead of them."""
         count, s = len(ids), self.settings
         here = motion.position[:, :2]
@@ -197,14 +194,13 @@ class WaypointCommander:
         self.best = np.minimum(self.best, goal.distance)
         return goal
 
-    def advance(
-        self, motion: Motion, goal: Goal | None, duration: float, rng: np.random.Generator
-    ) -> None:
+    def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: Random) -> None:
         """The next waypoint for those that arrived; a finished course keeps its last."""
         assert goal is not None
         ids = np.flatnonzero(goal.arrived & ~goal.finished)
         if not len(ids):
             return
+        rng = of_rows(rng, ids)
         self.reached[ids] += 1
         self.last[ids], self.target[ids] = self.target[ids], self.following[ids]
         self.following[ids] = self._drawn(
@@ -240,9 +236,7 @@ class WaypointCommander:
             finished=none.copy(),
         )
 
-    def _drawn(
-        self, start: np.ndarray, direction: np.ndarray, rng: np.random.Generator
-    ) -> np.ndarray:
+    def _drawn(self, start: np.ndarray, direction: np.ndarray, rng: Random) -> np.ndarray:
         s, count = self.settings, len(start)
         distance, turn = (
             rng.uniform(s.near, s.far, count),

@@ -17,6 +17,7 @@ from hyperleg_design.simulation.chain import Chain, Driven
 from hyperleg_design.simulation.layout import Layout
 from hyperleg_design.simulation.machine import bus_voltage, legs_matrix, machine_from, rotor_inertia
 from hyperleg_design.simulation.settings import Physics, Randomisation
+from hyperleg_design.simulation.streams import Random
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,7 +44,7 @@ class Drive:
         physics: Physics,
         batch: Batch,
         randomisation: Randomisation | None,
-        rng: np.random.Generator,
+        rng: Random,
         alterations: Sequence[Alteration] = (),
     ) -> None:
         self.model = actuation.actuation_model(design)
@@ -241,7 +242,7 @@ def _varied(
     model: actuation.ActuationModel,
     shape: tuple[int, int, int],
     randomisation: Randomisation,
-    rng: np.random.Generator,
+    rng: Random,
 ) -> actuation.ActuationModel:
     def drawn(values: np.ndarray, spread: float) -> np.ndarray:
         return values * rng.uniform(1 - spread, 1 + spread, shape) if spread else values

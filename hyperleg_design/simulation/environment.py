@@ -12,6 +12,7 @@ others are in MuJoCo. The same seed gives the same bytes with any number of thre
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import os
 import threading
 from collections.abc import Iterable
@@ -26,9 +27,10 @@ from hyperleg_design.simulation.alteration import Alterations, made
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.chunk import Chunk, Divergence, Step
 from hyperleg_design.simulation.commands import WaypointCommands
-from hyperleg_design.simulation.layout import GRAVITY, layout_of
-from hyperleg_design.simulation.model import simulation_model
+from hyperleg_design.simulation.layout import GRAVITY, layout_of, stacked
+from hyperleg_design.simulation.model import simulation_model, simulation_models
 from hyperleg_design.simulation.settings import Limits
+from hyperleg_design.simulation.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task, check_reward
 
 if TYPE_CHECKING:
@@ -46,17 +48,21 @@ DIVERGENCES_KEPT = 100
 
 
 class Environment:
-    """Simulations of one robot, or of a batch of designs one each, under a task.
+    """Simulations of one robot, or of a batch of designs, under a task.
 
     Args:
-        design: a robot; or a batch of `simulations` designs with the same joints and motors.
+        design: a robot; or a batch of designs with the same joints, motors and pads, each of which
+            has an equal number of simulations that follow each other.
         task: what to do.
-        simulations: how many.
+        simulations: how many in all.
         seed: of all randomness.
         threads: that step them; all processors by default.
         assist: helping forces, for training only.
         alterations: of the simulated robot, or what makes them for a design; without, nothing
             changes.
+        common_random_numbers: each design has random numbers as if its simulations were the only
+            ones, so its trajectories do not depend on the others in the batch, to the last digit,
+            and all designs meet the same starting states. Without, every simulation has its own.
     """
 
     def __init__(
@@ -69,47 +75,58 @@ class Environment:
         threads: int | None = None,
         assist: Assist | None = None,
         alterations: Alterations | None = None,
+        common_random_numbers: bool = False,
     ) -> None:
         if simulations < 1:
             raise InputError("environment", "simulations", simulations, "expects at least 1")
         if threads is not None and threads < 1:
             raise InputError("environment", "threads", threads, "expects at least 1")
-        if design.batch_shape not in ((), (simulations,)):
+        number = (design.batch_shape or (1,))[0]
+        if simulations % number:
             raise InputError(
                 "environment",
                 "simulations",
                 simulations,
-                f"must equal the number of designs, {design.batch_shape[0]}",
+                f"must be a multiple of the number of designs, {number}",
             )
         self.design, self.task, self.simulations, self.seed = design, task, simulations, seed
-        self.layout: Layout = layout_of(design)
-        """Names and order of joints, motors and pads."""
-        batched = bool(design.batch_shape)
-        self.alterations = made(alterations, design.take(0) if batched else design)
+        self.designs: list[Design] = (
+            [design.take(i) for i in range(number)] if design.batch_shape else [design]
+        )
+        """The robots, one each."""
+        self.alterations = made(alterations, self.designs[0])
         """Of each of the simulated robots."""
-        each = (
-            [
-                simulation_model(design.take(i), task.physics, self.alterations)
-                for i in range(simulations)
-            ]
-            if batched
-            else None
+        self.models: list[mujoco.MjModel] = (
+            [simulation_model(one, task.physics, self.alterations) for one in self.designs]
+            if self.alterations
+            else simulation_models(self.designs, task.physics)
         )
-        self.model: mujoco.MjModel = (
-            each[0] if each else simulation_model(design, task.physics, self.alterations)
-        )
-        """MuJoCo model that is simulated; the first one's of a batch of designs."""
+        """MuJoCo model of each design; shared, not to be written into."""
+        self.layouts: list[Layout] = [layout_of(one) for one in self.designs]
+        """Names, order and numbers of joints, motors and pads of each design."""
         if any(alteration.edits for alteration in self.alterations):
-            self.layout = dataclasses.replace(
-                self.layout, weight=float(self.model.body_mass.sum()) * GRAVITY
-            )
-        for model in each or [self.model]:
-            check_standing(model, self.layout, task.limits, design.name)
-        # A trajectory depends on the chunks through their random streams, so they follow from the
-        # number of simulations alone.
-        count = max(-(-simulations // CHUNK), 2 if simulations >= SMALLEST_SPLIT else 1)
-        bounds = np.linspace(0, simulations, count + 1).astype(int)
-        streams = np.random.SeedSequence(seed).spawn(count)
+            self.layouts = [
+                dataclasses.replace(layout, weight=float(model.body_mass.sum()) * GRAVITY)
+                for layout, model in zip(self.layouts, self.models, strict=True)
+            ]
+        self.design_index: np.ndarray = np.arange(simulations) // (simulations // number)
+        """Design of each simulation, `(n,)`."""
+        self._check_standing()
+        self.layout: Layout = (
+            stacked(self.layouts).take(self.design_index) if number > 1 else self.layouts[0]
+        )
+        """The same of each simulation, with the batch in front; of a single design without."""
+        # A trajectory depends on the blocks through their random streams, so they follow from the
+        # number of simulations alone, or that of each design.
+        alone = simulations // number if common_random_numbers else simulations
+        inside = np.linspace(0, alone, _parts(alone) + 1).astype(int)
+        streams = np.random.SeedSequence(seed).spawn(len(inside) - 1)
+        blocks = [
+            (start + int(low), start + int(high), stream)
+            for start in range(0, simulations, alone)
+            for low, high, stream in zip(inside[:-1], inside[1:], streams, strict=True)
+        ]
+        count = min(_parts(simulations), len(blocks))
         threads = threads or os.cpu_count() or 1
         workers = min(threads, count)
         # Twice as many threads in MuJoCo as workers: while one chunk is in Python, another's
@@ -117,20 +134,24 @@ class Environment:
         each_threads = min(threads, -(-2 * threads // workers))
         self._turn = threading.Lock()
         self.chunks = []
-        for low, high, stream in zip(bounds[:-1], bounds[1:], streams, strict=True):
-            part = _taken(design, int(low), int(high)) if batched else design
-            own = each[low:high] if each else None
-            rng = np.random.default_rng(stream)
+        bounds = np.linspace(0, len(blocks), count + 1).astype(int)
+        for begin, end in itertools.pairwise(bounds):
+            own = blocks[begin:end]
+            low, high = own[0][0], own[-1][1]
+            rows = self.design_index[low:high]
+            each = design.batch_shape or common_random_numbers
             self.chunks.append(
                 Chunk(
-                    part,
+                    design.rows(rows) if each else design,
                     task,
-                    self.layout,
-                    self.model,
-                    own,
-                    int(low),
-                    int(high - low),
-                    rng,
+                    self.layout.take(slice(low, high)),
+                    [self.models[i] for i in rows] if number > 1 else self.models,
+                    low,
+                    high - low,
+                    RowStreams(
+                        [np.random.default_rng(stream) for _, _, stream in own],
+                        [b - a for a, b, _ in own],
+                    ),
                     self._turn,
                     each_threads,
                     self.alterations,
@@ -143,6 +164,28 @@ class Environment:
         """How many have diverged."""
         self._assist: Assist | None = None
         self.assist = assist
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """MuJoCo model that is simulated; the first one's of a batch of designs."""
+        return self.models[0]
+
+    def _check_standing(self) -> None:
+        """Whether all robots can stand.
+
+        Raises:
+            InputError: the first one's reason, and which others cannot.
+        """
+        errors: dict[int, InputError] = {}
+        for i, (design, model) in enumerate(zip(self.designs, self.models, strict=True)):
+            try:
+                check_standing(model, self.layouts[i], self.task.limits, design.name)
+            except InputError as error:
+                errors[i] = error
+        if errors:
+            first = next(iter(errors.values()))
+            bad = np.isin(np.arange(len(self.designs)), list(errors))
+            raise InputError(first.where, first.field, first.value, first.remedy, bad=bad)
 
     @property
     def action_size(self) -> int:
@@ -360,13 +403,9 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
         raise InputError(name, "", np.round(middle, 4).tolist(), remedy)
 
 
-def _taken(design: Design, low: int, high: int) -> Design:
-    """Some robots of a batch of designs."""
-    values = {
-        path: design[path] if size == 1 else design[path][low:high]
-        for path, size in design.batch_sizes().items()
-    }
-    return design.with_values(values, f"{design.name}[{low}:{high}]")
+def _parts(simulations: int) -> int:
+    """In how many parts simulations are worked on."""
+    return max(-(-simulations // CHUNK), 2 if simulations >= SMALLEST_SPLIT else 1)
 
 
 def _joined(parts: Iterable[Any]) -> dict[str, np.ndarray]:

@@ -4,12 +4,15 @@ the hip down.
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.consistency import leg_length
 from hyperleg_design.robot.masses import mass_table
@@ -45,10 +48,23 @@ class Layout:
     """Lower ends of the ranges of motion [rad], `(J,)`."""
     upper: np.ndarray
     """Upper ends of the ranges of motion [rad], `(J,)`."""
-    weight: float
-    """m g [N]."""
-    standing_height: float
-    """Hip-pitch axis above the floor, legs straight [m]."""
+    weight: Any
+    """m g [N]; of a batch `(n,)`."""
+    standing_height: Any
+    """Hip-pitch axis above the floor, legs straight [m]; of a batch `(n,)`."""
+
+    @property
+    def batched(self) -> bool:
+        """Whether it is of a batch of robots, whose numbers have the batch in front."""
+        return self.default.ndim > 1
+
+    def take(self, rows: Any) -> Layout:
+        """Layout of one robot of a batch by its number, or of several by an index array or slice;
+        a single robot's is the same for all rows.
+        """
+        if not self.batched:
+            return self
+        return dataclasses.replace(self, **{name: getattr(self, name)[rows] for name in _NUMBERS})
 
     @property
     def leg_joints(self) -> int:
@@ -72,11 +88,17 @@ class Layout:
         )
 
 
+_NUMBERS = ("pad_position", "default", "lower", "upper", "weight", "standing_height")
+"""Fields that differ within a batch."""
+
+
 def layout_of(design: Design) -> Layout:
-    """Layout of a robot; of a batch of designs, which share it, the layout with the first one's
-    numbers.
+    """Layout of a robot, or of a batch of robots with the same joints, motors and pads, whose
+    numbers then have the batch in front.
     """
-    one = design.take(0) if design.batch_shape else design
+    if design.batch_shape:
+        return stacked([layout_of(design.take(i)) for i in range(design.batch_shape[0])])
+    one = design
     tree = build_tree(one)
     toe_axis = np.array([one.foot.ball_length, 0.0, -(one.foot.ankle_height - one.toe.axis_height)])
     pads, feet, places = [], [], []
@@ -101,3 +123,21 @@ def layout_of(design: Design) -> Layout:
         weight=float(mass_table(one).total) * GRAVITY,
         standing_height=float(leg_length(one)),
     )
+
+
+def stacked(layouts: Sequence[Layout]) -> Layout:
+    """Layouts of robots with the same joints, motors and pads as that of a batch.
+
+    Raises:
+        InputError: their joints, motors or pads differ.
+    """
+    first = layouts[0]
+    for name in ("joints", "motors", "pads"):
+        if any(getattr(layout, name) != getattr(first, name) for layout in layouts[1:]):
+            raise InputError(
+                "batch", name, None, f"must be the same in all designs of a batch: {name} differ"
+            )
+    numbers: dict[str, Any] = {
+        name: np.stack([getattr(one, name) for one in layouts]) for name in _NUMBERS
+    }
+    return dataclasses.replace(first, **numbers)

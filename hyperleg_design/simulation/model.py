@@ -4,13 +4,16 @@ a sole pad.
 
 from __future__ import annotations
 
+import hashlib
+import pickle
 from collections.abc import Sequence
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.parameters import leaves
 from hyperleg_design.simulation.alteration import Alteration, damps_motors, edited
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.settings import Physics
@@ -20,6 +23,9 @@ if TYPE_CHECKING:
 
     from hyperleg_design.robot.design import Design
 
+KEPT = 1024
+"""Models that a process keeps, some 0.1 MB each."""
+_KEPT_MODELS: dict[str, mujoco.MjModel] = {}
 PAD_SENSOR_SIZE = 6
 """Numbers a pad: force and relative velocity in the contact's frame."""
 
@@ -82,7 +88,38 @@ def simulation_model(
     model = edited(simulation_spec(design, physics).compile(), alterations)
     if damps_motors(alterations):
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    # MuJoCo's solver stops where an improvement over `meaninertia` is below `tolerance`. A batch
+    # can give each of its robots a tolerance of its own, but no mean inertia.
+    model.opt.tolerance *= model.stat.meaninertia
+    model.stat.meaninertia = 1.0
     return model
+
+
+def simulation_models(
+    designs: Sequence[Design], physics: Physics | None = None
+) -> list[mujoco.MjModel]:
+    """`simulation_model` of each design without alterations; equal designs share one model.
+
+    The latest `KEPT` models are kept in this process, so that a design that is evaluated again is
+    not compiled again. Nobody may write into them.
+    """
+    physics = physics or Physics()
+    models = []
+    for design in designs:
+        key = _fingerprint(design, physics)
+        model = _KEPT_MODELS.pop(key, None) or simulation_model(design, physics)
+        _KEPT_MODELS[key] = model
+        models.append(model)
+        while len(_KEPT_MODELS) > KEPT:
+            del _KEPT_MODELS[next(iter(_KEPT_MODELS))]
+    return models
+
+
+def _fingerprint(design: Design, physics: Physics) -> str:
+    """All numbers and texts that decide a model."""
+    arrays = motor_arrays(design)  # the catalogue's constants may change under the same name
+    described = (leaves(design), vars(arrays), vars(physics))
+    return hashlib.sha256(pickle.dumps(described)).hexdigest()
 
 
 def pad_forces(sensors: np.ndarray) -> np.ndarray:
@@ -111,9 +148,5 @@ def foot_loads(loads: np.ndarray) -> np.ndarray:
     """Vertical forces on the left and the right foot [N] from those on the pads, `(..., P)` ->
     `(..., 2)`.
     """
-    return loads @ _foot_of_pad(loads.shape[-1])
-
-
-@cache
-def _foot_of_pad(pads: int) -> np.ndarray:
-    return np.kron(np.eye(2), np.ones((pads // 2, 1)))
+    # a sum of each row by itself: a matrix product's last digit depends on the number of rows
+    return np.add.reduce(loads.reshape(*loads.shape[:-1], 2, -1), -1)

@@ -74,7 +74,7 @@ def privileged(state: State, robot: Robot) -> list[np.ndarray]:
     """What only a simulation knows: linear velocity, pelvis height, vertical force on each foot
     over the weight.
     """
-    load = state.foot_load[-1] / robot.layout.weight
+    load = state.foot_load[-1] / np.reshape(robot.layout.weight, (-1, 1))
     return [state.motion.local_velocity, state.motion.position[:, 2:3], load]
 
 

@@ -7,6 +7,7 @@ paper and are reported as such.
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,7 +29,12 @@ class Robot:
     """What terms know of the robot and the task besides the state."""
 
     layout: Layout
+    """Of all simulations, or of each of them."""
     clock: Clock
+
+    def take(self, rows: np.ndarray) -> Robot:
+        """The same for some simulations."""
+        return dataclasses.replace(self, layout=self.layout.take(rows))
 
 
 @dataclass(frozen=True)
@@ -164,7 +170,7 @@ def hip_deviation(state: State, robot: Robot) -> np.ndarray:
     """Hip yaw and roll away from the default posture, summed [rad]."""
     places = robot.layout.hip_sideways
     return np.einsum(
-        "nj->n", np.abs(state.motion.joint_position[:, places] - robot.layout.default[places])
+        "nj->n", np.abs(state.motion.joint_position[:, places] - robot.layout.default[..., places])
     )
 
 

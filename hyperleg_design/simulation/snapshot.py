@@ -65,7 +65,7 @@ def _of_chunk(chunk: Chunk) -> dict[str, Any]:
         },
         "motion": _fields(chunk.motion),
         "goal": None if chunk.goal is None else _fields(chunk.goal),
-        "random": chunk.rng.bit_generator.state,
+        "random": chunk.rng.state,
         **({} if chunk.drive.chain is None else {"chain": chunk.drive.chain.state()}),
     }
 
@@ -91,7 +91,7 @@ def _into_chunk(chunk: Chunk, state: dict[str, Any]) -> None:
     if state["goal"] is not None:
         for name, value in state["goal"].items():
             setattr(chunk.goal, name, value.copy())
-    chunk.rng.bit_generator.state = state["random"]
+    chunk.rng.restore(state["random"])
 
 
 def _fields(record: Any) -> dict[str, np.ndarray]:

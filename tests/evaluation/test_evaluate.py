@@ -8,11 +8,19 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.evaluate import evaluate, evaluate_many
-from hyperleg_design.evaluation.policy import standing
-from hyperleg_design.evaluation.protocol import Protocol, Steady, TTestProtocol, WalkProtocol
+from hyperleg_design.evaluation.evaluate import evaluate, evaluate_designs, evaluate_many
+from hyperleg_design.evaluation.policy import load_policy, standing
+from hyperleg_design.evaluation.protocol import (
+    Protocol,
+    Steady,
+    TTestProtocol,
+    WalkProtocol,
+    load_protocol,
+)
+from hyperleg_design.evaluation.rollout import SIGNALS
+from hyperleg_design.evaluation.walk import evaluate_walks
 from hyperleg_design.simulation.layout import layout_of
-from hyperleg_design.simulation.settings import Start
+from hyperleg_design.simulation.settings import Randomisation, Start
 from hyperleg_design.simulation.tasks import load_task
 
 SHORT = WalkProtocol(trials=3, distance=2.0, time_limit=2.0, steady=Steady(begin=0.5))
@@ -116,3 +124,76 @@ def test_alterations_change_what_is_measured_and_none_changes_no_bit(make_onnx):
     assert not any(
         np.array_equal(a.paths[0], b.paths[0]) for a, b in zip(plain, altered, strict=True)
     )
+
+
+def same(a, b):
+    """Whether two evaluations hold the same numbers to the last digit."""
+    assert a.outcomes == b.outcomes
+    assert a.end_times == b.end_times
+    for one, other in zip(a.trials, b.trials, strict=True):
+        assert one.mass == other.mass
+        for name in SIGNALS:
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
+    for one, other in zip(a.measures, b.measures, strict=True):
+        assert list(one) == list(other)
+        np.testing.assert_array_equal(list(one.values()), list(other.values()))
+    for one, other in zip(a.motors, b.motors, strict=True):
+        if one is not None or other is not None:
+            np.testing.assert_array_equal(one.continuous_use, other.continuous_use)
+
+
+@pytest.mark.parametrize(("policy", "task"), [("walk-toe-0", "walk"), ("t_test-toe-0", "t_test")])
+def test_a_batch_of_designs_gives_the_numbers_of_each_alone(policy, task):
+    policy = load_policy(policy)
+    designs = policy.design.with_values(
+        {
+            "toe.mass": np.array([0.27, 1.0, 0.1]),
+            "transmission.scale.knee": np.array([1.0, 0.7, 1.4]),
+            "shank.length": np.array([0.37, 0.37, 0.4]),
+            "contact.friction": np.array([1.0, 0.8, 1.0]),
+            "contact.pad_radius": policy.design.contact.pad_radius * np.array([1.0, 1.2, 1.0]),
+            "joints.knee.default_deg": policy.design.joints.knee.default_deg + np.array([0, 2, 0]),
+            "actuators.ankle.motor": np.array(["RI60", "RI70", "RI60"]),
+        },
+    )
+    short = {"trials": 2, "time_limit": 10.5}
+    if task == "walk":
+        short |= {"time_limit": 4.0, "distance": 2.5, "steady": Steady(begin=1.0)}
+    protocol = load_protocol(task).changed(**short)
+    together = evaluate_designs(policy, designs, protocol, threads=2)
+    for i, one in enumerate(together):
+        same(one, evaluate(policy, protocol, design=designs.take(i), threads=1))
+    assert len({one.trials[0].mass for one in together}) == 3
+
+
+def test_trials_in_several_parts_are_those_of_each_design_alone(design):
+    """From 32 simulations on, a design's trials are in two parts with random numbers each."""
+    designs = design.with_values({"toe.mass": np.array([0.2, 0.4])})
+    protocol = SHORT.changed(
+        trials=33,
+        time_limit=0.5,
+        distance=0.6,
+        steady=Steady(begin=0.3),
+        randomisation=Randomisation(mass=0.1, gains=0.1),
+    )
+    together = evaluate_designs(standing(14), designs, protocol, task=load_task("walk"))
+    for i, one in enumerate(together):
+        alone = evaluate(standing(14), protocol, design=designs.take(i), task=load_task("walk"))
+        same(one, alone)
+    starts = [trial.joint_position[0] for trial in together[0].trials]
+    assert len(np.unique(starts, axis=0)) == 33
+
+
+def test_a_batch_goes_to_the_function_for_batches(design):
+    designs = design.with_values({"toe.mass": np.array([0.2, 0.4])})
+    with pytest.raises(InputError, match="evaluate_walks"):
+        evaluate(standing(14), SHORT, design=designs, task=load_task("walk"))
+    with pytest.raises(InputError, match="made for one robot"):
+        evaluate_walks(standing(14), SHORT, design=designs, task=load_task("walk"), alterations=[])
+
+
+def test_designs_that_cannot_stand_are_named(design):
+    designs = design.with_values({"thigh.length": np.array([0.37, 0.05, 0.37, 0.06])})
+    with pytest.raises(InputError, match="lower than a fall") as caught:
+        evaluate_designs(standing(14), designs, SHORT, task=load_task("walk"))
+    assert caught.value.bad.tolist() == [False, True, False, True]

@@ -1,0 +1,78 @@
+"""Whether a policy was trained for the design that it is evaluated on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.evaluation.policy import OnnxPolicy, Policy
+from hyperleg_design.robot.parameters import leaves
+from hyperleg_design.simulation.design_observation import design_ranges
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+SPECIALIST, CONDITIONED, ZERO_SHOT, UNKNOWN = "specialist", "conditioned", "zero-shot", "unknown"
+RANGES = "design_ranges"
+"""Metadata of a policy that is conditioned on its design; see `design_observation`."""
+_NO_ROBOT = ("masses.expected_",)
+"""Leaves that are printed sums, not parts of a robot."""
+_SHOWN = 3
+
+
+@dataclass(frozen=True)
+class TrainingFit:
+    """What a policy's training had to do with the design that it is evaluated on."""
+
+    kind: str
+    """`specialist`: trained on this design alone; `conditioned`: trained over a range of designs
+    that it observes; `zero-shot`: trained on another design; `unknown`: it does not say."""
+    changed: Mapping[str, tuple[Any, Any]] = field(default_factory=dict)
+    """Leaves that differ, by path: as trained, as evaluated."""
+    outside: tuple[str, ...] = ()
+    """Those of them that lie outside what it was trained over."""
+
+    def text(self) -> str:
+        """For tables: the kind, and what lies outside the trained range."""
+        if not self.outside:
+            return self.kind
+        shown = ", ".join(
+            f"{path} {_short(self.changed[path][0])} -> {_short(self.changed[path][1])}"
+            for path in self.outside[:_SHOWN]
+        )
+        rest = len(self.outside) - _SHOWN
+        more = f" and {rest} more" if rest > 0 else ""
+        return f"{self.kind}, outside the trained range: {shown}{more}"
+
+
+def training_fit(policy: Policy, design: Design) -> TrainingFit:
+    """Compare the design that a policy was trained on, or its ranges, with one robot."""
+    if not isinstance(policy, OnnxPolicy):
+        return TrainingFit(UNKNOWN)
+    trained, own = leaves(policy.design), leaves(design)
+    changed = {
+        path: (trained[path], value)
+        for path, value in own.items()
+        if not path.startswith(_NO_ROBOT) and not _equal(trained[path], value)
+    }
+    if RANGES in policy.metadata:
+        ranges = design_ranges(policy.metadata[RANGES], f"{policy.name}: {RANGES}")
+        beyond = set(ranges.outside(design))
+        outside = tuple(p for p in changed if p in beyond or p not in ranges.ranges)
+        return TrainingFit(ZERO_SHOT if outside else CONDITIONED, changed, outside)
+    return TrainingFit(ZERO_SHOT if changed else SPECIALIST, changed, tuple(changed))
+
+
+def _equal(a: Any, b: Any) -> bool:
+    if isinstance(a, str) or isinstance(b, str) or isinstance(a, bool):
+        return bool(a == b)
+    return np.shape(a) == np.shape(b) and bool(np.allclose(a, b, rtol=1e-9, atol=1e-15))
+
+
+def _short(value: Any) -> str:
+    if np.ndim(value):
+        return "[" + " ".join(f"{v:.4g}" for v in np.ravel(value)) + "]"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,125 @@
+"""What a policy may observe of its own design: chosen numbers of the robot, scaled by the ranges
+over which designs are drawn in training.
+
+A policy that is conditioned on its design has these numbers in its observation; its file carries
+the ranges, so that an evaluation can say whether a design lies inside them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import parameters
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+WITHIN = 1e-9
+"""Share of a range by which rounding may put a number outside of it."""
+
+
+@dataclass(frozen=True)
+class Range:
+    """Values that one leaf of a design takes in training."""
+
+    low: float
+    """In the leaf's unit."""
+    high: float
+    """In the leaf's unit."""
+    log: bool = False
+    """Whether its logarithm is observed, for leaves that are drawn evenly in it."""
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite([self.low, self.high]).all() and self.low < self.high):
+            raise InputError(
+                "design ranges", "", [self.low, self.high], "expects finite low < high"
+            )
+        if self.log and self.low <= 0:
+            raise InputError("design ranges", "low", self.low, "must be positive with log")
+
+    def scaled(self, values: np.ndarray) -> np.ndarray:
+        """-1 at the low end, 1 at the high one, linear in the value or its logarithm."""
+        low, high = (np.log([self.low, self.high])) if self.log else (self.low, self.high)
+        place = np.log(values) if self.log else values
+        return np.asarray(2 * (place - low) / (high - low) - 1)
+
+
+@dataclass(frozen=True)
+class DesignRanges:
+    """The design part of an observation: one number a leaf, in the order of `ranges`."""
+
+    ranges: Mapping[str, Range]
+    """By dotted path of the leaf."""
+
+    @property
+    def columns(self) -> list[str]:
+        """A name for each number."""
+        return [f"design.{path}" for path in self.ranges]
+
+    def numbers(self, design: Design) -> np.ndarray:
+        """Observed numbers of a robot `(k,)` or a batch `(n, k)`, within -1 .. 1 inside the
+        ranges.
+        """
+        values = [one.scaled(np.asarray(design[path], float)) for path, one in self.ranges.items()]
+        return np.stack(np.broadcast_arrays(*values), -1)
+
+    def outside(self, design: Design) -> list[str]:
+        """Leaves of one robot that lie outside their range."""
+        numbers = self.numbers(design)
+        return [
+            path
+            for path, value in zip(self.ranges, numbers, strict=True)
+            if not abs(value) <= 1 + 2 * WITHIN
+        ]
+
+    def draw(self, count: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
+        """Values of designs drawn evenly over the ranges, by path, each `(count,)`."""
+        drawn = {}
+        for path, one in self.ranges.items():
+            place = rng.random(count)
+            drawn[path] = (
+                one.low * (one.high / one.low) ** place
+                if one.log
+                else one.low + place * (one.high - one.low)
+            )
+        return drawn
+
+    def to_mapping(self) -> dict[str, Any]:
+        """As plain values, for the metadata of a policy."""
+        return {path: vars(one) for path, one in self.ranges.items()}
+
+
+def design_ranges(data: Any, where: str) -> DesignRanges:
+    """Ranges from what `DesignRanges.to_mapping` gives, or a file holds.
+
+    Raises:
+        InputError: no mapping, a path that is no single number of a design, or no range.
+    """
+    from hyperleg_design.robot.design import Design
+
+    if not isinstance(data, Mapping) or not data:
+        raise InputError(where, "", data, "expects a mapping of leaves to {low, high}")
+    rules, ranges = parameters.rules(Design), {}
+    for path, entry in data.items():
+        if path not in rules:
+            raise InputError(where, str(path), entry, parameters.unknown(str(path), sorted(rules)))
+        if rules[path].kind != "number" or rules[path].size:
+            raise InputError(where, path, entry, "is not a single number; choose another leaf")
+        if not isinstance(entry, Mapping) or not {"low", "high"} <= set(entry) <= {
+            "low",
+            "high",
+            "log",
+        }:
+            raise InputError(where, path, entry, "expects {low, high}, and log: true if wanted")
+        try:
+            ranges[path] = Range(
+                float(entry["low"]), float(entry["high"]), bool(entry.get("log", False))
+            )
+        except (TypeError, ValueError):
+            raise InputError(where, path, dict(entry), "expects numbers low and high") from None
+    return DesignRanges(ranges)
