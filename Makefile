@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 SHELL := /bin/bash
 
-.PHONY: study test test-all check lint clean benchmark
+.PHONY: study test test-all lint coverage docs wheel-test clean benchmark
 
 $(VENV)/.ready: pyproject.toml constraints.txt
 	@command -v $(PYTHON) >/dev/null || { echo "Python 3.11 not found; set PYTHON=/path/to/python3.11"; exit 1; }
@@ -27,6 +27,17 @@ test: $(VENV)/.learning  ## All tests but the slow ones, style and types
 
 test-all: $(VENV)/.learning  ## The slow ones too
 	$(BIN)/python -m pytest -n 2
+
+lint: $(VENV)/.ready  ## Style and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+coverage: $(VENV)/.learning  ## The tests, and which lines none of them runs
+	$(BIN)/python -m pytest -m "not slow" -n 2 --cov=hyperleg_design --cov-report=term:skip-covered --cov-report=html:results/coverage
+
+wheel-test: $(VENV)/.ready  ## Build the wheel and try it in a clean environment
+	$(BIN)/python -m pytest tests/test_wheel.py
 
 benchmark: $(VENV)/.ready  ## Speed, as ratios in one run
 	$(BIN)/python benchmarks/run.py

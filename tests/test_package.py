@@ -5,6 +5,7 @@ it is.
 from __future__ import annotations
 
 import ast
+import inspect
 import subprocess
 import sys
 from pathlib import Path
@@ -67,6 +68,27 @@ def test_public_names_are_the_same_to_a_type_checker():
     assert typed == {
         (name, f"hyperleg_design.{home}") for name, home in hyperleg_design._HOME.items()
     }
+
+
+PUBLIC = [name for name in hyperleg_design.__all__ if callable(getattr(hyperleg_design, name))]
+
+
+@pytest.mark.parametrize("name", PUBLIC)
+def test_a_public_docstring_names_arguments_and_result(name):
+    value = getattr(hyperleg_design, name)
+    text = inspect.getdoc(value) or ""
+    first = text.split("\n\n")[0].strip()
+    assert len(first.split()) >= 3, "says too little"
+    assert first.endswith((".", ":")) or "." in first, "is no sentence"
+    if inspect.isclass(value):
+        return
+    signature = inspect.signature(value)
+    if signature.parameters:
+        assert "Args:" in text
+    for parameter in signature.parameters:
+        assert f"\n    {parameter}: " in text, f"does not say what {parameter} is"
+    assert "Returns:" in text
+    assert signature.return_annotation is not inspect.Signature.empty
 
 
 def imported_rooms(path: Path) -> set[str]:

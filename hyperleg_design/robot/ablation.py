@@ -28,6 +28,9 @@ def ablate(design: Design, variant: str) -> Design:
         design: a robot or batch with an active toe.
         variant: one of `VARIANTS`.
 
+    Returns:
+        A design of the same batch shape whose `variant` is the one asked for.
+
     Raises:
         InputError: no such variant, or the toe is gone already.
     """
@@ -57,12 +60,23 @@ def ablate(design: Design, variant: str) -> Design:
 
 
 def variants(design: Design) -> dict[str, Design]:
-    """All ablations of a design, by name."""
+    """All ablations of a design, by name.
+
+    Args:
+        design: a robot or batch with an active toe.
+
+    Returns:
+        Designs by the name of their variant, the unchanged one, `toe`, first.
+    """
     return {name: ablate(design, name) for name in VARIANTS}
 
 
 def confound(design: Design, posture: str = "standing") -> dict[str, Any]:
     """What each ablation takes away besides the toe.
+
+    Args:
+        design: one robot with an active toe.
+        posture: `standing` or `walking`, the paper's two; the joint torques are of this one.
 
     Returns:
         By variant: `removes` (text), `motors` and `joints` a leg, `total_mass` [kg], `leg_mass`

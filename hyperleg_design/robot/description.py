@@ -39,6 +39,13 @@ def tree_yaml(tree: Tree) -> str:
 def urdf(design: Design, tree: Tree | None = None) -> str:
     """URDF of one robot; its tree may be given if it is already there.
 
+    Args:
+        design: one robot; batches are refused.
+        tree: kinematic tree of the design where it was computed before.
+
+    Returns:
+        The XML text, SI units, numbers in full precision.
+
     Raises:
         InputError: a batch of designs.
     """

@@ -207,6 +207,9 @@ def load_design(
         overlays: YAML files with nested leaves, applied in order before `overrides`.
         variant: ablation to make of it, one of `VARIANTS`.
 
+    Returns:
+        The validated design, one robot.
+
     Raises:
         InputError: names file, field, value and remedy.
     """

@@ -87,6 +87,13 @@ def mass_law(name: str) -> Callable[[Law], Law]:
 def mass_table(design: Design) -> MassTable:
     """Masses of the segments by the design's law.
 
+    Args:
+        design: a robot, or a batch of `n` robots.
+
+    Returns:
+        Masses of pelvis, segments, leg and robot [kg], `()` for a robot, `(n,)` for a
+        batch.
+
     Raises:
         InputError: no such law.
     """

@@ -45,6 +45,9 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
             model brings its own.
         floor: add a floor and a light.
 
+    Returns:
+        A specification that the caller owns and may change before compiling it.
+
     Raises:
         InputError: a batch of designs.
     """
@@ -88,12 +91,29 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
 
 
 def mujoco_model(design: Design, *, friction: bool = True, floor: bool = True) -> mujoco.MjModel:
-    """Compiled MuJoCo model of one robot; see `mujoco_spec`."""
+    """Compiled MuJoCo model of one robot; see `mujoco_spec`.
+
+    Args:
+        design: one robot; batches are refused.
+        friction: joint friction (Coulomb and viscous) by MuJoCo.
+        floor: add a floor and a light.
+
+    Returns:
+        The compiled model.
+    """
     return mujoco_spec(design, friction=friction, floor=floor).compile()
 
 
 def mjcf(design: Design, *, friction: bool = True) -> str:
-    """MJCF text of one robot, numbers in full precision."""
+    """MJCF text of one robot, numbers in full precision.
+
+    Args:
+        design: one robot; batches are refused.
+        friction: joint friction (Coulomb and viscous) by MuJoCo.
+
+    Returns:
+        The XML text, as `mujoco_spec` describes the robot, without a floor.
+    """
     spec = mujoco_spec(design, friction=friction)
     with _full_precision():
         return str(spec.to_xml())

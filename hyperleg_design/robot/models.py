@@ -136,6 +136,13 @@ def leg_reflected_inertia(design: Design, posture: str | None = None) -> np.ndar
 def rigid_body_model(design: Design, *, floating: bool = True) -> RigidBodyModel:
     """Pinocchio model of one robot.
 
+    Args:
+        design: one robot; batches are refused.
+        floating: whether the base moves freely; else it is welded to the world.
+
+    Returns:
+        The model with its data and the reflected inertias of the motors.
+
     Raises:
         InputError: a batch of designs.
     """

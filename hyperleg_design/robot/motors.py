@@ -302,12 +302,24 @@ def _catalogue_at(folder: Path) -> dict[str, Motor]:
 
 
 def catalogue() -> dict[str, Motor]:
-    """All motors of the catalogue by name."""
+    """All motors of the catalogue by name.
+
+    Returns:
+        Motors by name, in the order of the alphabet; read from `motors/` once in a process.
+    """
     return _catalogue_at(resources.content_folder("motors"))
 
 
 def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
     """A motor by name.
+
+    Args:
+        name: of the motor, such as `RI70`.
+        where: file or option that names the motor, for the error.
+        field: dotted path of the field in it, for the error.
+
+    Returns:
+        The motor.
 
     Raises:
         InputError: there is none; names the nearest.

@@ -92,6 +92,14 @@ def joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
     """M over the joints that move and the motors that are there, `(..., joints, motors)` [-].
 
     A locked toe whose motor stays gives a 6 x 7 matrix: that motor still helps knee and ankle.
+
+    Args:
+        design: a robot, or a batch of `n` robots.
+        posture: `standing` or `walking`, the paper's two; the design's own by default.
+
+    Returns:
+        M with tau_joint = M tau_motor and motor_velocity = M^T joint_velocity; power is the
+        same on both sides.
     """
     return full_joint_from_motor(design, posture)[
         ..., : len(joint_names(design)), : len(motor_names(design))
@@ -146,6 +154,13 @@ def derate(design: Design) -> np.ndarray:
 def max_joint_torque(design: Design, posture: str = "standing") -> np.ndarray:
     """Largest torque of each joint alone, derated as in Table I, `(..., joints)` [Nm]: derate * sum
     |M| tau_peak.
+
+    Args:
+        design: a robot, or a batch of `n` robots.
+        posture: `standing` or `walking`, the paper's two; Table I prints the standing one.
+
+    Returns:
+        Torques, each reached only while every motor of the joint pulls for it [Nm].
     """
     peak = motor_arrays(design).peak_torque[..., : len(motor_names(design))]
     return derate(design) * joint_torque(np.abs(joint_from_motor(design, posture)), peak)
@@ -154,6 +169,13 @@ def max_joint_torque(design: Design, posture: str = "standing") -> np.ndarray:
 def single_joint_speed(design: Design, posture: str = "walking") -> np.ndarray:
     """No-load speed of each joint while the others stand still, `(..., joints)` [rad/s]: min over
     motors of omega_0 / |M|.
+
+    Args:
+        design: a robot, or a batch of `n` robots.
+        posture: `standing` or `walking`, the paper's two; Table I prints the walking one.
+
+    Returns:
+        Speeds at the joints [rad/s].
     """
     free = motor_arrays(design).no_load_speed[..., : len(motor_names(design))]
     matrix = np.abs(joint_from_motor(design, posture))

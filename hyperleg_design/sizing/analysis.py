@@ -31,6 +31,9 @@ BELOW_HIP = slice(3, None)
 def analyze(design: Design) -> dict[str, Any]:
     """Analyse one design.
 
+    Args:
+        design: one robot; batches are refused.
+
     Returns:
         Plain numbers, lists and mappings, SI units, ready for JSON: `total_mass`, `leg_mass` [kg],
         `leg_length`, `height` [m], `segment_mass` [kg], `reduction` by posture (joints x motors),

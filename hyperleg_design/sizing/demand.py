@@ -185,6 +185,9 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
         motion: planned for this design, or the name of a reference motion.
         allow_excess: report what lies beyond the envelopes; else it is an error.
 
+    Returns:
+        Torques and speeds of every motor over the motion, their margins, energies and heat.
+
     Raises:
         InputError: a batch, a motion planned for another design, or no such motion.
         InfeasibleError: the legs cannot do the motion, or `allow_excess` is off and the motors

@@ -176,6 +176,9 @@ def energy_ledger(
         efficiency_regen: of the drivers, motor to battery [-], `()` or the batch (Table I: 0.8); 0
             where nothing returns.
 
+    Returns:
+        Powers of each motor by kind at every sample [W], `(..., t, m)`.
+
     Raises:
         InputError: shapes that do not fit, values that are not finite, a step that is not positive,
         an efficiency that is none.

@@ -75,6 +75,12 @@ class MotorEnvelope:
 def motor_envelope(design: Design) -> MotorEnvelope:
     """Envelope of the installed motors of one leg, a robot's `(motors,)` or a batch's `(n,
     motors)`.
+
+    Args:
+        design: a robot, or a batch of `n` robots.
+
+    Returns:
+        Limits in the torque-speed plane of each motor, at the rotor, gears not included.
     """
     arrays = motor_arrays(design)
     installed = slice(len(motor_names(design)))

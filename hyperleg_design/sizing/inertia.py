@@ -83,6 +83,12 @@ class LegInertia:
 def leg_inertia(design: Design) -> LegInertia:
     """Mass and inertia of a leg of a design or batch, each `(...)`.
 
+    Args:
+        design: a robot, or a batch of `n` robots.
+
+    Returns:
+        Masses [kg], lengths [m] and the swing inertia [kg m^2], rotors not included.
+
     Raises:
         InputError: as `robot.inertials.inertials`.
     """

@@ -129,6 +129,9 @@ def thermal_use(
         periodic: whether the samples are one cycle of an endless repetition (a gait); else motors
             begin cold.
 
+    Returns:
+        Use of each motor; 1 where it is as hot as at its rated torque for ever.
+
     Raises:
         InputError: as `moving_average`; a rated torque that is not positive.
     """

@@ -83,6 +83,9 @@ def run_sweep(
         chunk: samples evaluated and kept at a time; a resumed run keeps its first one.
         executor: spreads chunks over processes or machines; in this process by default.
 
+    Returns:
+        The sweep, its folder with the table of all designs, and a summary.
+
     Raises:
         InputError: the definition is wrong.
         OutputError: the folder is not ours, holds something else (another sweep, another version),

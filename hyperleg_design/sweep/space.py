@@ -184,6 +184,9 @@ def load_sweep(name: str | Path, *, overrides: Mapping[str, Any] | None = None) 
         name: a shipped name such as `reduction_ratios`, or a YAML file.
         overrides: leaves changed for all designs, on top of the file's `set`.
 
+    Returns:
+        The sweep, its axes and rules checked; no design is computed yet.
+
     Raises:
         InputError: names file, field, value and remedy.
     """
