@@ -16,17 +16,17 @@ from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
-from hyperleg_design.gap.baselines.drive_set import DriveSet, Fitted, drive_set
-from hyperleg_design.gap.baselines.own import fit_own
-from hyperleg_design.gap.baselines.pace import fit_pace
-from hyperleg_design.gap.baselines.population import position_gap
-from hyperleg_design.gap.baselines.sysid import fit_sysid
-from hyperleg_design.gap.blind.plan import Plan
-from hyperleg_design.gap.blind.recorder import Recorder
-from hyperleg_design.gap.blind.rig_case import rig_case
-from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.signals import Signals
-from hyperleg_design.gap.subject import load_subject
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.validation.baselines.drive_set import DriveSet, Fitted, drive_set
+from hyperleg_design.validation.baselines.own import fit_own
+from hyperleg_design.validation.baselines.pace import fit_pace
+from hyperleg_design.validation.baselines.population import position_gap
+from hyperleg_design.validation.baselines.sysid import fit_sysid
+from hyperleg_design.validation.blind.plan import Plan
+from hyperleg_design.validation.blind.recorder import Recorder
+from hyperleg_design.validation.blind.rig_case import rig_case
 
 TARGETS = {"sysid": 5.0, "pace": 50.0}
 SLACK = 1.05

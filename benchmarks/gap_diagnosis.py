@@ -17,10 +17,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hyperleg_design.gap.blind.plan import Plan
-from hyperleg_design.gap.blind.recorder import Recorder
-from hyperleg_design.gap.blind.rig_case import rig_case
-from hyperleg_design.gap.log import write_log
+from hyperleg_design.gap.logs.log import write_log
+from hyperleg_design.validation.blind.plan import Plan
+from hyperleg_design.validation.blind.recorder import Recorder
+from hyperleg_design.validation.blind.rig_case import rig_case
 
 TARGETS = {"servo": 20.0, "hyperleg": 300.0}
 MEMORY = 4.0
@@ -30,8 +30,8 @@ LENGTHS = (8.0, 16.0, 32.0)
 CHILD = """
 import json, resource, sys, time
 from pathlib import Path
-from hyperleg_design.gap.diagnose import diagnose
-from hyperleg_design.gap.log import read_log
+from hyperleg_design.gap.pipeline.diagnose import diagnose
+from hyperleg_design.gap.logs.log import read_log
 folder = Path(sys.argv[1])
 logs = [read_log(p) for p in sorted(folder.glob("*.parquet"))]
 begun = time.perf_counter()

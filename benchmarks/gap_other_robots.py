@@ -21,9 +21,9 @@ from tempfile import TemporaryDirectory
 import mujoco
 import numpy as np
 
-from hyperleg_design.gap.diagnose import diagnose
-from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.metadata import Metadata
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.pipeline.diagnose import diagnose
 
 STEP, TICKS, DURATION = 0.001, 5, 14.0
 """Of the simulation [s]; its steps in one of controller and log; length of a log [s]."""

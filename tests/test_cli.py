@@ -244,7 +244,7 @@ def test_gap_apply_writes_what_training_and_evaluation_read(capsys, tmp_path):
     )
     assert code == 0
     assert out.startswith("coulomb_friction at left_knee -> ")
-    from hyperleg_design.gap.overlay import read_overlay
+    from hyperleg_design.gap.playback.overlay import read_overlay
 
     assert read_overlay(overlay).change == {("coulomb_friction", "left_knee"): {"torque": 1.9}}
     overlay.write_text(overlay.read_text().replace("left_knee", "left_kne"))

@@ -32,7 +32,7 @@ class Check(Printing):
 
     def run(self) -> None:
         """Check them."""
-        from hyperleg_design.gap.checking import check_sources
+        from hyperleg_design.gap.checks.checking import check_sources
         from hyperleg_design.report.gap_text import checks_text
 
         checks = check_sources(self.logs, robot=self.robot, mapping=self.map, out=self.out)
@@ -52,7 +52,7 @@ class Effects(Printing):
 
     def run(self) -> None:
         """Print it."""
-        from hyperleg_design.gap.show import effects_table
+        from hyperleg_design.gap.playback.show import effects_table
         from hyperleg_design.report.gap_show import effects_text
 
         found = effects_table()
@@ -82,7 +82,7 @@ class Show(Printing):
 
     def run(self) -> None:
         """Draw it."""
-        from hyperleg_design.gap.show import show
+        from hyperleg_design.gap.playback.show import show
         from hyperleg_design.report.gap_show import show_figure, show_summary, show_text
 
         shown = show(
@@ -118,8 +118,12 @@ class Apply(Printing):
 
     def run(self) -> None:
         """Write it."""
-        from hyperleg_design.gap import added
-        from hyperleg_design.gap.overlay import overlay_of_diagnosis, read_overlay, write_overlay
+        from hyperleg_design.gap.playback import added
+        from hyperleg_design.gap.playback.overlay import (
+            overlay_of_diagnosis,
+            read_overlay,
+            write_overlay,
+        )
         from hyperleg_design.report.gap_text import changed_text, replayed_text
         from hyperleg_design.writing import write_json
 
@@ -131,11 +135,11 @@ class Apply(Printing):
         )
         logs, walk = [], []
         if self.robot:
-            from hyperleg_design.gap.subject import load_subject
+            from hyperleg_design.gap.model.subject import load_subject
 
             overlay.alterations(load_subject(self.robot))
         if self.logs:
-            from hyperleg_design.gap.intake import take_in
+            from hyperleg_design.gap.checks.intake import take_in
 
             logs = added.replayed(take_in(self.robot, self.logs, ()).tests, overlay)
         if self.policy:
@@ -169,8 +173,8 @@ class Measure(Printing):
 
     def run(self) -> None:
         """Measure."""
-        from hyperleg_design.gap.intake import take_in
-        from hyperleg_design.gap.measure import measure
+        from hyperleg_design.gap.checks.intake import take_in
+        from hyperleg_design.gap.playback.measure import measure
         from hyperleg_design.report.gap_text import gap_text
         from hyperleg_design.writing import output_folder, write_json
 
@@ -294,7 +298,7 @@ class Blind(Printing):
 
     def run(self) -> None:
         """Make and diagnose."""
-        from hyperleg_design.gap.blind.trial import diagnose_trial, make_trial
+        from hyperleg_design.validation.blind.trial import diagnose_trial, make_trial
 
         seal = make_trial(
             self.cases,
@@ -329,8 +333,8 @@ class Score(Printing):
 
     def run(self) -> None:
         """Score."""
-        from hyperleg_design.gap.blind.real import score_real
-        from hyperleg_design.gap.blind.score import score
+        from hyperleg_design.validation.blind.real import score_real
+        from hyperleg_design.validation.blind.score import score
 
         if bool(self.folder) == bool(self.real):
             raise InputError(
@@ -371,7 +375,7 @@ class Baselines(Printing):
 
     def run(self) -> None:
         """Fit them."""
-        from hyperleg_design.gap.baselines.table import baselines_table
+        from hyperleg_design.validation.baselines.table import baselines_table
 
         table = baselines_table(
             self.folder,

@@ -53,7 +53,7 @@ class Train:
         arguments = [f"--{key}={value}" for key, value in given.items()]
         if not self.overlay:
             launch.run_here(arguments, self.threads)
-        from hyperleg_design.gap.overlay import read_overlay
+        from hyperleg_design.gap.playback.overlay import read_overlay
 
         overlay = read_overlay(self.overlay)
         overlay.alterations(
@@ -150,7 +150,7 @@ class Evaluate(Printing):
                 check_output_folder(folder)
         overlay = None
         if self.overlay:
-            from hyperleg_design.gap.overlay import read_overlay, write_overlay
+            from hyperleg_design.gap.playback.overlay import read_overlay, write_overlay
 
             overlay = read_overlay(self.overlay)
         alterations = overlay.alterations if overlay else None
@@ -164,7 +164,7 @@ class Evaluate(Printing):
         folder = write_results(self.out, found)
         written = []
         if self.logs is not None:
-            from hyperleg_design.gap.recording import write_logs
+            from hyperleg_design.gap.logs.recording import write_logs
 
             written = write_logs(self.logs, found)
         if overlay:

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.gap.evidence import Evidence, rms
+from hyperleg_design.gap.playback.evidence import Evidence, rms
 from hyperleg_design.report.style import figure_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
 
 _INK, _PALE, _MEASURED, _EXPLAINED, _LEFT = "#1d2129", "#c9ced6", "#2f6db3", "#c8602a", "#6b7280"
 AXIS = {"transmission": "speed [rad/s]", "base": "force, moment [N, Nm]", "ground": "force [N]"}

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design import provenance
-from hyperleg_design.gap.beside_balances import APART
-from hyperleg_design.gap.evidence import Evidence, evidence, rms
-from hyperleg_design.gap.ground import footings
-from hyperleg_design.gap.heard import KNOCKING, RINGING, UNSTABLE
-from hyperleg_design.gap.knocking import struck
-from hyperleg_design.gap.loose import ringing
-from hyperleg_design.gap.sinking import EFFECT as SOFT
-from hyperleg_design.gap.sinking import SINKS, bearings
-from hyperleg_design.gap.slipping import EFFECT as SLIPPERY
-from hyperleg_design.gap.slipping import SLIPS, contacts
-from hyperleg_design.gap.unstable import swinging
+from hyperleg_design.gap.inference.detectors.heard import KNOCKING, RINGING, UNSTABLE
+from hyperleg_design.gap.inference.detectors.knocking import struck
+from hyperleg_design.gap.inference.detectors.loose import ringing
+from hyperleg_design.gap.inference.detectors.sinking import EFFECT as SOFT
+from hyperleg_design.gap.inference.detectors.sinking import SINKS, bearings
+from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
+from hyperleg_design.gap.inference.detectors.slipping import SLIPS, contacts
+from hyperleg_design.gap.inference.detectors.unstable import swinging
+from hyperleg_design.gap.pipeline.beside_balances import APART
+from hyperleg_design.gap.playback.evidence import Evidence, evidence, rms
+from hyperleg_design.gap.signals.ground import footings
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_text import change_text, chosen, sensitivity_rows
 from hyperleg_design.report.page import (
@@ -38,7 +38,7 @@ from hyperleg_design.report.style import save
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.signals.signals import Signals
 
 FIGURES = "figures"
 VERDICTS = {

@@ -46,10 +46,10 @@ def diagnose_to_folder(
         InputError: logs or robot that cannot be used.
         OutputError: the folder cannot be written.
     """
-    from hyperleg_design.gap.conditioning import condition
-    from hyperleg_design.gap.diagnose import diagnose
-    from hyperleg_design.gap.intake import open_logs
-    from hyperleg_design.gap.subject import load_subject
+    from hyperleg_design.gap.checks.intake import open_logs
+    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.pipeline.diagnose import diagnose
+    from hyperleg_design.gap.signals.conditioning import condition
     from hyperleg_design.report.gap_page import write_gap_page
 
     check_output_folder(out)
@@ -66,14 +66,14 @@ def diagnose_to_folder(
 
 def excite_to_folder(robot: str, out: str | os.PathLike[str], **options: Any) -> str:
     """Design experiments for a rig, write targets, plan and figures, and return the plan as text;
-    options as `gap.excite.excite`.
+    options as `gap.experiments.excite.excite`.
 
     Raises:
         InputError: bad input.
         InfeasibleError: no motion fits into the robot's limits.
         OutputError: the folder cannot be written.
     """
-    from hyperleg_design.gap.excite import excite
+    from hyperleg_design.gap.experiments.excite import excite
     from hyperleg_design.report.gap_excite import plan_text, write_report
 
     check_output_folder(out)

@@ -14,7 +14,7 @@ import numpy as np
 from hyperleg_design.report.style import figure_style, save
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.show import Shown
+    from hyperleg_design.gap.playback.show import Shown
 
 TRACE, RESIDUAL, BEFORE, TARGET = "#c8602a", "#9ca3af", "#2f6db3", "#6b7280"
 ZOOM = 2.0

@@ -50,8 +50,8 @@ def test_a_truncated_policy_stops_before_anything_is_written(make_onnx, tmp_path
 
 
 def test_every_trial_can_be_saved_as_a_log(make_onnx, tmp_path, capsys):
-    from hyperleg_design.gap.check import check_log
-    from hyperleg_design.gap.log import read_log
+    from hyperleg_design.gap.checks.check import check_log
+    from hyperleg_design.gap.logs.log import read_log
 
     protocol = tmp_path / "short.yaml"
     protocol.write_text(

@@ -72,7 +72,7 @@ def knee_friction(viscous_ready):
     import numpy as np
 
     from hyperleg_design.gap.effects import EFFECTS
-    from hyperleg_design.gap.screen import linearise
+    from hyperleg_design.gap.inference.screen import linearise
 
     return linearise(viscous_ready.base.samples, EFFECTS["viscous_friction"], "knee", np.zeros(1))
 
@@ -82,9 +82,9 @@ def judged(robot_files):
     """Judge and decision on a coupled rig whose knee has viscous friction."""
     import diagnosed
 
-    from hyperleg_design.gap.decide import decide
-    from hyperleg_design.gap.screen import places
-    from hyperleg_design.gap.thresholds import load_thresholds
+    from hyperleg_design.gap.inference.decide import decide
+    from hyperleg_design.gap.inference.screen import places
+    from hyperleg_design.gap.inference.thresholds import load_thresholds
 
     ready = diagnosed.prepared(
         robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1))
@@ -99,8 +99,8 @@ def two_wrong(robot_files):
     """Judge of a coupled rig whose knee has viscous friction and whose hip rubs."""
     import diagnosed
 
-    from hyperleg_design.gap.judge import Judge
-    from hyperleg_design.gap.thresholds import load_thresholds
+    from hyperleg_design.gap.inference.judge import Judge
+    from hyperleg_design.gap.inference.thresholds import load_thresholds
 
     ready = diagnosed.prepared(
         robot_files["coupled"], *(diagnosed.run("both", s, session="a") for s in (0, 1))

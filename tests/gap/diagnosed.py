@@ -7,10 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import robots
 
-from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.preparation import prepare
-from hyperleg_design.gap.subject import load_subject
-from hyperleg_design.gap.thresholds import load_thresholds
+from hyperleg_design.gap.inference.preparation import prepare
+from hyperleg_design.gap.inference.thresholds import load_thresholds
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.conditioning import condition
 
 CHANGES = {
     "healthy": [],

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.metadata import Metadata
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
 
 
 def rig_log(ticks=4000, step=0.005, seed=0, **metadata):

@@ -7,8 +7,8 @@ from __future__ import annotations
 import mujoco
 import numpy as np
 
-from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.metadata import Metadata
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
 
 PENDULUM = """
 <mujoco model="pendulum">
@@ -201,7 +201,7 @@ def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
     """
     import copy
 
-    from hyperleg_design.gap.subject import load_subject
+    from hyperleg_design.gap.model.subject import load_subject
     from hyperleg_design.simulation.actuation import friction_damping
 
     subject = load_subject("hyperleg")

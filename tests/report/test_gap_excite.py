@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.excite import design_experiment
-from hyperleg_design.gap.subject import load_subject
+from hyperleg_design.gap.experiments.excite import design_experiment
+from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.report.gap_excite import (
     motions_figure,
     plan_text,

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.metadata import Metadata
-from hyperleg_design.gap.subject import load_subject
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_page import cause_text, write_gap_page
 from hyperleg_design.report.gap_text import diagnosis_text

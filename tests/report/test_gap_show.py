@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.gap import show as module
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.show import effects_table, show
+from hyperleg_design.gap.playback import show as module
+from hyperleg_design.gap.playback.show import effects_table, show
 from hyperleg_design.report.gap_show import effects_text, show_figure, show_summary, show_text
 
 

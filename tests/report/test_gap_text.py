@@ -1,8 +1,8 @@
 import numpy as np
 
-from hyperleg_design.gap.check import check_log
-from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.metadata import Metadata
+from hyperleg_design.gap.checks.check import check_log
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.report.gap_text import checks_text
 
 

@@ -33,8 +33,6 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap import rigid
-from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.placing import at_motor, motor_velocity
 from hyperleg_design.gap.effects.series import (
     band_limited,
@@ -42,12 +40,14 @@ from hyperleg_design.gap.effects.series import (
     lagged,
     second_derivative,
 )
-from hyperleg_design.gap.transmission import turned
+from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.two_mass import LIGHTEST
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 BAND = 0.2
 """Of the transmitted torque that stretches a belt, over the log's rate: 40 Hz at 200 Hz."""

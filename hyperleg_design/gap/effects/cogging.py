@@ -16,12 +16,12 @@ from hyperleg_design.gap.effects.placing import (
     motor_strength,
     motor_velocity,
 )
-from hyperleg_design.gap.filtering import HIGHEST
+from hyperleg_design.gap.signals.filtering import HIGHEST
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 SHARE = 0.02
 """Usual cogging over the torque that a motor is made for (EMBiR: cogging of a few per cent of rated

@@ -23,8 +23,8 @@ from hyperleg_design.gap.effects.series import delayed
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 LATE = ("all that controllers ask for", "their targets alone")
 """Choices of the parameter `late`."""

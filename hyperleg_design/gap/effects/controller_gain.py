@@ -19,8 +19,8 @@ from hyperleg_design.gap.effects.placing import (
 from hyperleg_design.simulation.alteration import Alteration, Machine
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 
 class ControllerGain(Effect):

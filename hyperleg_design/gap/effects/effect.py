@@ -15,14 +15,14 @@ import numpy as np
 from hyperleg_design.errors import InputError
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
 
 KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 """Where an effect can sit."""
 BALANCES = ("motion", "drive", "control", "base", "ground")
-"""Rows that a trace can fill; `gap/signals.py` says what each compares."""
+"""Rows that a trace can fill; `gap/signals/signals.py` says what each compares."""
 
 Change = Mapping[tuple[str, str], Mapping[str, float]]
 """Values of parameters by (effect, location): what is added to a simulation; empty, the simulation

@@ -13,8 +13,8 @@ from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.simulation.alteration import Alteration, Live
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 NODES = 5
 """Positions at which the torque is computed: it is a trigonometric polynomial of second degree in

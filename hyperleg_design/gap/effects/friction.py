@@ -21,11 +21,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.chatter import PRESLIDING, sliding_share
+from hyperleg_design.gap.signals.chatter import PRESLIDING, sliding_share
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.signals.signals import Signals
 
 FRICTION = frozenset(
     {"coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction"}

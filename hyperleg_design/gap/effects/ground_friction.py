@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap import ground
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.signals import ground
 from hyperleg_design.simulation.alteration import Alteration
 
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 
 ICE = 2.7

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.model import rigid
 from hyperleg_design.simulation.alteration import Alteration, Live
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 IMU = "imu"
 _GYRO = (

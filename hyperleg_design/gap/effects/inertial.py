@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.mechanism import (
+from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.mechanism import (
     BASE,
     inertial_parameters,
     mass_properties,
@@ -24,8 +24,8 @@ from hyperleg_design.simulation.alteration import Alteration
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 
 LARGEST_LOSS = 0.95

@@ -12,8 +12,8 @@ from hyperleg_design.gap.effects.placing import at_joint, joint_strength
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 SHARE = 0.05
 """Usual stiffness a radian, and preload, over the torque that a joint is made for (assumed: cables

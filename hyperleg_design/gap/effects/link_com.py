@@ -8,11 +8,11 @@ import numpy as np
 
 from hyperleg_design.gap.effects.effect import Parameter
 from hyperleg_design.gap.effects.inertial import InertialEffect, fitted
-from hyperleg_design.gap.mechanism import inertial_parameters, mass_properties
+from hyperleg_design.gap.model.mechanism import inertial_parameters, mass_properties
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 
 class LinkCom(InertialEffect):

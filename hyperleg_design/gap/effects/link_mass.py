@@ -10,7 +10,7 @@ from hyperleg_design.gap.effects.effect import Parameter
 from hyperleg_design.gap.effects.inertial import InertialEffect, least_mass
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
 
 SHARE = 0.1
 """Usual error over the link's own mass (assumed: cables, screws and glue that a drawing leaves

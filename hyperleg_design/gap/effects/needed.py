@@ -9,10 +9,10 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap import rigid
+from hyperleg_design.gap.model import rigid
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
+    from hyperleg_design.gap.signals.signals import Signals
 
 _LOGGED: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
 

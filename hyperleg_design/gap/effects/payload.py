@@ -10,8 +10,8 @@ from hyperleg_design.gap.effects.effect import Parameter
 from hyperleg_design.gap.effects.inertial import InertialEffect, carried_mass, fitted, least_mass
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 SHARE = 0.2
 """Usual payload over the mass that moves with the link (assumed: tools and batteries; a UR10e

@@ -21,11 +21,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.machine import machine_of
-from hyperleg_design.gap.signals import BaseMotion, Signals
+from hyperleg_design.gap.model.machine import machine_of
+from hyperleg_design.gap.signals.signals import BaseMotion, Signals
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.simulation.alteration import Machine
 
 SIDES = ("encoders at the joints", "encoders at the rotors")
@@ -224,7 +224,7 @@ def motor_strength(subject: Subject, motor: int) -> float:
 
 def joint_inertia(subject: Subject) -> np.ndarray:
     """Inertia at each joint alone at the posture of rest, rotors left out `(n,)` [kg m^2]."""
-    from hyperleg_design.gap import rigid
+    from hyperleg_design.gap.model import rigid
 
     still = np.zeros((len(subject.joints), len(subject.joints)))
     rest = np.broadcast_to(subject.default, still.shape)
@@ -236,7 +236,7 @@ def joint_inertia(subject: Subject) -> np.ndarray:
 
 
 def _needed(subject: Subject) -> np.ndarray:
-    from hyperleg_design.gap import rigid
+    from hyperleg_design.gap.model import rigid
 
     count = len(subject.joints)
     spread = np.sin(np.outer(np.arange(1, _POSTURES + 1), np.sqrt(np.arange(2, count + 2)))) * 1.5

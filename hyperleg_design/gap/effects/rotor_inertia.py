@@ -12,8 +12,8 @@ from hyperleg_design.gap.effects.placing import at_motor, driven_motors, joint_i
 from hyperleg_design.simulation.alteration import Alteration, Machine
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 SHARE = 0.3
 """Usual error over the rotor's inertia, or, where the model has none, over that of its joint

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.smoothing import bridged
+from hyperleg_design.gap.signals.smoothing import bridged
 
 
 def delayed(values: np.ndarray, delay: np.ndarray, step: float) -> np.ndarray:

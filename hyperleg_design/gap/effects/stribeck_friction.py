@@ -11,8 +11,8 @@ from hyperleg_design.gap.effects.friction import JointFriction, sliding
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
 
 SHARE = 0.04

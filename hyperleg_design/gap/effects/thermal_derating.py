@@ -18,8 +18,8 @@ from hyperleg_design.gap.effects.placing import (
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 COLD = 25.0
 """Temperature at which a motor has the torque of its data sheet [degC]."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.channels import applied
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
@@ -18,11 +17,12 @@ from hyperleg_design.gap.effects.placing import (
     limited,
     motor_strength,
 )
+from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 _QUANTILES = (0.97, 0.9, 0.8, 0.6)
 _NEEDED = 0.95

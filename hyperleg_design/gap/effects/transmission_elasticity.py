@@ -12,8 +12,8 @@ from hyperleg_design.gap.effects.placing import SIDES, driven_motors
 from hyperleg_design.simulation.two_mass import DAMPING_RATIO, Belt
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
 
 RESONANCE = 12.0

@@ -9,7 +9,6 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap import rigid
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.placing import (
@@ -19,12 +18,13 @@ from hyperleg_design.gap.effects.placing import (
     given,
     motor_velocity,
 )
-from hyperleg_design.gap.transmission import turned
+from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 
 class TransmissionRatio(Effect):

@@ -21,12 +21,12 @@ from hyperleg_design.gap.effects.placing import (
     motor_strength,
     motor_velocity,
 )
-from hyperleg_design.gap.subject import FULL
+from hyperleg_design.gap.model.subject import FULL
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Machine, Tick
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals import Signals
-    from hyperleg_design.gap.subject import Subject
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
 
 SAG = 0.2
 """Share of the voltage that is missing at the reference power, where nobody logged it (assumed:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.metadata import Metadata
-from hyperleg_design.gap.replay import Plant
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.playback.replay import Plant
+from hyperleg_design.gap.signals.conditioning import condition
 
 TICK, SUBSTEPS = 0.005, 5
 

@@ -55,9 +55,9 @@ def leg(tmp_path_factory):
     import robots
     from altered import altered
 
-    from hyperleg_design.gap.log import Log
-    from hyperleg_design.gap.metadata import Metadata
-    from hyperleg_design.gap.subject import load_subject
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.logs.metadata import Metadata
+    from hyperleg_design.gap.model.subject import load_subject
 
     path = tmp_path_factory.mktemp("leg") / "leg.xml"
     path.write_text(robots.COUPLED)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.gap.conditioning import condition
-from hyperleg_design.gap.log import Log
-from hyperleg_design.gap.metadata import Metadata
-from hyperleg_design.gap.subject import load_subject
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.conditioning import condition
 
 STEP = 1e-4
 RATE = 200

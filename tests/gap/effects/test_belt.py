@@ -3,8 +3,8 @@ import dataclasses
 import numpy as np
 from pendulum import ROTOR, Wrong, misfit, run
 
-from hyperleg_design.gap.conditioning import condition
 from hyperleg_design.gap.effects import belt
+from hyperleg_design.gap.signals.conditioning import condition
 
 
 def test_load_is_the_torque_of_the_link_alone(pendulum):

@@ -17,7 +17,7 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 
 
 def test_trace_is_exact_at_any_offset(leg):
-    from hyperleg_design.gap import rigid
+    from hyperleg_design.gap.model import rigid
 
     signals = leg(duration=2.0)
     subject, offsets = signals.subject, np.array([-0.3, 0.01, 0.25])

@@ -5,7 +5,7 @@ import pytest
 from pendulum import Wrong, steps
 
 from hyperleg_design.gap.effects.friction import PRESLIDING, JointFriction, presliding, sliding
-from hyperleg_design.gap.filtering import sticking
+from hyperleg_design.gap.signals.filtering import sticking
 from hyperleg_design.simulation.alteration import Machine
 
 

@@ -23,7 +23,7 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 
 
 def test_simulations_have_ratios_of_their_own(leg):
-    from hyperleg_design.gap.machine import machine_of
+    from hyperleg_design.gap.model.machine import machine_of
 
     subject = leg(duration=1.0).subject
     machine = RATIO.alteration("m_back", np.array([[1.0, 0.0], [0.9, 0.0]]), subject).machine(

@@ -1,0 +1,283 @@
+"""What a log can and cannot show: `hyperleg gap check`."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.checks.excitation import Excitation, excitation_of
+from hyperleg_design.gap.checks.plausibility import implausible
+from hyperleg_design.gap.logs.sampling import Column, Sampling, columns_of, sampling_of
+from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.model.subject import Subject
+
+SHORT = 2.0
+"""Duration below which little can be held out [s]."""
+FEW = 200
+"""Ticks below which little can be held out."""
+JITTER, DROPOUTS, MISSING, SATURATED = 0.2, 0.01, 0.01, 0.005
+"""Shares from which they are worth a word [-]."""
+SLOWEST, FASTEST = 2.0, 50_000.0
+"""Rates beyond which the time is in another unit [Hz]."""
+SLOW = 40.0
+"""Rate below which friction and delay blur [Hz]."""
+BOUNDED = (
+    "joint_torque",
+    "motor_torque",
+    "motor_torque_command",
+    "motor_current",
+    "motor_velocity",
+    "velocity",
+    "gyro",
+    "accelerometer",
+)
+"""Signals in which a bound that clips is looked for; positions and targets may well rest at one."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """All that was found in one log."""
+
+    name: str
+    sampling: Sampling
+    columns: tuple[Column, ...]
+    findings: tuple[Finding, ...]
+    """Errors first."""
+    excitation: tuple[Excitation, ...]
+    """Of each effect of the catalogue."""
+
+    @property
+    def usable(self) -> bool:
+        """Whether nothing forbids a diagnosis."""
+        return not self.errors
+
+    @property
+    def errors(self) -> tuple[Finding, ...]:
+        """That forbid a diagnosis."""
+        return tuple(f for f in self.findings if f.severity == ERROR)
+
+    def refuse(self) -> None:
+        """Raise the first error there is, for whoever needs a log that is fit.
+
+        Raises:
+            InputError: what forbids a diagnosis, with its remedy.
+        """
+        for finding in self.errors:
+            raise InputError(self.name, finding.signal, None, f"{finding.what}; {finding.remedy}")
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """Effects that the log can show."""
+        return tuple(e.effect for e in self.excitation if e.shown)
+
+    def column(self, name: str) -> Column:
+        """Facts of one column."""
+        return next(c for c in self.columns if c.column == name)
+
+    def mapping(self) -> dict[str, Any]:
+        """As plain values, for JSON; what is not finite as None."""
+        return {
+            "name": self.name,
+            "usable": self.usable,
+            "rate": self.sampling.rate,
+            **_plain(dataclasses.asdict(self)),
+        }
+
+
+def check_log(log: Log, subject: Subject | None = None) -> Check:
+    """Look a log through.
+
+    Args:
+        log: what was read.
+        subject: the robot it is said to be of; without it names and ranges of joints are not
+            compared.
+    """
+    sampling, columns = sampling_of(log.time), columns_of(log)
+    found = [
+        *(Finding(NOTE, "", remark, "") for remark in log.metadata.remarks),
+        *_required(log, subject),
+        *_clock(sampling),
+        *_columns(columns, sampling),
+        *implausible(log, subject),
+    ]
+    ordered = tuple(sorted(_merged(found), key=lambda f: SEVERITIES.index(f.severity)))
+    return Check(log.name, sampling, columns, ordered, excitation_of(log, subject))
+
+
+def _merged(findings: list[Finding]) -> list[Finding]:
+    """Notes that many columns of one signal share, told once."""
+    alike: dict[tuple[str, ...], list[Finding]] = {}
+    for one in findings:
+        kind, slash, _ = one.signal.partition("/")
+        same = (kind, one.what, one.remedy) if one.severity == NOTE and slash else (str(id(one)),)
+        alike.setdefault(same, []).append(one)
+    merged = []
+    for one, *others in alike.values():
+        if others:
+            one = dataclasses.replace(
+                one,
+                signal=one.signal.partition("/")[0],
+                what=f"{one.what} ({1 + len(others)} columns)",
+            )
+        merged.append(one)
+    return merged
+
+
+def _required(log: Log, subject: Subject | None) -> list[Finding]:
+    found = []
+    targets = any(log.has("position_target", j) for j in log.joints)
+    torques = any(log.has("joint_torque", j) for j in log.joints) or any(
+        log.has(kind, m) for kind in ("motor_torque", "motor_torque_command") for m in log.motors
+    )
+    currents = any(log.has("motor_current", m) for m in log.motors)
+    gains = log.metadata.gains or (subject is not None and np.isfinite(subject.gains).any())
+    constants = log.metadata.torque_constant or (
+        subject is not None and np.isfinite(subject.torque_constant).any()
+    )
+    if targets and not gains:
+        severity = WARNING if torques or currents else ERROR
+        found.append(
+            Finding(
+                severity,
+                "position_target",
+                "targets without gains say nothing of torques",
+                "declare `gains` in the metadata",
+            )
+        )
+    if currents and not constants:
+        severity = WARNING if torques or targets else ERROR
+        found.append(
+            Finding(
+                severity,
+                "motor_current",
+                "currents without torque constants say nothing of torques",
+                "declare `torque_constant`",
+            )
+        )
+    if not targets and not torques and not currents:
+        found.append(
+            Finding(
+                ERROR,
+                "",
+                "neither targets nor torques nor currents",
+                "log position_target with gains, motor_torque or motor_current",
+            )
+        )
+    return found
+
+
+def _clock(sampling: Sampling) -> list[Finding]:
+    found = []
+    if not SLOWEST < sampling.rate < FASTEST:
+        text = (
+            f"rows come every {sampling.step:.3g} s: the time looks like "
+            f"{'milliseconds' if sampling.rate < 1 else 'another unit'}"
+        )
+        return [Finding(ERROR, "t", text, "give it in seconds")]
+    if sampling.duration < SHORT or sampling.ticks < FEW:
+        text = f"is short: {sampling.duration:.2g} s, {sampling.ticks} ticks"
+        found.append(
+            Finding(
+                WARNING, "t", text, f"record {SHORT:.0f} s or more; 20 s leave enough to hold out"
+            )
+        )
+    if sampling.rate < SLOW:
+        text = f"{sampling.rate:.3g} Hz: friction at reversals and delays blur"
+        found.append(Finding(WARNING, "t", text, "log at 100 Hz or more"))
+    if sampling.jitter > JITTER:
+        found.append(
+            Finding(
+                NOTE,
+                "t",
+                f"the clock jitters by {100 * sampling.jitter:.0f} % of a step",
+                "stamps are used as they are",
+            )
+        )
+    if sampling.dropouts > DROPOUTS or sampling.longest > 10 * sampling.step:
+        text = (
+            f"{100 * sampling.dropouts:.1f} % of the time is lost in dropouts, the longest "
+            f"{sampling.longest:.3g} s"
+        )
+        found.append(Finding(WARNING, "t", text, "the ticks beside them are left out"))
+    return found
+
+
+def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
+    found = []
+    for one in columns:
+        kind = one.column.partition("/")[0]
+        if one.missing == 1.0:
+            found.append(Finding(WARNING, one.column, "holds no values", "it counts as missing"))
+            continue
+        if one.missing > MISSING:
+            found.append(
+                Finding(
+                    WARNING,
+                    one.column,
+                    f"{100 * one.missing:.1f} % of its values are missing",
+                    "the ticks beside them are left out",
+                )
+            )
+        if one.rate < 0.75 * sampling.rate and not one.constant:
+            how = "held" if one.held > 1 else "given"
+            text = f"is {how} at {one.rate:.3g} Hz in a log of {sampling.rate:.3g} Hz"
+            severity = (
+                NOTE
+                if kind
+                in (
+                    "position_target",
+                    "motor_temperature",
+                    "battery_voltage",
+                    "motor_torque_command",
+                )
+                else WARNING
+            )
+            found.append(Finding(severity, one.column, text, "it counts at its own rate"))
+        if kind in BOUNDED and one.saturated > SATURATED:
+            text = (
+                f"sits at a bound, {one.low:.4g} or {one.high:.4g}, for "
+                f"{100 * one.saturated:.1f} % of the log"
+            )
+            found.append(
+                Finding(
+                    WARNING,
+                    one.column,
+                    text,
+                    "a sensor's range or a drive's limit: effects beyond it do not show",
+                )
+            )
+        if one.constant and kind in (
+            "joint_torque",
+            "motor_torque",
+            "motor_current",
+            "gyro",
+            "accelerometer",
+            "motor_velocity",
+        ):
+            found.append(
+                Finding(
+                    WARNING,
+                    one.column,
+                    f"never changes from {one.low:.4g}",
+                    "is the sensor connected?",
+                )
+            )
+    return found
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {k: _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value.item() if hasattr(value, "item") else value

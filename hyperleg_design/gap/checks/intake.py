@@ -1,0 +1,88 @@
+"""From files to what measuring and diagnosing work on: logs opened, checked, joined with their
+robot, and conditioned.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.checks.check import Check, check_log
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.readers import open_log
+from hyperleg_design.gap.model.subject import Subject, load_subject
+from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.signals import Signals
+
+REFERENCE = "reference"
+"""Role of a log of the healthy robot."""
+
+
+@dataclass(frozen=True, eq=False)
+class Intake:
+    """Logs ready to be compared with a robot."""
+
+    subject: Subject
+    tests: tuple[Signals, ...]
+    references: tuple[Signals, ...]
+    checks: tuple[Check, ...]
+    """Of all logs, tests first."""
+
+
+def take_in(
+    robot: str,
+    sources: Sequence[str | os.PathLike[str]],
+    references: Sequence[str | os.PathLike[str]] = (),
+) -> Intake:
+    """Open, check and condition logs.
+
+    Args:
+        robot: a design of ours, or an MJCF or URDF file; empty: what the logs name.
+        sources: files or folders of any known format; logs whose metadata say so count as
+            references.
+        references: of the healthy robot.
+
+    Raises:
+        InputError: no log to test, a log that cannot be opened or is not fit, a robot that does not
+        go with the logs.
+    """
+    tests, healthy = open_logs(sources, references)
+    subject = load_subject(robot or None, [*tests, *healthy])
+    checks = [_checked(log, subject) for log in (*tests, *healthy)]
+    return Intake(
+        subject,
+        tuple(condition(log, subject) for log in tests),
+        tuple(condition(log, subject) for log in healthy),
+        tuple(checks),
+    )
+
+
+def open_logs(
+    sources: Sequence[str | os.PathLike[str]], references: Sequence[str | os.PathLike[str]] = ()
+) -> tuple[list[Log], list[Log]]:
+    """Logs to be tested, and those of the healthy robot: named so, or by their own metadata.
+
+    Raises:
+        InputError: no log to test, or one that cannot be opened.
+    """
+    if not sources:
+        raise InputError("gap", "logs", None, "expects files or folders of logs")
+    opened = [
+        (log, log.metadata.role == REFERENCE) for source in sources for log in open_log(source)
+    ]
+    opened += [(log, True) for source in references for log in open_log(source)]
+    tests = [log for log, reference in opened if not reference]
+    healthy = [log for log, reference in opened if reference]
+    if not tests:
+        raise InputError(
+            "gap", "logs", len(healthy), "are all references: name at least one log to be diagnosed"
+        )
+    return tests, healthy
+
+
+def _checked(log: Log, subject: Subject) -> Check:
+    check = check_log(log, subject)
+    check.refuse()
+    return check

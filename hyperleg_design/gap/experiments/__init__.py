@@ -1,0 +1,1 @@
+"""Excitation, the information that motions carry, and experiments that separate rivals."""

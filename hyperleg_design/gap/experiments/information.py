@@ -1,0 +1,254 @@
+"""What a motion can tell: Fisher information of the effects' traces, how well each is known, and
+which pairs look alike.
+
+Around an effect at its usual size, its trace is taken as linear in its parameters: the block of an
+(effect, place) holds the derivative of the trace by each parameter, and the trace itself. With
+noise of standard deviation s, correlated over a time T, in each row of the balances, the
+information of all blocks together is the Gram matrix
+
+    F = sum over rows and ticks of  J^T J  step / (2 T s^2),
+
+and Fs of several motions add up. Everything else follows from F alone: the standard deviation of a
+parameter while the effect's others are fitted; how many of its own standard deviations an effect of
+usual size stands out; how many are left of it after a
+rival has explained what it can,  d^2 = F_aa - F_ab F_bb^-1 F_ba ; and the smallest principal angle between two blocks.
+"""  # noqa: E501
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.placing import joint_strength, motor_strength
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.effects.effect import Effect
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
+
+NOISE = 0.01
+"""Noise of a balance over the strength of its joint or motor [-]; assumed, of the order of torque
+estimates from currents."""
+NOISE_TIME = 0.05
+"""Over which that noise is correlated [s]; assumed: residuals of robots are not white."""
+BAND = 25.0
+"""Of the traces that count [Hz]."""
+STEP = 0.1
+"""Of finite differences, over a parameter's scale."""
+RANK = 1e-9
+"""Least eigenvalue over the largest of a block that counts."""
+Place = tuple[str, str]
+"""Effect and location."""
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """The blocks of all effects at all places of one robot, side by side in `c` columns."""
+
+    places: tuple[Place, ...]
+    start: tuple[int, ...]
+    """First column of each; its parameters, then its trace at the usual size."""
+    parameters: tuple[tuple[str, ...], ...]
+    """Names, a place each."""
+    values: tuple[np.ndarray, ...]
+    """At which each was linearised."""
+
+    @property
+    def columns(self) -> int:
+        """In all."""
+        return self.start[-1] + len(self.parameters[-1]) + 1 if self.places else 0
+
+    def span(self, place: Place) -> np.ndarray:
+        """Columns of a place's parameters."""
+        at = self.places.index(place)
+        return np.arange(self.start[at], self.start[at] + len(self.parameters[at]))
+
+    def trace(self, place: Place) -> int:
+        """Column of its trace."""
+        at = self.places.index(place)
+        return self.start[at] + len(self.parameters[at])
+
+
+def blocks_of(subject: Subject, effects: Iterable[str] | None = None) -> Blocks:
+    """Blocks of a robot's effects, all that can sit on it by default."""
+    places: list[Place] = []
+    start: list[int] = []
+    names: list[tuple[str, ...]] = []
+    values: list[np.ndarray] = []
+    column = 0
+    for identifier in effects if effects is not None else EFFECTS:
+        one = EFFECTS[identifier]
+        for location in one.locations(subject):
+            places.append((identifier, location))
+            start.append(column)
+            names.append(tuple(p.name for p in one.parameters))
+            values.append(one.example(location, subject))
+            column += len(one.parameters) + 1
+    return Blocks(tuple(places), tuple(start), tuple(names), tuple(values))
+
+
+def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np.ndarray:
+    """Fisher information of one motion `(c, c)`.
+
+    Args:
+        signals: of the motion.
+        blocks: of its robot.
+        noise: standard deviation over the strength of joints and motors [-].
+    """
+    subject = signals.subject
+    scales = {
+        "motion": noise * joint_strength(subject),
+        "drive": noise * np.array([motor_strength(subject, m) for m in range(len(subject.motors))]),
+    }
+    scales = {balance: scale for balance, scale in scales.items() if balance in signals.residual}
+    every = max(int(0.5 / (2 * BAND * signals.step)), 1)
+    known = {
+        balance: np.isfinite(signals.residual[balance]) & signals.valid[:, None]
+        for balance in scales
+    }
+    shape = (len(signals.time[::every]), blocks.columns)
+    rows = {
+        balance: np.zeros((scale.size, *shape), np.float32) for balance, scale in scales.items()
+    }
+    for at, (identifier, location) in enumerate(blocks.places):
+        for balance, found in _block(
+            EFFECTS[identifier], signals, location, blocks.values[at]
+        ).items():
+            if balance not in scales:
+                continue
+            for row in np.flatnonzero(np.any(found != 0, (0, 1))):
+                values = np.where(
+                    known[balance][:, row] & np.isfinite(found[..., row]), found[..., row], 0.0
+                )
+                kept = np.where(
+                    known[balance][::every, row], _filtered(values, signals.step)[:, ::every], 0.0
+                )
+                rows[balance][row, :, blocks.start[at] : blocks.start[at] + len(found)] = (
+                    kept.T / scales[balance][row]
+                )
+    total = np.zeros((blocks.columns, blocks.columns))
+    for part in rows.values():
+        for columns in part:
+            used = np.flatnonzero(np.any(columns != 0, 0))
+            total[np.ix_(used, used)] += columns[:, used].T.astype(float) @ columns[:, used]
+    return total * (signals.step * every / (2 * NOISE_TIME))
+
+
+def _block(
+    one: Effect, signals: Signals, location: str, values: np.ndarray
+) -> dict[str, np.ndarray]:
+    """By balance, derivatives by each parameter times its scale, and the trace at the values
+    `(parameters + 1, t, rows)`.
+    """
+    subject = signals.subject
+    count = len(values)
+    size = scales_of(one, location, subject, values)
+    low, high = one.bounds(location, subject)
+    tried = np.repeat(values[None], 2 * count + 1, 0)
+    for p in range(count):
+        tried[2 * p, p] = min(values[p] + STEP * size[p], high[p])
+        tried[2 * p + 1, p] = max(values[p] - STEP * size[p], low[p])
+    width = (
+        tried[2 * np.arange(count), np.arange(count)]
+        - tried[2 * np.arange(count) + 1, np.arange(count)]
+    )
+    scale = np.divide(size, width, out=np.zeros(count), where=width > 0)
+    out = {}
+    for balance, traces in one.trace(signals, location, tried).items():
+        slopes = (traces[0 : 2 * count : 2] - traces[1 : 2 * count : 2]) * scale[:, None, None]
+        out[balance] = np.concatenate([slopes, traces[-1:]])
+    return out
+
+
+def _filtered(values: np.ndarray, step: float) -> np.ndarray:
+    """Without what lies above the band, no delay `(k, t)`."""
+    from scipy.signal import butter, sosfiltfilt
+
+    if 0.45 / step <= BAND or values.shape[1] < 20:
+        return values
+    return np.asarray(
+        sosfiltfilt(
+            butter(2, BAND, fs=1 / step, output="sos"),
+            values,
+            axis=1,
+            padlen=min(values.shape[1] - 1, 60),
+        )
+    )
+
+
+def scales_of(one: Effect, location: str, subject: Subject, values: np.ndarray) -> np.ndarray:
+    """Size of each parameter by which derivatives are taken: its usual distance, or its value where
+    that is less `(parameters,)`.
+    """
+    usual = np.abs(one.usual(location, subject))
+    return np.where(values == 0, usual, np.minimum(usual, np.abs(values)))
+
+
+def standard_deviations(
+    gram: np.ndarray, blocks: Blocks, place: Place, subject: Subject
+) -> dict[str, float]:
+    """Of an effect's parameters in their own units while its others are fitted; infinite where
+    these data do not show one.
+    """
+    one = EFFECTS[place[0]]
+    scale = scales_of(one, place[1], subject, blocks.values[blocks.places.index(place)])
+    span = blocks.span(place)
+    part = gram[np.ix_(span, span)]
+    found = {}
+    for at, name in enumerate(blocks.parameters[blocks.places.index(place)]):
+        others = np.arange(len(span)) != at
+        left = _left(part, at, np.flatnonzero(others))
+        found[name] = float(scale[at] / np.sqrt(left)) if left > RANK else float("inf")
+    return found
+
+
+def strength(gram: np.ndarray, blocks: Blocks, place: Place) -> float:
+    """How many standard deviations an effect of usual size stands out of the noise."""
+    return float(np.sqrt(max(gram[blocks.trace(place), blocks.trace(place)], 0.0)))
+
+
+def distinction(gram: np.ndarray, blocks: Blocks, place: Place, rivals: Sequence[Place]) -> float:
+    """How many are left of them after rivals have explained what they can, whatever their size."""
+    span = np.concatenate([blocks.span(rival) for rival in rivals])
+    return float(np.sqrt(_left(gram, blocks.trace(place), span)))
+
+
+def principal_angle(gram: np.ndarray, blocks: Blocks, place: Place, rival: Place) -> float:
+    """Smallest angle between what two effects can leave in the balances [rad]; pi/2 where either
+    leaves nothing.
+    """
+    a, b = _basis(gram, blocks.span(place)), _basis(gram, blocks.span(rival))
+    if a.shape[1] == 0 or b.shape[1] == 0:
+        return float(np.pi / 2)
+    cosine = np.linalg.svd(
+        a.T @ gram[np.ix_(blocks.span(place), blocks.span(rival))] @ b, compute_uv=False
+    )[0]
+    return float(np.arccos(min(cosine, 1.0)))
+
+
+def _basis(gram: np.ndarray, span: np.ndarray) -> np.ndarray:
+    """Columns that make a block orthonormal `(k, rank)`."""
+    values, axes = np.linalg.eigh(gram[np.ix_(span, span)])
+    good = values > max(RANK * values[-1], 1e-12)
+    return np.asarray(axes[:, good] / np.sqrt(values[good]))
+
+
+def _left(gram: np.ndarray, column: int, span: np.ndarray) -> float:
+    """Square of what is left of one column after the others' best explanation."""
+    whole = float(gram[column, column])
+    if not len(span) or whole <= 0:
+        return max(whole, 0.0)
+    basis = _basis(gram, span)
+    explained = basis.T @ gram[span, column]
+    left = whole - float(explained @ explained)
+    return left if left > 1e-7 * whole else 0.0
+
+
+def summed(grams: Mapping[str, np.ndarray], names: Iterable[str]) -> np.ndarray:
+    """Information of several motions together."""
+    chosen = [grams[name] for name in names]
+    return np.asarray(np.sum(chosen, 0)) if chosen else np.zeros_like(next(iter(grams.values())))

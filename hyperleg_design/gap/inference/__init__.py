@@ -1,0 +1,1 @@
+"""Samples, nuisance parameters, noise model, linearisation, fits and the choice of causes."""

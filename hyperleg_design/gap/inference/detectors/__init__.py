@@ -1,0 +1,1 @@
+"""Detectors of special phenomena that decide beside the fits."""

@@ -1,0 +1,231 @@
+"""Constant errors of an IMU, seen without any balance: what it tells minus what the base's motion
+from elsewhere says it should.
+
+A gyro minus the rate of a logged orientation, and an accelerometer minus the acceleration of a
+logged velocity with gravity, are noise about the sensors' errors; over seconds their mean is known
+a hundred times better than sensors are usually calibrated. No mass, friction or ground has a part
+in it. Only a vertical that leans cannot be told from an accelerometer's error across it: that is
+told as such.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.effects.imu_bias import IMU, ImuBias
+from hyperleg_design.gap.model.mechanism import quaternion_rotation
+from hyperleg_design.gap.results.diagnosis import Value
+from hyperleg_design.gap.signals.base_motion import known, on_ticks, orientation, spin
+from hyperleg_design.gap.signals.smoothing import smooth
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals.signals import Signals
+
+PLACE = ImuBias.identifier, IMU
+OFFSET = "offset"
+CALIBRATED = 0.25
+"""Of what data sheets allow a sensor that nobody calibrated (`ImuBias`), from which an error is a
+finding."""
+CERTAIN = 5.0
+"""Its standard errors, at least."""
+PIECE = 1.0
+"""Of the means whose scatter gives the standard error [s]."""
+LEAST_PIECES = 4
+SURE = 0.01
+"""Least standard deviation of an accelerometer's error along the vertical [m/s^2]: scales and
+gravity itself differ by as much (assumed)."""
+UPRIGHT = 0.15
+"""Vertical part of an accelerometer's error over its horizontal one, below which it may be a
+vertical that leans."""
+LEANING = 0.01
+"""Angle of a vertical from which it is told [rad] (assumed: robots stand as upright as that)."""
+INTERVAL = 1.96
+"""Of a normal distribution, 95 %."""
+
+
+@dataclass(frozen=True, eq=False)
+class Offset:
+    """Constant errors of an IMU, in the sensor's axes."""
+
+    parameters: dict[str, Value]
+    """Of `ImuBias`."""
+    kind: str
+    """`gyro` or `accelerometer`, whichever is further off what is usual."""
+    size: float
+    """Of that one's error [rad/s, m/s^2]."""
+    left: float
+    """Of it, what an error taken from other data leaves: other logs, or the other half of one."""
+    leans: float = 0.0
+    """Angle by which the vertical would lean that makes it as well [rad]; 0 where none would."""
+
+    @property
+    def unit(self) -> str:
+        """Of the sizes."""
+        return "rad/s" if self.kind == "gyro" else "m/s^2"
+
+    @property
+    def closed(self) -> float:
+        """Share of it that is foretold."""
+        return 1 - self.left / self.size
+
+    @property
+    def says(self) -> str:
+        """For people."""
+        if self.leans:
+            return (
+                f"feels a vertical that leans by {self.leans:.2g} rad against "
+                f"base_orientation: "
+                f"gravity, orientation or the accelerometer is off"
+            )
+        source = (
+            "the rate of base_orientation"
+            if self.kind == "gyro"
+            else "the acceleration of the base's velocity and orientation, and gravity"
+        )
+        values = ", ".join(f"{self.parameters[f'{self.kind}_{axis}'].value:.3g}" for axis in "xyz")
+        return f"differs from {source} by a constant: {values} {self.unit} in its own axes"
+
+
+def imu_offset(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> Offset | None:
+    """Constant errors beyond what is usual; None where there are none, or the base's motion is not
+    known from elsewhere.
+
+    Args:
+        signals: logs to be diagnosed.
+        references: logs of the healthy robot; an error that they have, too, is none of these.
+    """
+    means, errors, halves = (np.array(part) for part in zip(*map(_means, signals), strict=True))
+    mean, error = _together(means, errors)
+    if references:
+        healthy, unsure = _together(
+            *(np.array(part) for part in zip(*(_means(one)[:2] for one in references), strict=True))
+        )
+        told = np.isfinite(healthy)
+        mean, error = (
+            np.where(told, mean - healthy, mean),
+            np.where(told, np.hypot(error, unsure), error),
+        )
+    usual = np.array([p.typical for p in ImuBias.parameters])
+    clear = (
+        np.isfinite(mean) & (np.abs(mean) > CALIBRATED * usual) & (np.abs(mean) > CERTAIN * error)
+    )
+    if not clear.any():
+        return None
+    leans = _leans(signals[0], mean[3:]) if not clear[:3].any() else 0.0
+    if 0 < leans < LEANING:
+        return None
+    over = np.abs(mean) / usual
+    part = (
+        slice(0, 3)
+        if np.nanmax(over[:3], initial=0) >= np.nanmax(over[3:], initial=0)
+        else slice(3, 6)
+    )
+    apart = means[:, part] if len(means) > 1 else halves[0][:, part]
+    others = (np.nansum(apart, 0) - apart) / max(len(apart) - 1, 1)
+    left = float(np.sqrt(np.nanmean(np.sum((apart - others) ** 2, -1))))
+    size = float(np.linalg.norm(mean[part]))
+    values = {
+        p.name: Value(float(m), float(m - INTERVAL * e), float(m + INTERVAL * e), p.unit)
+        if np.isfinite(m)
+        else Value(0.0, 0.0, 0.0, p.unit)
+        for p, m, e in zip(ImuBias.parameters, mean, error, strict=True)
+    }
+    return Offset(
+        values, "gyro" if part.start == 0 else "accelerometer", size, min(left, size), leans
+    )
+
+
+def felt_upright(signals: Sequence[Signals]) -> tuple[np.ndarray, float, float] | None:
+    """What accelerometers feel too much along the vertical, which no orientation that is a little
+    off can feign.
+
+    Returns:
+        The vertical in the sensor's axes `(3,)`, the error along it and its standard deviation
+        [m/s^2]; None where it is not known.
+    """
+    based = [one for one in signals if one.base is not None]
+    if len(based) < len(signals):
+        return None
+    means, errors, _ = (np.array(part) for part in zip(*map(_means, based), strict=True))
+    mean, error = (values[3:] for values in _together(means, errors))
+    gravity = based[0].subject.gravity
+    rotation = np.mean(
+        [np.nanmean(one.base.rotation, 0) for one in based if one.base is not None], 0
+    )
+    up = -(rotation @ based[0].subject.imu_rotation).T @ gravity
+    length = float(np.linalg.norm(up))
+    if (
+        not np.isfinite([*mean, *error, length]).all()
+        or length < UPRIGHT * float(np.linalg.norm(gravity))
+        or length == 0
+    ):
+        return None
+    up = up / length
+    return up, float(up @ mean), float(np.hypot(np.linalg.norm(up * error), SURE))
+
+
+def _means(signals: Signals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean error of gyro and accelerometer in the sensor's axes `(6,)`, its standard error, and
+    means of both halves `(2, 6)`; NaN if unknown.
+    """
+    log, subject, ticks = signals.log, signals.subject, signals.time
+    unknown = np.full(6, np.nan), np.full(6, np.nan), np.full((2, 6), np.nan)
+    quaternion, gyro, felt, velocity = (
+        known(log, kind) for kind in ("base_orientation", "gyro", "accelerometer", "base_velocity")
+    )
+    if quaternion is None or not subject.floating:
+        return unknown
+    turning = orientation(log, quaternion, ticks)
+    rate, turn = spin(turning)
+    apart = np.full((len(ticks), 6), np.nan)
+    if gyro is not None:
+        apart[:, :3] = on_ticks(log, gyro, ticks) - rate @ subject.imu_rotation
+    if felt is not None and velocity is not None:
+        world = np.einsum(
+            "tji,tj->ti",
+            quaternion_rotation(turning.value),
+            smooth(log.time, velocity, ticks).first - subject.gravity,
+        )
+        at_sensor = (
+            world
+            + np.cross(turn, subject.imu_position)
+            + np.cross(rate, np.cross(rate, subject.imu_position))
+        )
+        apart[:, 3:] = on_ticks(log, felt, ticks) - at_sensor @ subject.imu_rotation
+    apart = apart[signals.valid]
+    length = max(round(PIECE / signals.step), 1)
+    if len(apart) < LEAST_PIECES * length:
+        return unknown
+    pieces = np.array([piece.mean(0) for piece in np.array_split(apart, len(apart) // length)])
+    halves = np.array([half.mean(0) for half in np.array_split(apart, 2)])
+    return apart.mean(0), pieces.std(0, ddof=1) / np.sqrt(len(pieces)), halves
+
+
+def _together(means: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Mean of logs and its standard error `(6,)`, from their own and from how they differ."""
+    count = np.isfinite(means).sum(0)
+    own = np.sqrt(np.nansum(errors**2, 0)) / np.maximum(count, 1)
+    middle = np.where(count > 0, np.nansum(means, 0) / np.maximum(count, 1), np.nan)
+    between = np.sqrt(
+        np.nansum((means - middle) ** 2, 0) / np.maximum(count - 1, 1) / np.maximum(count, 1)
+    )
+    return middle, np.hypot(own, between)
+
+
+def _leans(signals: Signals, error: np.ndarray) -> float:
+    """Angle by which a vertical leans that makes an accelerometer's error [rad]; 0 where it lies
+    not in the horizontal plane.
+    """
+    if signals.base is None or not np.isfinite(error).all():
+        return 0.0
+    rotation = np.nanmean(signals.base.rotation, 0) @ signals.subject.imu_rotation
+    world = rotation @ error
+    strength = max(float(np.linalg.norm(signals.subject.gravity)), 1e-9)
+    up = signals.subject.gravity / strength
+    upright = float(world @ up)
+    across = float(np.linalg.norm(world - upright * up))
+    return across / strength if abs(upright) < UPRIGHT * across else 0.0

@@ -1,0 +1,191 @@
+"""Ground that gives, seen without any balance: how much lower pads stand under more load.
+
+Where the floor lies, no log tells to a millimetre, and what errors of encoders and links make of a
+foot's height is about the same at all loads. But the slope of height over load is the compliance of
+ground and sole, in series, whatever masses and drives are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.effects.ground_compliance import GroundCompliance
+from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
+from hyperleg_design.gap.inference.nuisance import BEARING
+from hyperleg_design.gap.results.diagnosis import Value
+from hyperleg_design.gap.signals.ground import LOADED, Footing, Law, footings
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals.signals import Signals
+
+EFFECT = GroundCompliance.identifier
+SINKS = "sinks"
+UNUSUAL = 1.5
+"""Usual errors of how the ground bears (`nuisance`), from which one is a finding."""
+CERTAIN = 3.0
+"""Its standard errors beyond that of no finding, at least."""
+PADS = 0.1
+"""Of a compliance, that pads of one foot have in common unknown (assumed: their heights are off
+alike)."""
+LEAST_TICKS, LEAST_CONTACTS = 200, 4
+"""Of a pad under load in a log; pads, each log's for itself, whose scatter gives the standard
+error."""
+VARIED = 4.0
+"""Standard deviation of a pad's load, at least [N]."""
+DEEPEST = 0.05
+"""To which the nominal ground is looked up [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bearing:
+    """A pad under load in a log."""
+
+    load: np.ndarray
+    height: np.ndarray
+    """Over the origin [m]."""
+    nominal: np.ndarray
+    """Of the nominal ground under that load, from any height [m]; `(k,)` each."""
+
+    @property
+    def slope(self) -> float:
+        """Way down over load [m/N]."""
+        return -_slope(self.load, self.height)
+
+    @property
+    def nominal_slope(self) -> float:
+        """[m/N]"""
+        return -_slope(self.load, self.nominal)
+
+    @property
+    def weight(self) -> float:
+        """Squares of its load about the mean [N^2]."""
+        return float(np.sum((self.load - self.load.mean()) ** 2))
+
+
+def sinks(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tuple[Underfoot, ...]:
+    """Feet whose ground gives more than it should, those that sink most first.
+
+    A stiffer ground is not told: models are as soft as their step allows, robots' floors are not.
+
+    Args:
+        signals: logs to be diagnosed.
+        references: logs of the healthy robot; a ground that gave as much under it, too, is none of
+            these.
+    """
+    found = [
+        _sink(foot, place, signals, references)
+        for place, foot in enumerate(signals[0].subject.feet)
+    ]
+    return tuple(
+        sorted((one for one in found if one is not None), key=lambda one: (-one.size, one.foot))
+    )
+
+
+def _sink(
+    foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]
+) -> Underfoot | None:
+    logs = [bearings(one, place) for one in signals]
+    pads = [pad for own in logs for pad in own]
+    given = _compliance(pads)
+    healthy = _compliance([pad for one in references for pad in bearings(one, place)])
+    if given is None:
+        return None
+    scale, error = given
+    if healthy is not None and healthy[0] > 0:
+        scale, error = (
+            scale / healthy[0],
+            float(np.hypot(error, scale * healthy[1] / healthy[0])) / healthy[0],
+        )
+    if scale - CERTAIN * error < 1 or scale < 1 + UNUSUAL * BEARING:
+        return None
+    nominal = float(
+        np.average([pad.nominal_slope for pad in pads], weights=[pad.weight for pad in pads])
+    )
+    usual = nominal * (given[0] / scale)
+    slope = nominal * given[0]
+    spread = float(
+        np.sqrt(np.mean(np.concatenate([(pad.load - pad.load.mean()) ** 2 for pad in pads])))
+    )
+    parts = (
+        logs
+        if len(logs) > 1 and all(len(own) >= LEAST_CONTACTS for own in logs)
+        else [[half for pad in pads if (half := _half(pad, late))] for late in (False, True)]
+    )
+    others = [_compliance([pad for o in parts if o is not part for pad in o]) for part in parts]
+    off = [
+        abs(nominal * other[0] - slope) if other is not None else slope - usual for other in others
+    ]
+    size, left = spread * (slope - usual), spread * float(np.sqrt(np.mean(np.square(off))))
+    reach = INTERVAL * float(np.hypot(error, PADS * scale))
+    says = (
+        f"sinks by {1e3 * slope * spread:.2g} mm with the usual changes of its pads' load, "
+        f"{scale:.2g} times as much as it should"
+    )
+    value = Value(scale, max(scale - reach, 0.0), scale + reach, "")
+    return Underfoot(
+        EFFECT, foot, {"scale": value}, SINKS, says, float(len(pads)), size, min(left, size), "m"
+    )
+
+
+def bearings(signals: Signals, place: int) -> list[Bearing]:
+    """Pads of a foot that bear it in a log, those that tell by their load.
+
+    Args:
+        signals: of a log.
+        place: of the foot.
+    """
+    feet = footings(signals)
+    if not feet:
+        return []
+    foot = feet[place]
+    found = []
+    for pad in range(foot.height.shape[1]):
+        load = foot.pad_force[:, pad, 2]
+        used = (
+            signals.valid
+            & foot.settled
+            & np.isfinite(foot.height[:, pad])
+            & (np.nan_to_num(load) > LOADED)
+        )
+        if used.sum() >= LEAST_TICKS and float(load[used].std()) >= VARIED:
+            found.append(
+                Bearing(load[used], foot.height[used, pad], -_depth(foot, pad, load[used]))
+            )
+    return found
+
+
+def _depth(foot: Footing, pad: int, load: np.ndarray) -> np.ndarray:
+    """How deep a pad stands in the nominal ground [m]."""
+    law, one = foot.law, slice(pad, pad + 1)
+    own = Law(law.spring[one], law.damper[one], law.weight[one], law.impedance[one], law.weakest)
+    depth = np.linspace(0, DEEPEST, 2001)
+    return np.interp(load, own.force(depth[:, None], np.zeros((len(depth), 1))), depth)
+
+
+def _compliance(pads: Sequence[Bearing]) -> tuple[float, float] | None:
+    """Slope over the nominal one of some pads together, and its standard error; None where they are
+    few.
+    """
+    if len(pads) < LEAST_CONTACTS:
+        return None
+    weight = np.array([pad.weight for pad in pads])
+    each = np.array([pad.slope / pad.nominal_slope for pad in pads])
+    mean = float(np.average(each, weights=weight))
+    share = weight / weight.sum()
+    return mean, float(np.sqrt(np.sum(share**2 * (each - mean) ** 2) * len(pads) / (len(pads) - 1)))
+
+
+def _half(pad: Bearing, late: bool) -> Bearing | None:
+    """First or second half of a pad's ticks, where its load varies enough there."""
+    part = slice(len(pad.load) // 2, None) if late else slice(len(pad.load) // 2)
+    half = replace(pad, load=pad.load[part], height=pad.height[part], nominal=pad.nominal[part])
+    return half if float(half.load.std()) >= VARIED else None
+
+
+def _slope(load: np.ndarray, height: np.ndarray) -> float:
+    apart = load - load.mean()
+    return float(apart @ height / (apart @ apart))

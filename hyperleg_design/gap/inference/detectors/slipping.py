@@ -1,0 +1,216 @@
+"""Ground that feet slide on, seen without any balance: what slides pushes back by mu times its
+load, against its way.
+
+A pad that sticks may have any tangential force within its cone and one that creeps, in rubber as in
+soft contacts, has one that grows with its speed. But all that slides, however fast, has the same
+ratio of tangential force to load: mu, which is known to a few per cent after a tenth of a second.
+No mass, drive or sole has a part in it. The simulator's own pyramid of friction has another ratio
+in every direction, and is not taken for a slippery ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.effects.ground_friction import GroundFriction
+from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
+from hyperleg_design.gap.inference.nuisance import DAY, GROUND
+from hyperleg_design.gap.results.diagnosis import Value
+from hyperleg_design.gap.signals.ground import LOADED, footings
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals.signals import Signals
+
+EFFECT = GroundFriction.identifier
+SLIPS = "slips"
+FAST = 0.015
+"""Speed against the force from which a contact may slide [m/s] (assumed: above what encoders' noise
+makes)."""
+STRAIGHT = 2.0
+"""That speed over the one across, at least."""
+LEAST_TIME = 0.1
+"""In which it slides [s]."""
+SAME = 0.1
+"""Range of the middle half of the ratios over their median, at most: they are one."""
+BEYOND, SELDOM = 1.1, 0.02
+"""No more than so many of all loaded ticks have a ratio so far over the one of sliding."""
+VARIED = 1.5
+"""Faster over slower slides (90 and 10 % of the time), at least: at one speed what creeps has one
+ratio, too."""
+UNUSUAL = 2.0
+"""Usual errors of the ground (`nuisance`), from which one is a finding."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Sliding:
+    """A foot's contacts at the ticks `k` at which they slide, in one log."""
+
+    load: np.ndarray
+    ratio: np.ndarray
+    speed: np.ndarray
+    """Against the tangential force [m/s]."""
+    along_edges: np.ndarray
+    """Ratio of the sum of the force's parts along a pyramid's edges to the load: what is the same
+    in all directions there."""
+    time: float
+    """[s]"""
+    loaded: np.ndarray
+    """Ratio at all loaded ticks `(n,)`."""
+
+
+def slips(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tuple[Underfoot, ...]:
+    """Feet that slide on another ground than the nominal one, those that do so longest first.
+
+    Args:
+        signals: logs to be diagnosed.
+        references: logs of the healthy robot; a ground that they slid on, too, is none of these.
+    """
+    feet = signals[0].subject.feet
+    found = [_slip(foot, place, signals, references) for place, foot in enumerate(feet)]
+    return tuple(
+        sorted((one for one in found if one is not None), key=lambda one: (-one.weight, one.foot))
+    )
+
+
+def _slip(
+    foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]
+) -> Underfoot | None:
+    logs = [one for s in signals if (one := _sliding(s, place)) is not None]
+    ratio = _coefficient(logs)
+    if ratio is None:
+        return None
+    ground = footings(signals[0])[place]
+    edges, ratios = (
+        np.concatenate([getattr(one, name) for one in logs]) for name in ("along_edges", "ratio")
+    )
+    as_simulated = ground.law.weakest < 1 and _spread(edges) <= _spread(ratios)
+    if as_simulated and abs(float(np.median(edges)) / ground.friction - 1) <= UNUSUAL * GROUND:
+        return None
+    healthy = _coefficient([one for s in references if (one := _sliding(s, place)) is not None])
+    usual, unsure = (
+        (ground.friction, GROUND) if healthy is None else (healthy, DAY[EFFECT] * GROUND)
+    )
+    scale = ratio / usual
+    if abs(scale - 1) < UNUSUAL * GROUND:
+        return None
+    parts = [(one.load, one.ratio) for one in logs if one.time >= LEAST_TIME]
+    if len(parts) < 2:
+        loads = np.concatenate([one.load for one in logs])
+        parts = list(
+            zip(*(np.split(values, [len(ratios) // 2]) for values in (loads, ratios)), strict=True)
+        )
+    load, told = (np.concatenate(values) for values in zip(*parts, strict=True))
+    others = [
+        float(np.median(np.concatenate([r for i, (_, r) in enumerate(parts) if i != left_out])))
+        for left_out in range(len(parts))
+    ]
+    size = float(np.sqrt(np.mean((load * (told - usual)) ** 2)))
+    left = float(
+        np.sqrt(np.mean((load * (told - np.repeat(others, [len(r) for _, r in parts]))) ** 2))
+    )
+    reach = INTERVAL * scale * float(np.hypot(unsure, _spread(told) / 2))
+    value = Value(scale, max(scale - reach, 0.0), scale + reach, "")
+    time = sum(one.time for one in logs)
+    says = f"slides for {time:.2g} s with a tangential force of {ratio:.3g} times its load"
+    return Underfoot(EFFECT, foot, {"scale": value}, SLIPS, says, time, size, min(left, size), "N")
+
+
+def _coefficient(logs: Sequence[_Sliding]) -> float | None:
+    """The ratio of all that slides; None where that is little, or not one ratio, or less than what
+    sticks.
+    """
+    if sum(one.time for one in logs) < LEAST_TIME:
+        return None
+    ratio, speed, loaded = (
+        np.concatenate([getattr(one, name) for one in logs])
+        for name in ("ratio", "speed", "loaded")
+    )
+    middle, (slower, faster) = float(np.median(ratio)), np.percentile(speed, [10, 90])
+    if (
+        faster < VARIED * slower
+        or middle <= 0
+        or _spread(ratio) > SAME
+        or float(np.mean(loaded > BEYOND * middle)) > SELDOM
+    ):
+        return None
+    return middle
+
+
+def _spread(values: np.ndarray) -> float:
+    low, middle, high = np.percentile(values, [25, 50, 75])
+    return float((high - low) / middle)
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """A foot's `c` contacts with the ground at the ticks of a log: its pads, or itself where only
+    its force is known.
+    """
+
+    load: np.ndarray
+    ratio: np.ndarray
+    """Of tangential force to load."""
+    along_edges: np.ndarray
+    """As of `_Sliding`."""
+    against: np.ndarray
+    """Speed against the tangential force [m/s]."""
+    slides: np.ndarray
+    loaded: np.ndarray
+    """`(t, c)` each."""
+
+
+def contacts(signals: Signals, place: int) -> Contacts | None:
+    """How a foot is pushed and moves; None where forces or the base's velocity are unknown.
+
+    Args:
+        signals: of a log.
+        place: of the foot.
+    """
+    feet = footings(signals)
+    if not feet:
+        return None
+    foot = feet[place]
+    by_pad = bool(np.isfinite(foot.pad_force[foot.judged]).any())
+    force, slide = (
+        (foot.pad_force, foot.pad_slide) if by_pad else (foot.force[:, None], foot.slide[:, None])
+    )
+    load, size = force[..., 2], np.linalg.norm(force[..., :2], axis=-1)
+    known = (
+        np.isfinite(force).all(-1)
+        & np.isfinite(slide).all(-1)
+        & (signals.valid & foot.settled)[:, None]
+    )
+    loaded = known & (np.nan_to_num(load) > LOADED)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        way = force[..., :2] / size[..., None]
+        against = -(slide * way).sum(-1)
+        across = np.linalg.norm(slide + against[..., None] * way, axis=-1)
+        slides = loaded & (against > FAST) & (against > STRAIGHT * across)
+        return (
+            Contacts(
+                load, size / load, np.abs(force[..., :2]).sum(-1) / load, against, slides, loaded
+            )
+            if loaded.any()
+            else None
+        )
+
+
+def _sliding(signals: Signals, place: int) -> _Sliding | None:
+    """When a foot slides in a log, if it does."""
+    of = contacts(signals, place)
+    if of is None or not of.slides.any():
+        return None
+    slides, loaded = of.slides, of.loaded
+    time = float(slides.any(1).sum()) * signals.step
+    return _Sliding(
+        of.load[slides],
+        of.ratio[slides],
+        of.against[slides],
+        of.along_edges[slides],
+        time,
+        of.ratio[loaded],
+    )

@@ -1,0 +1,210 @@
+"""Effects that scale the torque which the balance itself is made of, and what keeps them from
+explaining noise away.
+
+A closed loop gives whatever torque is needed, model errors e included. An effect that takes a share
+of the believed torque for its own trace takes that share of e along, so that least squares would
+always rather scale torques down. The density of the believed torque has the missing term: with u =
+(1 + a phi) believed - needed, it is p(u) (1 + a phi), so the log-likelihood gains n mean log(1 + a
+phi). A joint whose torque is less than the floor gains nothing so: that would only tell that the
+floor is high.
+
+Noise of accelerations is in the balance, and in the load that stretches a belt, too: with encoders
+at the joints a belt's trace takes the share x = J compliance omega^2 of it along, all of it where
+the rotor would ring. Noise of which a share f is that of accelerations shrinks to f (1 - x)^2 + 1 -
+f, and least squares would find a belt in any noise, that rings just below the smoother's crossover.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.effects import belt
+from hyperleg_design.gap.effects.friction import sliding
+from hyperleg_design.gap.effects.placing import is_measured
+from hyperleg_design.gap.effects.thermal_derating import rise
+from hyperleg_design.gap.inference import floor
+from hyperleg_design.gap.signals.channels import applied
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.samples import Samples
+    from hyperleg_design.gap.signals.signals import Signals
+
+BELT, SIDE = "transmission_elasticity", 2
+"""Effect of belts that stretch, and its parameter that tells where encoders are."""
+FAINT = 0.5
+"""Believed torque over the floor, root mean square, up to which a larger torque gains nothing; from
+the floor on all of it."""
+LEAST = 0.05
+"""Factor below which the logarithm is cut."""
+TICKS = 200
+"""Ticks of a log that stand for all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Factor:
+    """How a cause scales believed torques: 1 + slope phi of one parameter."""
+
+    parameter: int
+    slope: np.ndarray
+    """At some ticks `(t,)`, over the usual size of the parameter."""
+    number: float
+    """Independent numbers in the rows that it scales."""
+    shows: float = 1.0
+    """Share of a gain that counts."""
+    row: int = 0
+    """Row of the joint that it scales most."""
+
+    def log(self, phi: float) -> float:
+        """N mean log of the factor."""
+        found = self.number * float(np.mean(np.log(np.maximum(1 + self.slope * phi, LEAST))))
+        return self.shows * found if found > 0 else found
+
+    def slopes(self, phi: float) -> tuple[float, float]:
+        """First derivative of `log`, and its second with the sign turned."""
+        ratio = self.slope / np.maximum(1 + self.slope * phi, LEAST)
+        return self.number * float(ratio.mean()), self.number * float((ratio**2).mean())
+
+
+@dataclass(frozen=True, eq=False)
+class Shrinking:
+    """How a cause shrinks noise of accelerations, by 1 - slope phi of one parameter; as
+    `Factor`.
+    """
+
+    parameter: int
+    slope: np.ndarray
+    """Of some samples `(k,)`, over the usual size of the parameter."""
+    part: np.ndarray
+    """Share of their noise that is that of accelerations `(k,)`."""
+    number: np.ndarray
+    """Independent numbers that each stands for `(k,)`."""
+    row: int
+
+    def log(self, phi: float) -> float:
+        """Log of the density by which noise that shrinks must not gain."""
+        return 0.5 * float(self.number @ np.log(self._left(phi)))
+
+    def slopes(self, phi: float) -> tuple[float, float]:
+        """First derivative of `log`, and its second with the sign turned, where that is a
+        maximum.
+        """
+        keeps, left = 1 - self.slope * phi, self._left(phi)
+        first = -self.part * self.slope * keeps / left
+        second = 2 * first**2 - self.part * self.slope**2 / left
+        return float(self.number @ first), max(float(self.number @ second), 0.0)
+
+    def _left(self, phi: float) -> np.ndarray:
+        return np.maximum(self.part * (1 - self.slope * phi) ** 2 + 1 - self.part, LEAST**2)
+
+
+def factor(
+    samples: Samples,
+    effect: str,
+    location: str,
+    usual: np.ndarray,
+    values: np.ndarray | None = None,
+) -> Factor | Shrinking | None:
+    """Of an effect at a place, at its values where they matter; None where it scales no torque that
+    the balance trusts.
+    """
+    subject = samples.sieves[0].signals.subject
+    if effect == BELT and values is not None:
+        return _shrinking(samples, subject.motors.index(location), usual, values)
+    if effect in ("torque_constant", "transmission_ratio", "thermal_derating"):
+        motor = subject.motors.index(location)
+        joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
+    elif effect in ("load_dependent_friction", "controller_gain"):
+        joint = subject.joints.index(location)
+        motor = int(np.argmax(np.abs(subject.joint_from_motor[joint])))
+    else:
+        return None
+    rows = [i for i, r in enumerate(samples.rows) if r.balance == "motion" and r.column == joint]
+    if not rows:
+        return None
+    if effect == "controller_gain" and any(is_measured(s.signals, motor) for s in samples.sieves):
+        return None
+    number = float(samples.share[samples.row == rows[0]].sum())
+    slopes = (
+        np.concatenate([_slope(s.signals, effect, motor, joint) for s in samples.sieves]) * usual[0]
+    )
+    return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint), rows[0])
+
+
+def _shrinking(
+    samples: Samples, motor: int, usual: np.ndarray, values: np.ndarray
+) -> Shrinking | None:
+    """Of a belt; None where encoders are at the rotors, or its joint has no row."""
+    subject = samples.sieves[0].signals.subject
+    moves = subject.joint_from_motor[:, motor]
+    joint = int(np.argmax(np.abs(moves)))
+    rows = [i for i, r in enumerate(samples.rows) if r.balance == "motion" and r.column == joint]
+    if not rows or values[SIDE] >= belt.CHOSEN:
+        return None
+    own = np.flatnonzero(samples.row == rows[0])
+    part, slope = np.zeros(len(samples.row)), np.zeros(len(samples.row))
+    for one, places in zip(samples.sieves, samples.where, strict=True):
+        for place, row in enumerate(one.rows):
+            if (row.balance, row.column) == ("motion", joint):
+                feigned, rate = floor.of_acceleration(one, place)
+                part[places[place]] = feigned
+                slope[places[place]] = rate * _carried(one.signals, motor, joint)
+    part = np.minimum(part / samples.floor**2, 1.0)
+    slope *= belt.rotor(subject, motor) * (1 - values[SIDE]) * usual[0]
+    return Shrinking(0, slope[own], part[own], samples.share[own], rows[0])
+
+
+def _carried(signals: Signals, motor: int, joint: int) -> float:
+    """Share of the noise of accelerations in a joint's balance that is in the load of its motor's
+    belt, too, through which it comes back.
+    """
+    if signals.noise is None:
+        return 0.0
+    level = np.nan_to_num(signals.noise) ** 2
+    whole = floor.inertias(signals)
+    load = np.tensordot(
+        signals.subject.motor_from_joint[motor], whole - signals.subject.armature[:, None], 1
+    )
+    both, all_of_it = (
+        float(np.mean(whole[joint] * load @ level)),
+        float(np.mean(whole[joint] ** 2 @ level)),
+    )
+    return float(signals.subject.joint_from_motor[joint, motor]) * both / max(all_of_it, 1e-300)
+
+
+def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:
+    """How much of a gain counts, by the torque that a motor gives a joint over the floor of its
+    row, 0 to 1.
+    """
+
+    def trace(signals: Signals) -> dict[str, np.ndarray]:
+        given = np.zeros((1, *signals.position.shape))
+        given[0, :, joint] = (
+            np.nan_to_num(signals.believed[:, motor])
+            * signals.subject.joint_from_motor[joint, motor]
+        )
+        return {"motion": given}
+
+    columns = samples.columns(trace, 1)
+    if columns is None:
+        return 0.0
+    own = samples.row == row
+    over = float(
+        np.sqrt(
+            np.average(np.square(columns[0, own] / samples.floor[own]), weights=samples.share[own])
+        )
+    )
+    return float(np.clip((over - FAINT) / (1 - FAINT), 0.0, 1.0))
+
+
+def _slope(signals: Signals, effect: str, motor: int, joint: int) -> np.ndarray:
+    """Change of the factor with the parameter, at some ticks."""
+    every = max(len(signals.time) // TICKS, 1)
+    if effect == "thermal_derating":
+        return -np.nan_to_num(rise(signals, motor))[::every]
+    if effect == "load_dependent_friction":
+        load = applied(signals.subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
+        return -(np.sign(np.nan_to_num(load)) * sliding(signals)[:, joint])[::every]
+    return np.ones(1)

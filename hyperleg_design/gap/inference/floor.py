@@ -1,0 +1,316 @@
+"""What a residual may be when nothing is wrong: noise that a log shows by itself, and how well
+models of robots are known anyhow.
+
+Of each sample of `filtering`, as a standard deviation. Torque noise is the residual's own level
+above its cutoff, taken as white; noise of accelerations is the smoother's, times the inertias by
+which the accelerations of all joints load one, and larger where joints are fast, as far as the
+samples scatter more there: what is stamped a moment early or late is off by its speed. Beyond
+noise, drives and friction of a healthy robot are known to shares of their size (`floor_torque`,
+`floor_friction`), which `nuisance` cannot express. Reference logs scale all of it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.inference.nuisance import stop
+from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.ground import footings
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.thresholds import Thresholds
+    from hyperleg_design.gap.signals.filtering import Band, Sieve
+    from hyperleg_design.gap.signals.signals import Signals
+
+NEAR = 0.5
+"""Time over which the size of a load is averaged [s]."""
+TURNING, TURNING_TIME = 0.006, 0.05
+"""Way on which friction may turn over [rad], half of it; and time around it for which that counts
+[s]."""
+FAST = 10.0
+"""Speed that a motor is made for where nobody gives its limits [rad/s]; assumed."""
+AT_MOST, ENOUGH = 1.5, 16
+"""Noise over all that a band shows, at most, and samples that tell what it shows."""
+POSTURE = 0.05
+"""Time in which a posture, and its inertia, hardly changes [s] (assumed)."""
+FEWEST = 64
+"""Samples of a position that tell whether its noise goes with speed."""
+LEAST = 1e-4
+"""Floor over the torque that a joint is made for, at least: what single precision and rounding in
+logs leave."""
+
+_SHAKEN: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
+_INERTIAS: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
+
+
+def expected(sieve: Sieve, thresholds: Thresholds) -> list[np.ndarray]:
+    """Standard deviation that each sample of each row may have, `(samples,)` a row, in the row's
+    unit.
+    """
+    load, still = _loads(sieve)
+    return [_row(sieve, row, load, still, thresholds) for row in range(len(sieve.rows))]
+
+
+def _row(
+    sieve: Sieve,
+    row: int,
+    load: dict[str, np.ndarray],
+    still: dict[str, np.ndarray],
+    thresholds: Thresholds,
+) -> np.ndarray:
+    signals, one = sieve.signals, sieve.rows[row]
+    moving = load[one.balance][:, one.column]
+    constant = still[one.balance][one.column]
+    residual = np.where(sieve.mask[row], signals.residual[one.balance][:, one.column], 0.0)
+    density = _capped(
+        sieve, row, residual, _white(residual, sieve.mask[row], one.cutoff, signals.step)
+    )
+    samples = sieve.sample(row, np.nan_to_num(moving)[None])[0]
+    level, _, _ = sieve.labels(row)
+    whole = (
+        np.sqrt(np.nanmean(np.where(sieve.mask[row], moving, np.nan) ** 2))
+        if sieve.mask[row].any()
+        else 0.0
+    )
+    turning = _turning(sieve, row) if constant > 0 else np.zeros(len(signals.time))
+    sinking = _smoothed(_sinking(sieve, row) ** 2, NEAR / signals.step)
+    found, start = np.empty(len(samples)), 0
+    for band, white in zip(sieve.bands[row], density, strict=True):
+        part = slice(start, start + len(band.kept))
+        start = part.stop
+        local = _smoothed(samples[part] ** 2, band.count / (sieve.length * signals.step) * NEAR)
+        noise = white * (band.high - band.low) + _at(
+            _of_acceleration(sieve, row, band.low, band.high), band
+        )
+        share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
+        dry = (
+            (thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant
+        ) ** 2 / len(sieve.bands[row])
+        found[part] = np.sqrt(
+            noise + share + dry + _at(sinking, band) + (LEAST * _strength(sieve, row)) ** 2
+        )
+    assert len(level) == start
+    return found
+
+
+def _sinking(sieve: Sieve, row: int) -> np.ndarray:
+    """What the height of a foot leaves open of the ground's vertical force `(t,)` [N]; 0
+    elsewhere.
+    """
+    one = sieve.rows[row]
+    if one.balance != "ground" or one.column % 3 != 2:
+        return np.zeros(len(sieve.signals.time))
+    return np.nan_to_num(footings(sieve.signals)[one.column // 3].doubt())
+
+
+def _turning(sieve: Sieve, row: int) -> np.ndarray:
+    """How much of a joint's friction turns over at each tick, averaged around it `(t,)`."""
+    part = 1 - stop(sieve.signals.position[:, sieve.rows[row].column], TURNING) ** 2
+    return _smoothed(part * sieve.mask[row], TURNING_TIME / sieve.signals.step)
+
+
+def _at(values: np.ndarray, band: Band) -> np.ndarray:
+    """Values of ticks at the samples of a band."""
+    place = np.minimum((band.kept * (band.length / band.count)).astype(int), len(values) - 1)
+    return np.asarray(values[place])
+
+
+def _loads(sieve: Sieve) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """By balance: size of what is balanced `(t, columns)`, and friction of the model
+    `(columns,)`.
+    """
+    signals = sieve.signals
+    subject = signals.subject
+    found: dict[str, np.ndarray] = {}
+    still: dict[str, np.ndarray] = {}
+    for balance, residual in signals.residual.items():
+        still[balance] = np.zeros(residual.shape[1])
+        if balance == "motion":
+            found[balance] = applied(subject.joint_from_motor, signals.believed)
+            still[balance] = subject.coulomb
+        elif balance == "base" and signals.contact is not None:
+            total = np.linalg.norm(np.nan_to_num(signals.contact).sum(1), axis=-1)
+            found[balance] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
+        elif balance == "ground" and signals.contact is not None:
+            found[balance] = np.repeat(np.linalg.norm(signals.contact, axis=-1), 3, axis=-1)
+        elif balance == "transmission":
+            found[balance] = signals.velocity @ subject.joint_from_motor
+        elif signals.command is not None and residual.shape[1] == signals.command.shape[1]:
+            found[balance] = signals.command
+        else:
+            found[balance] = residual
+    return found, still
+
+
+def _strength(sieve: Sieve, row: int) -> float:
+    one, subject = sieve.rows[row], sieve.signals.subject
+    if one.balance == "motion":
+        return float(joint_strength(subject)[one.column])
+    if one.balance in ("base", "ground"):
+        return 100.0
+    if one.balance == "transmission":
+        fastest = float(subject.no_load_speed[one.column])
+        return fastest if np.isfinite(fastest) else FAST
+    limit = float(subject.torque_limit[one.column])
+    return limit if np.isfinite(limit) else 1.0
+
+
+def _white(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -> float:
+    """One-sided density of a residual above its cutoff, by the median, which lines and leaks do not
+    move [unit^2/Hz].
+    """
+    known = np.flatnonzero(mask)
+    if len(known) < 64:
+        return 0.0
+    # second differences take out what is slow, so that none of it leaks
+    third = np.diff(np.interp(np.arange(known[0], known[-1] + 1), known, residual[known]), 3)
+    power = np.abs(np.fft.rfft(third * np.hanning(len(third)))) ** 2
+    frequency = np.fft.rfftfreq(len(third), step)
+    # interpolation onto even ticks takes noise away near the Nyquist frequency
+    first = min(1.3 * cutoff, 0.3 / step)
+    high = (frequency > first) & (frequency < min(2 * first, 0.45 / step))
+    if high.sum() < 8:
+        return 0.0
+    passed = (2 * np.sin(np.pi * frequency[high] * step)) ** 6
+    passed = passed * (
+        1 - (1 - np.cos(2 * np.pi * frequency[high] * step)) / 3
+    )  # mean of linear interpolation at any place
+    density = np.median(power[high] / passed) / np.log(2)
+    return float(2 * step * density / np.sum(np.hanning(len(third)) ** 2))
+
+
+def _capped(sieve: Sieve, row: int, residual: np.ndarray, white: float) -> np.ndarray:
+    """Density of white noise in each band `(bands,)`, no more than what that band, or a faster one,
+    shows in all [unit^2/Hz].
+
+    What knocks or rings at high frequencies is not white: it is no reason for noise at low ones.
+    """
+    samples, start = sieve.sample(row, residual[None])[0], 0
+    found = []
+    for band in sieve.bands[row]:
+        part = samples[start : start + len(band.kept)]
+        start += len(band.kept)
+        found.append(
+            AT_MOST * float(np.mean(part**2)) / (band.high - band.low)
+            if len(part) >= ENOUGH
+            else np.inf
+        )
+    return np.minimum.accumulate(np.r_[white, found[::-1]])[:0:-1]
+
+
+def _of_acceleration(sieve: Sieve, row: int, low: float, high: float) -> np.ndarray:
+    """Variance in a band of the torque that noise of positions feigns at each tick, twice
+    differentiated, below the smoother's crossover `(t,)`.
+    """
+    signals, one = sieve.signals, sieve.rows[row]
+    if (
+        one.balance != "motion"
+        or signals.noise is None
+        or not np.isfinite(signals.noise[one.column])
+    ):
+        return np.zeros(len(signals.time))
+    square = _shaken(signals)
+    stiff = _feedback(sieve, row)
+    turned = (2 * np.pi) ** 4 * (high**5 - low**5) / 5
+    own = inertias(signals)[one.column][np.arange(len(square)) // _every(signals)]
+    found = turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, one.column]
+    return np.asarray(
+        _smoothed(2 * signals.step * found, 0.5 / (high - low) / signals.step)
+    )  # as long as a sample of the band sees
+
+
+def _shaken(signals: Signals) -> np.ndarray:
+    """Variance of the noise of positions at each tick `(t, n)` [rad^2]: clocks that jitter make
+    more of it where joints are fast.
+
+    Its mean is what smoothing found; that a share of it goes with the square of speed, what the
+    samples show beside the smoothed motion.
+    """
+    assert signals.noise is not None
+    if signals in _SHAKEN:
+        return _SHAKEN[signals]
+    level = np.nan_to_num(signals.noise)
+    found = np.broadcast_to(level**2, signals.position.shape).copy()
+    raw = signals.log.stack("position", signals.subject.joints)
+    for joint, samples in enumerate(raw.T):
+        square = np.nan_to_num(signals.velocity[:, joint]) ** 2
+        known = np.isfinite(samples)
+        if known.sum() < FEWEST or not square.any():
+            continue
+        beside = (samples - np.interp(signals.log.time, signals.time, signals.position[:, joint]))[
+            known
+        ] ** 2
+        speed = np.interp(signals.log.time[known], signals.time, square)
+        share = _share(beside, speed / square.mean())
+        found[:, joint] *= 1 - share + share * square / square.mean()
+    _SHAKEN[signals] = found
+    return found
+
+
+def of_acceleration(sieve: Sieve, row: int) -> tuple[np.ndarray, np.ndarray]:
+    """Variance of each sample of a row that noise of accelerations feigns, and the mean square of
+    that noise's frequency `(samples,)` each.
+    """
+    bands = sieve.bands[row]
+    if not bands:
+        return np.zeros(0), np.zeros(0)
+    feigned = [_at(_of_acceleration(sieve, row, b.low, b.high), b) for b in bands]
+    rate = [
+        np.full(
+            len(b.kept), (2 * np.pi) ** 2 * 5 / 7 * (b.high**7 - b.low**7) / (b.high**5 - b.low**5)
+        )
+        for b in bands
+    ]
+    return np.concatenate(feigned), np.concatenate(rate)
+
+
+def _share(square: np.ndarray, speed: np.ndarray) -> float:
+    """Share of squares `(s,)` that goes with those of speed over their mean `(s,)`, from 0 to 1, by
+    least squares.
+    """
+    apart = speed - speed.mean()
+    rise = float(apart @ square) / max(float(apart @ apart), 1e-300)
+    return float(np.clip(rise * speed.mean() / max(float(square.mean()), 1e-300), 0.0, 1.0))
+
+
+def inertias(signals: Signals) -> np.ndarray:
+    """Torque at each joint over the acceleration of each, rotors included, every `POSTURE` along a
+    log `(n, p, n)` [kg m^2].
+    """
+    if signals not in _INERTIAS:
+        some = np.nan_to_num(signals.position[:: _every(signals)])
+        _INERTIAS[signals] = np.stack(
+            rigid.accelerating(signals.subject, some, np.eye(some.shape[1])), -1
+        ).swapaxes(0, 1)
+    return _INERTIAS[signals]
+
+
+def _every(signals: Signals) -> int:
+    return max(round(POSTURE / signals.step), 1)
+
+
+def _feedback(sieve: Sieve, row: int) -> float:
+    """Torque over noise of position where the torque is computed from the logged position
+    [Nm/rad].
+    """
+    signals, one = sieve.signals, sieve.rows[row]
+    gain = (
+        float(signals.subject.gains[one.column, 0])
+        if signals.measured is None and signals.target is not None
+        else 0.0
+    )
+    return gain if np.isfinite(gain) else 0.0
+
+
+def _smoothed(values: np.ndarray, width: float) -> np.ndarray:
+    """Moving average that keeps the length."""
+    reach = max(round(width), 1)
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    index = np.arange(len(values))
+    left, right = np.maximum(index - reach, 0), np.minimum(index + reach + 1, len(values))
+    return np.asarray((total[right] - total[left]) / np.maximum(right - left, 1))

@@ -1,0 +1,518 @@
+"""One recording: a row a tick, columns `signal/name`, and what is known of the robot; read from and
+written to Parquet.
+
+| column | unit | |
+|---|---|---|
+| `t` | s | strictly rising; not necessarily even |
+| `position_target/J`, `position/J` | rad | of joint J |
+| `velocity/J` | rad/s | |
+| `joint_torque/J` | Nm | measured at the joint |
+| `motor_torque_command/M`, `motor_torque/M` | Nm | of motor M |
+| `motor_current/M` | A | |
+| `motor_velocity/M` | rad/s | |
+| `motor_temperature/M` | degC | |
+| `battery_voltage` | V | |
+| `gyro/x`, `y`, `z` | rad/s | base frame |
+| `accelerometer/x`, `y`, `z` | m/s^2 | base frame; +9.81 upward at rest |
+| `base_position/x`, `y`, `z` | m | world |
+| `base_orientation/w`, `x`, `y`, `z` | - | unit quaternion, world from base |
+| `base_velocity/x`, `y`, `z` | m/s | world |
+| `contact_force/FOOT_x`, `_y`, `_z` | N | of the ground on the foot, world |
+
+Unknown values are NaN.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.gap.logs.metadata import Metadata, metadata_from_mapping, read_metadata_mapping
+
+if TYPE_CHECKING:
+    import pyarrow.parquet
+
+JOINT_SIGNALS = ("position_target", "position", "velocity", "joint_torque")
+MOTOR_SIGNALS = (
+    "motor_torque_command",
+    "motor_torque",
+    "motor_current",
+    "motor_velocity",
+    "motor_temperature",
+)
+VECTOR_SIGNALS = {
+    "gyro": ("x", "y", "z"),
+    "accelerometer": ("x", "y", "z"),
+    "base_position": ("x", "y", "z"),
+    "base_orientation": ("w", "x", "y", "z"),
+    "base_velocity": ("x", "y", "z"),
+}
+BATTERY = "battery_voltage"
+CONTACT = "contact_force"
+UNITS = {
+    "t": "s",
+    "position_target": "rad",
+    "position": "rad",
+    "velocity": "rad/s",
+    "joint_torque": "Nm",
+    "motor_torque_command": "Nm",
+    "motor_torque": "Nm",
+    "motor_current": "A",
+    "motor_velocity": "rad/s",
+    "motor_temperature": "degC",
+    BATTERY: "V",
+    "gyro": "rad/s",
+    "accelerometer": "m/s^2",
+    "base_position": "m",
+    "base_orientation": "",
+    "base_velocity": "m/s",
+    CONTACT: "N",
+}
+"""By signal."""
+SCHEMA_KEY = b"hyperleg"
+"""Of the Parquet schema's metadata."""
+MAX_VALUES = 32 * 1024 * 1024
+"""Numbers that one log may hold (256 MiB, half an hour of 100 columns at 200 Hz); of longer ones,
+blocks spread evenly are read."""
+BLOCK_ROWS = 16384
+"""Rows that are read or left out together, at full rate."""
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """One recording of `t` ticks; arrays are read-only.
+
+    Raises:
+        InputError: a time base that does not rise strictly, an unknown column, or columns of
+        different lengths.
+    """
+
+    name: str
+    time: np.ndarray
+    """`(t,)` [s]."""
+    signals: Mapping[str, np.ndarray]
+    """By column, `(t,)` each; units in `UNITS`; NaN where unknown."""
+    metadata: Metadata = field(default_factory=Metadata)
+    folder: str = ""
+    """In which it was found: a `robot` file of its metadata may stand there; not written into
+    files."""
+
+    def __post_init__(self) -> None:
+        """Check."""
+        time = _frozen(self.time, self.name, "t")
+        _check_clock(time, self.name)
+        object.__setattr__(self, "time", time)
+        signals = {}
+        for column, values in self.signals.items():
+            if not known_column(column):
+                raise InputError(
+                    self.name,
+                    column,
+                    None,
+                    "is no column of the log format: expects signal/name, such as "
+                    "position/left_knee",
+                )
+            signals[column] = _frozen(values, self.name, column)
+            if signals[column].shape != time.shape:
+                raise InputError(
+                    self.name,
+                    column,
+                    signals[column].shape,
+                    f"expects one value a tick, {time.shape}",
+                )
+        object.__setattr__(self, "signals", signals)
+
+    def has(self, kind: str, name: str = "") -> bool:
+        """Whether the log has a column with at least one known value."""
+        values = self.signals.get(f"{kind}/{name}" if name else kind)
+        return values is not None and bool(np.isfinite(values).any())
+
+    def stack(self, kind: str, names: Iterable[str]) -> np.ndarray:
+        """Columns `kind/name` beside each other `(t, len(names))`; NaN where a column is
+        missing.
+        """
+        missing = np.full(len(self.time), np.nan)
+        columns = [self.signals.get(f"{kind}/{name}", missing) for name in names]
+        return np.stack(columns, -1) if columns else np.empty((len(self.time), 0))
+
+    def vector(self, kind: str) -> np.ndarray:
+        """`gyro`, `accelerometer`, `base_...` `(t, 3)` or `(t, 4)`; NaN where missing."""
+        return self.stack(kind, VECTOR_SIGNALS[kind])
+
+    def column(self, column: str) -> np.ndarray:
+        """One column `(t,)`; NaN where missing."""
+        found = self.signals.get(column)
+        return np.full(len(self.time), np.nan) if found is None else found
+
+    def names(self, *kinds: str) -> tuple[str, ...]:
+        """Names that stand behind any of these signals, in the order of the columns."""
+        return tuple(
+            dict.fromkeys(c.partition("/")[2] for c in self.signals if c.partition("/")[0] in kinds)
+        )
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """With a measured position, in the order of the columns."""
+        return self.names("position")
+
+    @property
+    def motors(self) -> tuple[str, ...]:
+        """With any signal of their own."""
+        return self.names(*MOTOR_SIGNALS)
+
+    @property
+    def feet(self) -> tuple[str, ...]:
+        """With a contact force."""
+        return tuple(dict.fromkeys(name[:-2] for name in self.names(CONTACT)))
+
+    @property
+    def step(self) -> float:
+        """Median time between ticks [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    @property
+    def duration(self) -> float:
+        """From first to last tick [s]."""
+        return float(self.time[-1] - self.time[0])
+
+    def part(self, rows: slice | np.ndarray, name: str = "") -> Log:
+        """Some rows of it."""
+        return self.changed(
+            name=name or self.name,
+            time=self.time[rows],
+            signals={c: v[rows] for c, v in self.signals.items()},
+        )
+
+    def changed(self, **values: Any) -> Log:
+        """A copy with fields replaced."""
+        return dataclasses.replace(self, **values)
+
+    def remarked(self, *remarks: str) -> Log:
+        """A copy whose metadata state what was changed or is lacking."""
+        return self.changed(metadata=self.metadata.remarked(*remarks)) if remarks else self
+
+
+def known_column(column: str) -> bool:
+    """Whether the log format has such a column."""
+    kind, slash, name = column.partition("/")
+    if kind in JOINT_SIGNALS or kind in MOTOR_SIGNALS:
+        return bool(name)
+    if kind in VECTOR_SIGNALS:
+        return name in VECTOR_SIGNALS[kind]
+    return (kind == CONTACT and len(name) > 2 and name[-2:] in ("_x", "_y", "_z")) or (
+        kind == BATTERY and not slash
+    )
+
+
+def unit(column: str) -> str:
+    """Of a column."""
+    return UNITS.get(column.partition("/")[0], "")
+
+
+def write_log(path: str | os.PathLike[str], log: Log) -> Path:
+    """Write a log as one Parquet file, metadata inside.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    import pyarrow
+    import pyarrow.parquet
+
+    from hyperleg_design.writing import write_bytes
+
+    schema_metadata = {SCHEMA_KEY: json.dumps(log.metadata.mapping(), allow_nan=False).encode()}
+    table = pyarrow.table({"t": log.time, **log.signals}).replace_schema_metadata(schema_metadata)
+    sink = pyarrow.BufferOutputStream()
+    pyarrow.parquet.write_table(table, sink, compression="zstd", row_group_size=BLOCK_ROWS)
+    return write_bytes(path, sink.getvalue().to_pybytes())
+
+
+def read_log(path: str | os.PathLike[str]) -> Log:
+    """Read a Parquet log and its side file `NAME.json`, whose fields win.
+
+    Of recordings with more than `MAX_VALUES` numbers, blocks spread evenly are read and a remark
+    says so.
+
+    Raises:
+        InputError: missing, truncated or empty file, no time, a column of texts, a clock that runs
+        backwards, bad metadata.
+    """
+    import pyarrow
+    import pyarrow.parquet
+
+    path = Path(path)
+    try:
+        with pyarrow.parquet.ParquetFile(path) as file:
+            time, signals, remarks = _columns(file, path)
+            inside = (file.schema_arrow.metadata or {}).get(SCHEMA_KEY)
+    except FileNotFoundError:
+        raise InputError(str(path), "", None, "does not exist") from None
+    except (pyarrow.ArrowException, OSError, ValueError) as error:
+        raise InputError(
+            path.name,
+            "",
+            None,
+            f"is no whole Parquet file ({in_short(error, 90)}): record or copy it again",
+        ) from None
+    return finished_log(path, time, signals, metadata_beside(path, _inside(inside, path)), remarks)
+
+
+def finished_log(
+    path: Path,
+    time: np.ndarray,
+    signals: Mapping[str, np.ndarray],
+    metadata: Metadata,
+    remarks: Iterable[str] = (),
+    name: str = "",
+) -> Log:
+    """A log of what a reader found in a file: tidied, checked, its remarks noted.
+
+    Raises:
+        InputError: an unusable clock, or no position.
+    """
+    time, signals, more = tidied(time, signals, path.name)
+    _check_clock(time, path.name)
+    if not any(
+        column.startswith("position/") and np.isfinite(values).any()
+        for column, values in signals.items()
+    ):
+        raise InputError(
+            path.name,
+            "position/...",
+            None,
+            "is missing: expects the measured angle of at least one joint, in position/JOINT",
+        )
+    return Log(
+        name or path.stem,
+        time,
+        signals,
+        metadata.remarked(*remarks, *more),
+        str(path.resolve().parent),
+    )
+
+
+def metadata_beside(path: Path, inside: Mapping[str, Any]) -> Metadata:
+    """Metadata found in a file, overruled field by field by the side file `NAME.json` where there
+    is one.
+    """
+    side = path.with_suffix(".json")
+    if side != path and side.is_file():
+        return metadata_from_mapping({**inside, **read_metadata_mapping(side)}, side.name)
+    return metadata_from_mapping(inside, path.name)
+
+
+def tidied(
+    time: np.ndarray, signals: Mapping[str, np.ndarray], name: str
+) -> tuple[np.ndarray, dict[str, np.ndarray], tuple[str, ...]]:
+    """Rows without a time left out, rows that repeat a time merged (two streams written at one
+    stamp), infinities made NaN.
+
+    Args:
+        time: `(t,)` [s].
+        signals: by column, `(t,)`.
+        name: of the file, for messages.
+
+    Returns:
+        Time, signals, and what was done.
+
+    Raises:
+        InputError: more than half of the rows repeat or lack a time: the clock is too coarse or
+        stands still.
+    """
+    time, remarks = np.asarray(time, float), []
+    signals = {column: np.asarray(values, float) for column, values in signals.items()}
+    known = np.isfinite(time)
+    infinite = sorted(column for column, values in signals.items() if np.isinf(values).any())
+    if infinite:
+        remarks.append(f"infinite values count as unknown: {', '.join(infinite[:6])}")
+        signals |= {
+            column: np.where(np.isinf(signals[column]), np.nan, signals[column])
+            for column in infinite
+        }
+    if not known.all():
+        if known.mean() < 0.5:
+            raise InputError(
+                name,
+                "t",
+                None,
+                f"is no number in {int((~known).sum())} of {len(known)} rows: expects a time in "
+                f"every row",
+            )
+        remarks.append(f"{int((~known).sum())} rows have no time and were left out")
+        time, signals = time[known], {column: values[known] for column, values in signals.items()}
+    first = np.concatenate([[True], np.diff(time) != 0])[: len(time)]
+    if first.all():
+        return time, signals, tuple(remarks)
+    repeats = int((~first).sum())
+    if repeats > len(time) / 2:
+        raise InputError(
+            name,
+            "t",
+            None,
+            f"repeats in {repeats} of {len(time)} rows: the clock is too coarse or stands still",
+        )
+    remarks.append(f"{repeats} rows repeat the time of the row before and were merged with it")
+    starts = np.flatnonzero(first)
+    ends = np.append(starts[1:], len(time))
+    merged = {column: values[starts] for column, values in signals.items()}
+    for later in range(1, int((ends - starts).max())):
+        row = np.minimum(
+            starts + later, ends - 1
+        )  # what the first of several rows does not know, a later one may
+        for column, values in signals.items():
+            merged[column] = np.where(np.isnan(merged[column]), values[row], merged[column])
+    return time[starts], merged, tuple(remarks)
+
+
+def chosen_blocks(rows: int, columns: int) -> np.ndarray:
+    """Which blocks of `BLOCK_ROWS` rows to read so that no more than `MAX_VALUES` numbers are held,
+    `(blocks,)` of bool.
+    """
+    blocks = -(-rows // BLOCK_ROWS)
+    most = max(1, MAX_VALUES // (BLOCK_ROWS * max(columns, 1)))
+    if blocks <= most:
+        return np.ones(blocks, bool)
+    chosen = np.zeros(blocks, bool)
+    chosen[np.arange(most) * blocks // most] = True
+    return chosen
+
+
+def shortened(rows: int, kept: int) -> str:
+    """Remark on a recording too long to be read whole."""
+    return (
+        f"too long to be held in memory: {kept} of its {rows} rows were read, in blocks at "
+        f"full "
+        f"rate spread over the recording"
+    )
+
+
+def _columns(
+    file: pyarrow.parquet.ParquetFile, path: Path
+) -> tuple[np.ndarray, dict[str, np.ndarray], list[str]]:
+    import pyarrow
+
+    schema = file.schema_arrow
+    if "t" not in schema.names:
+        raise InputError(
+            path.name,
+            "t",
+            list(schema.names)[:6],
+            "is missing: expects the time in seconds in a column t",
+        )
+    wanted = ["t", *(c for c in schema.names if known_column(c))]
+    if len(set(wanted)) != len(wanted):
+        raise InputError(
+            path.name, next(c for c in wanted if wanted.count(c) > 1), None, "stands twice"
+        )
+    for column in wanted:
+        kind = schema.field(column).type
+        if not (
+            pyarrow.types.is_floating(kind)
+            or pyarrow.types.is_integer(kind)
+            or pyarrow.types.is_boolean(kind)
+            or pyarrow.types.is_null(kind)
+        ):
+            raise InputError(
+                path.name, column, str(kind), "is no column of numbers: expects floats"
+            )
+    rows = file.metadata.num_rows
+    if not rows:
+        raise InputError(path.name, "", None, "is an empty log: it has no rows")
+    others = [c for c in schema.names if c not in wanted and not c.startswith("__")]
+    remarks = (
+        [
+            f"columns that the format does not know were left out: "
+            f"{', '.join(others[:8])}{' ...' if len(others) > 8 else ''}"
+        ]
+        if others
+        else []
+    )
+    chosen = chosen_blocks(rows, len(wanted))
+    parts: dict[str, list[np.ndarray]] = {c: [] for c in wanted}
+    start = 0
+    for group in range(file.metadata.num_row_groups):
+        count = file.metadata.row_group(group).num_rows
+        if count and chosen[start // BLOCK_ROWS : (start + count - 1) // BLOCK_ROWS + 1].any():
+            first = start
+            for batch in file.iter_batches(
+                BLOCK_ROWS, row_groups=[group], columns=wanted, use_threads=False
+            ):
+                keep = chosen[(first + np.arange(batch.num_rows)) // BLOCK_ROWS]
+                first += batch.num_rows
+                if keep.any():
+                    for column in wanted:
+                        parts[column].append(_array(batch.column(column))[keep])
+        start += count
+    found = {c: np.concatenate(parts.pop(c)) for c in wanted}
+    time = found.pop("t")
+    if len(time) < rows:
+        remarks.append(shortened(rows, len(time)))
+    return time, found, remarks
+
+
+def _array(column: Any) -> np.ndarray:
+    import pyarrow
+
+    if pyarrow.types.is_null(column.type):
+        return np.full(len(column), np.nan)
+    return np.asarray(
+        column.cast(pyarrow.float64(), safe=False).to_numpy(zero_copy_only=False), float
+    )
+
+
+def _inside(content: bytes | None, path: Path) -> dict[str, Any]:
+    if content is None:
+        return {}
+    try:
+        found = json.loads(content)
+    except ValueError:
+        raise InputError(path.name, "schema metadata hyperleg", None, "is not JSON") from None
+    if not isinstance(found, dict):
+        raise InputError(
+            path.name, "schema metadata hyperleg", found, "expects names with values, { ... }"
+        )
+    return found
+
+
+def _check_clock(time: np.ndarray, name: str) -> None:
+    if len(time) < 2:
+        raise InputError(name, "t", len(time), "is an empty log: expects at least two rows")
+    if not np.isfinite(time).all():
+        row = int(np.flatnonzero(~np.isfinite(time))[0])
+        raise InputError(name, "t", None, f"is no number in row {row}: expects a time in every row")
+    back = np.flatnonzero(np.diff(time) <= 0)
+    if len(back):
+        row = int(back[0]) + 1
+        found = f"{time[row]:.9g} s in row {row} after {time[row - 1]:.9g} s"
+        raise InputError(
+            name,
+            "t",
+            found,
+            "runs backwards or repeats: sort the rows, or split the recording there",
+        )
+
+
+def _frozen(values: Any, where: str, column: str) -> np.ndarray:
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(where, column, values, "expects numbers") from None
+    if array.ndim != 1:
+        raise InputError(where, column, array.shape, "expects one value a tick")
+    if np.isinf(array).any():
+        raise InputError(
+            where,
+            column,
+            float(array[np.isinf(array)][0]),
+            "expects finite numbers, NaN where unknown",
+        )
+    array.flags.writeable = False
+    return array

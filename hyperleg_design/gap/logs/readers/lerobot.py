@@ -1,0 +1,223 @@
+"""LeRobot datasets (codebase v2.0 to v3.0): `meta/info.json` and Parquet tables under `data`, one
+log an episode.
+
+`observation.state` is taken as positions, `action` as their targets, `observation.velocity` and
+`observation.effort` where a dataset has them. The source lacks gains, torques and, in most
+datasets, velocities; its time stamps are the frame number over the frame rate, not measured. Arms
+of the SO, Koch and similar families are in degrees with the gripper as 0 .. 100; a side file
+`hyperleg.json` may say `units: {"position": "deg"}` or `"rad"`. Joints in normalised units (-100 ..
+100) look like
+degrees: only the dataset's author knows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.gap.logs import log as logs
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.readers.source import FOLDER_FILE, beside, joint_names, made_log
+from hyperleg_design.gap.logs.readers.units import FACTORS
+from hyperleg_design.reading import read_json
+
+IN_DEGREES = ("so100", "so101", "so_", "koch", "moss", "lekiwi", "omx", "bi_so")
+"""Beginnings of `robot_type` whose joints are in degrees."""
+SIGNALS = {
+    "observation.state": "position",
+    "action": "position_target",
+    "observation.velocity": "velocity",
+    "observation.effort": "joint_torque",
+}
+"""Signal by feature."""
+LARGEST_ANGLE = 4 * math.pi
+"""Positions beyond are not radians."""
+
+
+def is_lerobot(path: Path) -> bool:
+    """Whether a folder is a LeRobot dataset."""
+    return path.is_dir() and (path / "meta" / "info.json").is_file()
+
+
+def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]:
+    """A log of each episode, in order.
+
+    Raises:
+        InputError: no `observation.state`, unreadable tables, or positions whose unit is not known.
+    """
+    info = _info(path)
+    said = beside(path, metadata)
+    features = info.get("features", {})
+    if "observation.state" not in features:
+        raise InputError(
+            f"{path.name}/meta/info.json",
+            "features",
+            sorted(features)[:6],
+            "expects observation.state",
+        )
+    found = [name.removesuffix(".pos") for name in _names(features["observation.state"], path.name)]
+    joints = joint_names(said, found, path.name)
+    table, read, rows = _table(path, [f for f in SIGNALS if f in features])
+    scale, remarks = _scale(info, said, found, table, path.name)
+    remarks.append("time stamps are frame numbers over the frame rate, not measured")
+    if read < rows:
+        remarks.append(logs.shortened(rows, read))
+    lacking = [
+        w
+        for w, f in (
+            ("targets", "action"),
+            ("velocities", "observation.velocity"),
+            ("torques", "observation.effort"),
+        )
+        if f not in features
+    ]
+    remarks.append(
+        f"the source lacks {', '.join([*lacking, *([] if said.get('gains') else ['gains'])])}"
+    )
+    made = []
+    for episode in np.unique(table["episode_index"]):
+        mine = table["episode_index"] == episode
+        if mine.sum() < 2:
+            continue
+        signals: dict[str, np.ndarray] = {}
+        for feature, signal in SIGNALS.items():
+            if feature in table:
+                factors = scale if signal != "joint_torque" else np.ones(len(joints))
+                signals |= {
+                    f"{signal}/{joint}": table[feature][mine][:, i] * factors[i]
+                    for i, joint in enumerate(joints)
+                }
+        name = f"{path.name}_{int(episode):06d}"
+        extra = {key: info[key] for key in ("robot_type", "fps", "codebase_version") if key in info}
+        made.append(
+            made_log(
+                path,
+                name,
+                table["timestamp"][mine],
+                signals,
+                {"extra": {**extra, "episode": int(episode)}},
+                said,
+                remarks,
+            )
+        )
+    if not made:
+        raise InputError(path.name, "", None, "is an empty log: no episode has two frames")
+    return made
+
+
+def _info(path: Path) -> dict[str, Any]:
+    where = f"{path.name}/meta/info.json"
+    info = read_json(path / "meta" / "info.json", where)
+    if not isinstance(info, dict) or not isinstance(info.get("features", {}), dict):
+        raise InputError(where, "", None, "expects a mapping with features")
+    return info
+
+
+def _names(feature: Mapping[str, Any], where: str) -> list[str]:
+    names = feature.get("names")
+    if isinstance(names, dict):  # {"motors": [...]}
+        names = next((v for v in names.values() if isinstance(v, list)), None)
+    size = int((feature.get("shape") or [len(names or [])])[0])
+    if names is None or len(names) != size:
+        return [f"joint_{i}" for i in range(size)]
+    return [str(name) for name in names]
+
+
+def _table(path: Path, features: list[str]) -> tuple[dict[str, np.ndarray], int, int]:
+    """Columns of all tables `(t,)` or `(t, n)`, rows read and rows there are."""
+    import pyarrow
+    import pyarrow.parquet
+
+    files = sorted((path / "data").rglob("*.parquet"))
+    if not files:
+        raise InputError(
+            f"{path.name}/data",
+            "",
+            None,
+            "holds no Parquet tables: download the dataset with its data",
+        )
+    columns = ["timestamp", "episode_index", *features]
+    parts: dict[str, list[np.ndarray]] = {c: [] for c in columns}
+    read, rows, held = 0, 0, 0
+    for file in files:
+        try:
+            with pyarrow.parquet.ParquetFile(file) as source:
+                rows += source.metadata.num_rows
+                if held > logs.MAX_VALUES:
+                    continue
+                for batch in source.iter_batches(
+                    logs.BLOCK_ROWS, columns=columns, use_threads=False
+                ):
+                    for column in columns:
+                        parts[column].append(
+                            _array(batch.column(column), f"{path.name}/{file.name}", column)
+                        )
+                        held += parts[column][-1].size
+                    read += batch.num_rows
+        except (pyarrow.ArrowException, OSError, KeyError) as error:
+            raise InputError(
+                f"{path.name}/{file.name}", "", None, f"is no whole table ({in_short(error, 80)})"
+            ) from None
+    try:
+        return {c: np.concatenate(p) for c, p in parts.items()}, read, rows
+    except ValueError:
+        raise InputError(path.name, features[0], None, "has another size in some tables") from None
+
+
+def _array(column: Any, where: str, name: str) -> np.ndarray:
+    import pyarrow
+
+    if pyarrow.types.is_nested(column.type):
+        flat = np.asarray(column.flatten().to_numpy(zero_copy_only=False), float)
+        if len(column) and len(flat) % len(column):
+            raise InputError(where, name, None, "has another size in some rows")
+        return flat.reshape(len(column), -1)
+    return np.asarray(column.to_numpy(zero_copy_only=False), float)
+
+
+def _scale(
+    info: Mapping[str, Any],
+    said: Mapping[str, Any],
+    names: list[str],
+    table: Mapping[str, np.ndarray],
+    where: str,
+) -> tuple[np.ndarray, list[str]]:
+    """Factor of each joint to rad, and what was assumed."""
+    units = said.get("units", {})
+    unit = units.get("position") if isinstance(units, Mapping) else None
+    kind = str(info.get("robot_type") or "")
+    remarks = []
+    if unit is None:
+        if kind.startswith(IN_DEGREES):
+            unit = "deg"
+            remarks.append(f"positions are taken as degrees, as {kind} has them by default")
+        elif np.nanmax(np.abs(table["observation.state"]), initial=0) > LARGEST_ANGLE:
+            largest = round(float(np.nanmax(np.abs(table["observation.state"]))), 3)
+            raise InputError(
+                where,
+                "units.position",
+                largest,
+                f'is no angle in rad: say `"units": {{"position": "deg"}}` in '
+                f"{where}/{FOLDER_FILE}",
+            )
+        else:
+            unit = "rad"
+            remarks.append("positions are taken as rad: the source does not say")
+    if unit not in FACTORS["rad"]:
+        raise InputError(
+            where, "units.position", unit, f"expects one of {', '.join(FACTORS['rad'])}"
+        )
+    scale = np.full(len(names), FACTORS["rad"][unit])
+    grippers = [i for i, name in enumerate(names) if "gripper" in name]
+    if kind.startswith(IN_DEGREES) and grippers:
+        scale[grippers] = 0.01
+        remarks.append(
+            "the gripper is logged as 0 .. 100 and given as 0 .. 1, not as an angle: leave it out "
+            "of the robot"
+        )
+    return scale, remarks

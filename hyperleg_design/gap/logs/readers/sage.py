@@ -1,0 +1,194 @@
+"""SAGE's folders: `joint_list.txt`, `control.csv` (targets), `state_motor.csv` (positions,
+velocities, torques as lists).
+
+Time stamps are microseconds on hardware, seconds in simulation. The source lacks gains, units and
+signs: the SO-101 collector writes the supply current's size under `torques`, which is left out, and
+the jaw's position as 0 .. 1.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.readers.source import beside, joint_names, made_log
+from hyperleg_design.gap.logs.readers.timebase import onto, sorted_stream
+
+STATE, CONTROL, JOINTS = "state_motor.csv", "control.csv", "joint_list.txt"
+SO101 = ("Rotation", "Pitch", "Elbow", "Wrist_Pitch", "Wrist_Roll", "Jaw")
+"""Joint list of the SO-101 arm, six STS3215 servos."""
+SO101_FIRMWARE_GAIN = 16
+"""Position gain that SAGE's collector writes to the servos; integral gain 0."""
+STS3215 = {"torque_constant": 1.2116, "resistance": 2.676, "error_gain": 0.166, "supply": 7.4}
+"""kt [Nm/A], R [ohm], duty a firmware gain and radian, nominal supply [V]: BAM's fit m1 of the 7.4
+V servo. The recorded supply currents agree: duty^2 V / R predicts 19.5 A/rad^2 while holding, 22
+are recorded (the 12 V servo would draw 42)."""
+SO101_JAW_RANGE = 2.29
+"""From closed to open [rad]: logged speed over rate of the 0 .. 1 position, in recordings that move
+the jaw."""
+LONGEST_STEP = 1.0
+"""Median steps beyond are microseconds."""
+
+
+def is_sage(path: Path) -> bool:
+    """Whether a folder is a SAGE recording."""
+    return path.is_dir() and (path / STATE).is_file()
+
+
+def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]:
+    """The log of a SAGE folder, or of one of its CSV files.
+
+    Raises:
+        InputError: a missing, empty or malformed table.
+    """
+    folder = path if path.is_dir() else path.parent
+    said = beside(folder, metadata)
+    time, state = _table(folder / STATE, ("positions", "velocities", "torques"))
+    width = state["positions"].shape[1]
+    listed = (
+        (folder / JOINTS).read_text(encoding="utf-8").split() if (folder / JOINTS).is_file() else []
+    )
+    if listed and len(listed) != width:
+        raise InputError(
+            f"{folder.name}/{JOINTS}",
+            "",
+            len(listed),
+            f"expects {width} names, as many as {STATE} has values",
+        )
+    joints = joint_names(said, listed or [f"joint_{i}" for i in range(width)], folder.name)
+    remarks = [] if listed else ["the source names no joints: joint_0, joint_1, ... in its order"]
+    scale, found = np.ones(width), {}
+    if tuple(listed) == SO101:
+        scale[-1] = SO101_JAW_RANGE
+        found = _so101(joints)
+        remarks.append(
+            f"{joints[-1]} is logged as 0 .. 1 and taken as {SO101_JAW_RANGE} rad from closed to "
+            f"open; its zero is not known"
+        )
+        if "gains" not in said:
+            remarks.append(
+                "gains are worked out from the collector's firmware gain and published kt and R at "
+                "7.4 V"
+            )
+    elif "gains" not in said:
+        remarks.append("the source lacks the controller's gains; say `gains` in a side file")
+    signals = {
+        f"position/{joint}": state["positions"][:, i] * scale[i] for i, joint in enumerate(joints)
+    }
+    if "velocities" in state:
+        signals |= {
+            f"velocity/{joint}": state["velocities"][:, i] for i, joint in enumerate(joints)
+        }
+    if "torques" in state:
+        torque = state["torques"]
+        if np.nanmin(torque) < 0:
+            signals |= {f"joint_torque/{joint}": torque[:, i] for i, joint in enumerate(joints)}
+        else:
+            remarks.append("torques have no sign (the size of a current) and were left out")
+    if (folder / CONTROL).is_file():
+        own, control = _table(folder / CONTROL, ("positions",))
+        if control["positions"].shape[1] != width:
+            raise InputError(
+                f"{folder.name}/{CONTROL}",
+                "positions",
+                control["positions"].shape[1],
+                f"expects {width} values, as {STATE}",
+            )
+        targets = {
+            f"position_target/{joint}": control["positions"][:, i] * scale[i]
+            for i, joint in enumerate(joints)
+        }
+        if len(own) == len(time) and np.array_equal(own, time):
+            signals |= targets
+        else:
+            own, targets, _ = sorted_stream(own, targets)
+            signals |= onto(time, own, targets, hold=True)
+            remarks.append("targets have a clock of their own: each holds until the next")
+    else:
+        remarks.append(f"the source lacks {CONTROL}: no targets")
+    return [made_log(folder, folder.name, time, signals, {"base": "", **found}, said, remarks)]
+
+
+def _so101(joints: list[str]) -> dict[str, Any]:
+    slope = STS3215["torque_constant"] / STS3215["resistance"]
+    gains = [
+        slope * STS3215["supply"] * STS3215["error_gain"] * SO101_FIRMWARE_GAIN,
+        slope * STS3215["torque_constant"],
+    ]
+    return {
+        "base": "fixed",
+        "gains": dict.fromkeys(joints, gains),
+        "torque_constant": dict.fromkeys(joints, STS3215["torque_constant"]),
+        "supply": dict.fromkeys(
+            joints,
+            (
+                STS3215["supply"],
+                slope * STS3215["supply"],
+                STS3215["supply"] / STS3215["torque_constant"],
+            ),
+        ),
+        "extra": {
+            "servo": "STS3215",
+            "kp": SO101_FIRMWARE_GAIN,
+            "vin": STS3215["supply"],
+            "resistance": STS3215["resistance"],
+        },
+        "session": "so101",
+    }
+
+
+def _table(path: Path, lists: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Time [s] `(t,)` and the columns of lists `(t, n)` of one CSV file."""
+    import pandas as pd
+
+    where = f"{path.parent.name}/{path.name}"
+    if not path.is_file():
+        raise InputError(
+            where,
+            "",
+            None,
+            f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}",
+        )
+    try:
+        table = pd.read_csv(path)
+    except (ValueError, pd.errors.ParserError, OSError) as error:
+        raise InputError(where, "", None, f"is no table ({in_short(error, 80)})") from None
+    for column in ("timestamp", "positions"):
+        if column not in table:
+            raise InputError(where, column, list(table.columns)[:6], "is missing")
+    if len(table) < 2:
+        raise InputError(where, "", len(table), "is an empty log: expects at least two rows")
+    time = pd.to_numeric(table["timestamp"], errors="coerce").to_numpy(float)
+    if np.nanmedian(np.diff(time)) > LONGEST_STEP:
+        time = time * 1e-6
+    found = {}
+    for column in lists:
+        if column in table:
+            found[column] = _rows(table[column].tolist(), where, column)
+    return time, found
+
+
+def _rows(texts: list[Any], where: str, column: str) -> np.ndarray:
+    rows: list[list[float]] = []
+    for number, text in enumerate(texts):
+        try:
+            row = [float(v) for v in json.loads(str(text).replace("nan", "NaN"))]
+        except (ValueError, TypeError):
+            raise InputError(
+                where, f"{column}, row {number}", text, "expects a list of numbers, [0.1, 0.2]"
+            ) from None
+        if rows and len(row) != len(rows[0]):
+            raise InputError(
+                where,
+                f"{column}, row {number}",
+                len(row),
+                f"expects {len(rows[0])} values, as in the first row",
+            )
+        rows.append(row)
+    return np.array(rows, float)

@@ -1,0 +1,84 @@
+"""What all readers share: metadata from beside a source, joints renamed, clocks that start at
+zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.logs.log import Log, finished_log
+from hyperleg_design.gap.logs.metadata import Metadata, metadata_from_mapping, read_metadata_mapping
+
+FOLDER_FILE = "hyperleg.json"
+"""Side file inside a folder that is one recording."""
+LATEST_START = 1e6
+"""Clocks that start later count from the epoch and are shifted to start at zero [s]."""
+
+
+def side_file(path: Path) -> Path:
+    """Where a user writes metadata of a source: `hyperleg.json` in a folder, `NAME.json`, or
+    `NAME.meta.json` beside a JSON file.
+    """
+    if path.is_dir():
+        return path / FOLDER_FILE
+    return path.with_suffix(".meta.json" if path.suffix.lower() == ".json" else ".json")
+
+
+def beside(path: Path, given: Mapping[str, Any] | None) -> dict[str, Any]:
+    """What a user says of a source: its side file, overruled by what was given to the reader."""
+    side = side_file(path)
+    return {**(read_metadata_mapping(side) if side.is_file() else {}), **(given or {})}
+
+
+def joint_names(said: Mapping[str, Any], found: list[str], where: str) -> list[str]:
+    """Names of a source's joints in its order: those a user gives as `joints`, else those found.
+
+    Raises:
+        InputError: another number of names.
+    """
+    names = said.get("joints", found)
+    if (
+        not isinstance(names, list | tuple)
+        or len(names) != len(found)
+        or not all(isinstance(n, str) for n in names)
+    ):
+        raise InputError(
+            where,
+            "joints",
+            names,
+            f"expects a list of {len(found)} names, in the order of the source",
+        )
+    if len(set(names)) != len(names):
+        raise InputError(where, "joints", names, "expects different names")
+    return list(names)
+
+
+def made_log(
+    path: Path,
+    name: str,
+    time: np.ndarray,
+    signals: Mapping[str, np.ndarray],
+    found: Mapping[str, Any],
+    said: Mapping[str, Any],
+    remarks: Iterable[str],
+) -> Log:
+    """A log from a source; what the user says wins over what the source says.
+
+    Raises:
+        InputError: an unusable clock, no position, or bad metadata.
+    """
+    said = {key: value for key, value in said.items() if key not in ("joints", "columns", "units")}
+    time = np.asarray(time, float)
+    extra = dict(found.get("extra", {}))
+    if len(time) and np.isfinite(time[0]) and abs(time[0]) > LATEST_START:
+        extra["start_time"] = float(time[0])
+        time = time - time[0]
+    metadata: Metadata = metadata_from_mapping(
+        {**found, "extra": extra, **said}, side_file(path).name if said else path.name
+    )
+    return finished_log(path, time, signals, metadata, remarks, name)

@@ -1,0 +1,337 @@
+"""Logs of simulations: evaluation trials and plain rollouts, with every signal that the simulator
+knows.
+
+Each row is the state at the start of a simulation step and what acted during it. Position targets
+are those of the joint controllers; the motor torque command is what they ask of the motors before
+any limit, `M^-1 (stiffness (target - position) - damping velocity)`; the joint torque is `M` times
+the motor torque, before friction. The accelerometer sits at the pelvis's origin and gives the mean
+over the step, the change of velocity that the simulation made of it; the last row has none.
+Velocities of the base are those at the time of its places, as sensors would give them; those of the
+joints are what the controller knows. With an overlay, joint states, motor torques and IMU are what
+encoders, drives and sensors tell of them, the motor torque command is that of the controller, and
+the joint torque is the model's `M` times what drives take themselves to give.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.logs.log import Log, write_log
+from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.robot.models import quaternion_matrix
+from hyperleg_design.robot.motors import find_motor
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SIDES
+from hyperleg_design.simulation.actuation import actuation_model
+from hyperleg_design.simulation.layout import GRAVITY
+from hyperleg_design.simulation.told import TOLD
+from hyperleg_design.writing import output_folder, write_text
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.evaluation.rollout import Trial
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.actuation import ActuationModel
+    from hyperleg_design.simulation.environment import Environment
+    from hyperleg_design.simulation.layout import Layout
+    from hyperleg_design.simulation.rollout import Recording
+
+TRIAL_SIGNALS = (
+    "base_position",
+    "base_orientation",
+    "base_velocity",
+    "base_angular_velocity",
+    "joint_target",
+    "joint_position",
+    "joint_velocity",
+    "driven_joint_torque",
+    "motor_torque",
+    "motor_velocity",
+    "pad_force",
+)
+"""Of a simulation that a log is made of; `base_angular_velocity` and `joint_target` may be
+missing."""
+
+
+def log_of_trial(
+    trial: Trial, *, name: str = "trial", metadata: Mapping[str, Any] | None = None
+) -> Log:
+    """The log of one evaluation trial, a row a simulation step.
+
+    Args:
+        trial: a walk, a T-test, or any other, with two samples at least.
+        name: of the log.
+        metadata: fields of `Metadata` to replace, such as `robot` or `session`.
+
+    Raises:
+        InputError: a trial that ended at once.
+    """
+    found = {n: getattr(trial, n) for n in TRIAL_SIGNALS} | dict(trial.told)
+    extra = {"outcome": trial.outcome, "end_time": trial.end_time}
+    return _log(
+        trial.design,
+        trial.layout,
+        trial.time_step,
+        {n: v for n, v in found.items() if v is not None},
+        name,
+        {"extra": extra, **(metadata or {})},
+    )
+
+
+def log_of_recording(
+    environment: Environment,
+    recording: Recording,
+    simulation: int = 0,
+    *,
+    name: str = "rollout",
+    metadata: Mapping[str, Any] | None = None,
+) -> Log:
+    """The log of one simulation of `simulation.rollout.rollout`, up to the end of its first
+    episode.
+
+    Args:
+        environment: that was recorded.
+        recording: with all signals.
+        simulation: which.
+        name: of the log.
+        metadata: fields of `Metadata` to replace.
+
+    Raises:
+        InputError: no such simulation, or a signal that was not kept.
+    """
+    count = len(recording.first_end)
+    if not 0 <= simulation < count:
+        raise InputError("recording", "simulation", simulation, f"expects 0 .. {count - 1}")
+    missing = [n for n in TRIAL_SIGNALS if n not in recording.signals]
+    if missing:
+        raise InputError("recording", "signals", missing[0], "was not kept; record with keep=None")
+    design = (
+        environment.design.take(simulation)
+        if environment.design.batch_shape
+        else environment.design
+    )
+    rows = int(recording.first_end[simulation]) * recording.substeps
+    found = {
+        n: values[simulation, :rows]
+        for n, values in recording.signals.items()
+        if n in TRIAL_SIGNALS or n.startswith(TOLD)
+    }
+    return _log(design, environment.layout, recording.time_step, found, name, dict(metadata or {}))
+
+
+def write_logs(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]) -> list[Path]:
+    """Write every kept trial of some evaluations as `POLICY_PROTOCOL_TRIAL.parquet`, with the
+    robots' designs beside them.
+
+    Trials with fewer than two samples are left out.
+
+    Returns:
+        The files, in the order of the trials.
+
+    Raises:
+        OutputError: the folder is somebody else's, or cannot be written; nothing half-written is
+        left.
+    """
+    names: list[str] = []
+    robots: dict[str, str] = {}
+    with output_folder(folder) as place:
+        for number, one in enumerate(evaluations):
+            stem = f"{_file_name(one.policy)}_{_file_name(one.protocol.name)}"
+            if any(name.startswith(f"{stem}_") for name in names):
+                stem = f"{stem}_{number}"
+            for index, trial in enumerate(one.trials):
+                if trial.samples < 2:
+                    continue
+                robot = _robot_file(trial.design, robots)
+                said = {
+                    "robot": robot,
+                    "session": stem,
+                    "notes": f"trial {index} of {one.protocol.name} with {one.policy}, simulated",
+                }
+                write_log(
+                    place / f"{stem}_{index:03d}.parquet",
+                    log_of_trial(trial, name=f"{stem}_{index:03d}", metadata=said),
+                )
+                names.append(f"{stem}_{index:03d}.parquet")
+        for robot, text in robots.items():
+            write_text(place / robot, text)
+    return [Path(folder) / name for name in names]
+
+
+def _robot_file(design: Design, robots: dict[str, str]) -> str:
+    """Name of the file of a design; a new one where its content differs from those there."""
+    import yaml
+
+    text = yaml.safe_dump(design.to_mapping(), sort_keys=False)
+    for name, known in robots.items():
+        if known == text:
+            return name
+    name = (
+        f"{_file_name(design.name)}.yaml"
+        if f"{_file_name(design.name)}.yaml" not in robots
+        else f"{_file_name(design.name)}_{len(robots)}.yaml"
+    )
+    robots[name] = text
+    return name
+
+
+def _file_name(name: str) -> str:
+    return "".join(
+        c if c.isalnum() or c in "-." else "_" for c in Path(name).name.removesuffix(".onnx")
+    )
+
+
+def _log(
+    design: Design,
+    layout: Layout,
+    time_step: float,
+    found: Mapping[str, np.ndarray],
+    name: str,
+    said: Mapping[str, Any],
+) -> Log:
+    rows = len(found["joint_position"])
+    if rows < 2:
+        raise InputError(name, "samples", rows, "ended at once: a log needs two samples at least")
+    model = actuation_model(design)
+    found = _as_told(model, found)
+    signals = (
+        _joint_signals(design, layout, found)
+        | _motor_signals(design, layout, found)
+        | _base_signals(found, time_step)
+    )
+    signals |= _contact_signals(layout, found["pad_force"])
+    gains = {
+        j: (k, d)
+        for j, k, d in zip(
+            layout.joints, np.tile(model.stiffness, 2), np.tile(model.damping, 2), strict=True
+        )
+    }
+    constants = dict(zip(layout.motors, _torque_constants(design, layout).tolist(), strict=True))
+    known: dict[str, Any] = {
+        "robot": design.name,
+        "base": "floating",
+        "gains": gains,
+        "torque_constant": constants,
+        "gravity": (0, 0, -GRAVITY),
+    }
+    return Log(name, np.arange(rows) * time_step, signals, Metadata(**(known | dict(said))))
+
+
+def _as_told(model: ActuationModel, found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Signals as drives and sensors tell them; `motor_command` and `acceleration_error` only where
+    they tell something of their own.
+    """
+    told = {
+        name.removeprefix(TOLD): values for name, values in found.items() if name.startswith(TOLD)
+    }
+    found = dict(found)
+    if not told:
+        return found
+    found["base_angular_velocity"] = told.pop("angular_velocity")
+    found |= told
+    legs = (len(told["motor_torque"]), 2, -1)
+    found["driven_joint_torque"] = (
+        told["motor_torque"].reshape(legs) @ model.joint_from_motor.T
+    ).reshape(legs[0], -1)
+    return found
+
+
+def _joint_signals(
+    design: Design, layout: Layout, found: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    kinds = {
+        "position_target": "joint_target",
+        "position": "joint_position",
+        "velocity": "joint_velocity",
+        "joint_torque": "driven_joint_torque",
+    }
+    return {
+        f"{kind}/{joint}": found[n][:, i]
+        for kind, n in kinds.items()
+        if n in found
+        for i, joint in enumerate(layout.joints)
+    }
+
+
+def _motor_signals(
+    design: Design, layout: Layout, found: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    columns = {
+        "motor_torque": found["motor_torque"],
+        "motor_current": found["motor_torque"] / _torque_constants(design, layout),
+    }
+    columns["motor_velocity"] = found["motor_velocity"]
+    if "motor_command" in found:
+        columns = {"motor_torque_command": found["motor_command"], **columns}
+    elif "joint_target" in found:
+        model, legs = actuation_model(design), (len(found["joint_target"]), 2, -1)
+        error = (found["joint_target"] - found["joint_position"]).reshape(legs)
+        wanted = model.stiffness * error - model.damping * found["joint_velocity"].reshape(legs)
+        command = (wanted @ model.motor_from_joint.T).reshape(len(wanted), -1)
+        columns = {"motor_torque_command": command, **columns}
+    return {
+        f"{kind}/{motor}": values[:, i]
+        for kind, values in columns.items()
+        for i, motor in enumerate(layout.motors)
+    }
+
+
+def _torque_constants(design: Design, layout: Layout) -> np.ndarray:
+    """Of both legs' motors, before any gear, `(K,)` [Nm/A]."""
+    places = [ACTUATOR_OF_MOTOR[i] for i in range(layout.leg_motors)]
+    constants = [
+        find_motor(str(getattr(design.actuators, place).motor)).torque_constant for place in places
+    ]
+    return np.tile(np.array(constants), 2)
+
+
+def _base_signals(found: Mapping[str, np.ndarray], time_step: float) -> dict[str, np.ndarray]:
+    velocity, orientation = found["base_velocity"], found["base_orientation"]
+    acceleration = np.full_like(velocity, np.nan)
+    acceleration[:-1] = np.diff(velocity, axis=0) / time_step
+    rotation = quaternion_matrix(np.roll(orientation, -1, axis=-1).T)  # (3, 3, t)
+    felt = np.einsum("jit,tj->ti", rotation, acceleration + np.array([0.0, 0.0, GRAVITY]))
+    felt += found.get("acceleration_error", 0.0)
+    parts = {
+        "accelerometer": felt,
+        "base_position": found["base_position"],
+        "base_velocity": _at_its_time(velocity),
+    }
+    if "base_angular_velocity" in found:
+        parts = {"gyro": _at_its_time(found["base_angular_velocity"]), **parts}
+    signals = {
+        f"{kind}/{axis}": values[:, i]
+        for kind, values in parts.items()
+        for i, axis in enumerate("xyz")
+    }
+    return signals | {
+        f"base_orientation/{axis}": orientation[:, i] for i, axis in enumerate("wxyz")
+    }
+
+
+def _at_its_time(velocity: np.ndarray) -> np.ndarray:
+    """Velocities `(t, k)` at the time of the places beside them: MuJoCo's are those of half a step
+    before, as it steps them first.
+    """
+    found = velocity.copy()
+    found[:-1] = (velocity[:-1] + velocity[1:]) / 2
+    found[-1] += (velocity[-1] - velocity[-2]) / 2
+    return found
+
+
+def _contact_signals(layout: Layout, pad_force: np.ndarray) -> dict[str, np.ndarray]:
+    """Forces on each foot, and on each of its pads."""
+    feet = {
+        f"{side}_foot": pad_force[:, layout.pad_foot == i].sum(1) for i, side in enumerate(SIDES)
+    }
+    pads = {pad: pad_force[:, i] for i, pad in enumerate(layout.pads)}
+    return {
+        f"contact_force/{place}_{axis}": force[:, i]
+        for place, force in (feet | pads).items()
+        for i, axis in enumerate("xyz")
+    }

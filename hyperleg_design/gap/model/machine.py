@@ -1,0 +1,44 @@
+"""The machine that a subject is to its drives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.simulation.alteration import Machine
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.model.subject import Subject
+
+
+def machine_of(subject: Subject) -> Machine:
+    """Arrays in the order of the subject's joints and motors; gains that nobody knows are 0."""
+    gains = np.nan_to_num(subject.gains)
+    count = len(subject.motors)
+    power, rated, voltage = np.zeros(count), np.full(count, np.inf), subject.voltage
+    if subject.design is not None:
+        from hyperleg_design.simulation.machine import machine_of as machine_of_design
+
+        whole = machine_of_design(subject.design)
+        places = [whole.motor(name) for name in subject.motors]
+        power, rated, voltage = (
+            whole.power_constant[places],
+            whole.rated_torque[places],
+            whole.voltage,
+        )
+    return Machine(
+        joints=subject.joints,
+        motors=subject.motors,
+        joint_from_motor=subject.joint_from_motor,
+        motor_from_joint=subject.motor_from_joint,
+        stiffness=gains[:, 0],
+        damping=gains[:, 1],
+        rotor_inertia=subject.rotor_inertia,
+        no_load_speed=subject.no_load_speed,
+        stall_torque=subject.stall_torque,
+        peak_torque=subject.torque_limit,
+        power_constant=power,
+        rated_torque=rated,
+        voltage=voltage,
+    )

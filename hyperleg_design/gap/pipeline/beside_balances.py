@@ -1,0 +1,240 @@
+"""Causes that no balance shows, put into a diagnosis: belts that are heard, sensors that differ
+from others, feet that slide or sink.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from hyperleg_design.gap.experiments import experiment
+from hyperleg_design.gap.inference.detectors.heard import KNOCKING, RINGING, UNSTABLE
+from hyperleg_design.gap.inference.detectors.imu_offset import OFFSET, PLACE
+from hyperleg_design.gap.inference.detectors.sinking import SINKS
+from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
+from hyperleg_design.gap.inference.detectors.slipping import SLIPS
+from hyperleg_design.gap.results.diagnosis import (
+    LEAST_SHARE,
+    MOST_RIVALS,
+    Diagnosis,
+    Named,
+    Place,
+    Shrinkage,
+)
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.detectors.heard import Heard
+    from hyperleg_design.gap.inference.detectors.imu_offset import Offset
+    from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+
+APART = (RINGING, KNOCKING, UNSTABLE, OFFSET, SLIPS, SINKS)
+"""Shapes by which such causes are known."""
+OTHER_SENSOR = 0.05
+"""Probability that what differs from an IMU is wrong instead of it (assumed)."""
+OTHER_GROUND = 0.05
+"""Probability that forces or heights of feet are wrong instead of their ground (assumed)."""
+OF_FEET = 0.5
+"""Share of an unknown gap in the ground under feet that tell of it, from which it is theirs."""
+OTHERWISE = 0.15
+"""Probability at most that something else makes such noises (assumed): it would have explained
+them."""
+
+
+def of_heard(told: Diagnosis, heard: Heard) -> Diagnosis:
+    """A diagnosis with what is heard of belts and control loops: beside what is named already, or
+    instead of nothing.
+
+    Where nothing is named, the gap is that of the noise: what rings is in no balance.
+    """
+    names = tuple((c.effect, c.location) for c in heard.causes)
+    rivals = [r for r in told.rivals if (r.effect, r.location) not in names]
+    beside = sum(r.probability for r in rivals)
+    likely = 1 - (OTHERWISE if told.causes else min(beside, OTHERWISE))
+    first, *others = (replace(c, probability=likely * c.probability) for c in heard.causes)
+    noise = {
+        "shape": heard.shape,
+        "location": heard.location,
+        "says": heard.says,
+        "closed_beyond": heard.closed,
+        "gain": 0.0,
+    }
+    shapes = (noise, *(s for s in told.residual_shape if s["shape"] != "chatter"))
+    sets = (names,) if others else ()
+    if told.causes:
+        return replace(
+            told,
+            verdict="ambiguous" if others else told.verdict,
+            causes=(*told.causes, first),
+            rivals=(*rivals, *others)[:MOST_RIVALS],
+            equivalent=(*told.equivalent, *sets),
+            residual_shape=shapes,
+        )
+    rivals = [
+        replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12), closed=0.0)
+        for r in rivals
+    ]  # of what is heard
+    trial = experiment.separating(names) if others else None
+    ordered = sorted(heard.shares.items(), key=lambda item: (-item[1], item[0]))
+    size = heard.size
+    return replace(
+        told,
+        verdict="ambiguous" if others else "explained",
+        gap=Shrinkage(
+            size, (1 - heard.closed) * size, 0.0, heard.closed, heard.closed_interval, heard.unit
+        ),
+        where=tuple(
+            Place(place, heard.kind, "all", share)
+            for place, share in ordered
+            if share >= LEAST_SHARE
+        ),
+        causes=(first,),
+        rivals=(*others, *rivals)[:MOST_RIVALS],
+        equivalent=sets,
+        separating_experiment=None if trial is None else experiment.as_mapping(trial, names),
+        residual_shape=shapes,
+    )
+
+
+def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
+    """A diagnosis with an IMU's constant error: beside what is named already, or instead of
+    nothing; of an unknown gap it is a part.
+
+    Of one that is named already, its sizes where they are surer.
+
+    A vertical that leans is no effect of the catalogue, but may be an accelerometer's error: alone,
+    it is an unknown gap.
+    """
+    if any((c.effect, c.location) == PLACE for c in told.causes):
+        causes = tuple(
+            _surer(c, offset) if (c.effect, c.location) == PLACE else c for c in told.causes
+        )
+        return told if causes == told.causes else replace(told, causes=causes)
+    shape = {
+        "shape": OFFSET,
+        "location": PLACE[1],
+        "says": offset.says,
+        "closed_beyond": offset.closed,
+        "gain": 0.0,
+    }
+    told = replace(
+        told,
+        residual_shape=(shape, *told.residual_shape),
+        rivals=tuple(r for r in told.rivals if (r.effect, r.location) != PLACE),
+    )
+    cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
+    if told.causes:
+        return told if offset.leans else replace(told, causes=(*told.causes, cause))
+    if told.verdict == "unknown" or offset.leans:
+        return replace(_with_part(told, cause), verdict="unknown")
+    gap = Shrinkage(
+        offset.size, offset.left, 0.0, offset.closed, (offset.closed, offset.closed), offset.unit
+    )
+    return _instead(told, (cause,), gap, (Place(PLACE[1], "sensor", "all", 1.0),))
+
+
+def _surer(cause: Named, offset: Offset) -> Named:
+    """An IMU's errors as balances tell them, or as other sensors do, whichever is surer; what no
+    other sensor tells has no interval.
+    """
+    told = {
+        n: p
+        for n, p in offset.parameters.items()
+        if 0 < p.high - p.low < cause.parameters[n].high - cause.parameters[n].low
+    }
+    return replace(cause, parameters={**cause.parameters, **told})
+
+
+def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
+    """A diagnosis with what feet tell of their ground: beside what is named already, or instead of
+    nothing.
+
+    An unknown gap is theirs where it lies under them, else they are a part of it.
+    """
+    told = _without_creep(told, feet)
+    feet = [one for one in feet if one.name not in {(c.effect, c.location) for c in told.causes}]
+    if not feet:
+        return told
+    noted = (
+        {
+            "shape": one.shape,
+            "location": one.foot,
+            "says": one.says,
+            "closed_beyond": one.closed,
+            "gain": 0.0,
+        }
+        for one in feet
+    )
+    effects = {one.effect for one in feet}
+    told = replace(
+        told,
+        residual_shape=(*noted, *told.residual_shape),
+        rivals=tuple(r for r in told.rivals if r.effect not in effects),
+    )
+    causes = tuple(Named(*one.name, 1 - OTHER_GROUND, one.closed, one.parameters) for one in feet)
+    if told.causes:
+        return replace(told, causes=(*told.causes, *causes))
+    theirs = sum(
+        w.share
+        for w in told.where
+        if w.regime == "all" and w.kind == "foot" and w.location in {one.foot for one in feet}
+    )
+    if told.verdict == "unknown" and theirs < OF_FEET:
+        return _with_part(told, causes[0])
+    weight = sum(one.weight for one in feet)
+    before = sum(one.weight * one.size**2 for one in feet) / weight
+    after = sum(one.weight * one.left**2 for one in feet) / weight
+    closed = 1 - (after / before) ** 0.5
+    gap = Shrinkage(before**0.5, after**0.5, 0.0, closed, (closed, closed), feet[0].unit)
+    return _instead(
+        told,
+        causes,
+        gap,
+        tuple(
+            Place(one.foot, "foot", "all", one.weight * one.size**2 / (before * weight))
+            for one in feet
+        ),
+    )
+
+
+def _with_part(told: Diagnosis, cause: Named) -> Diagnosis:
+    """An unknown gap, of which a cause may be a part."""
+    beside = sum(r.probability for r in told.rivals)
+    return replace(
+        told,
+        rivals=(replace(cause, probability=max(1 - beside, 0.0) / 2), *told.rivals)[:MOST_RIVALS],
+    )
+
+
+def _instead(
+    told: Diagnosis, causes: tuple[Named, ...], gap: Shrinkage, where: tuple[Place, ...]
+) -> Diagnosis:
+    """Causes alone, with a gap of their own; what was a rival shares what is left of the first
+    one's probability.
+    """
+    beside, otherwise = sum(r.probability for r in told.rivals), 1 - causes[0].probability
+    rivals = tuple(
+        replace(r, probability=r.probability * otherwise / max(beside, 1.0), closed=0.0)
+        for r in told.rivals
+    )
+    return replace(told, verdict="explained", gap=gap, where=where, causes=causes, rivals=rivals)
+
+
+def _without_creep(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
+    """Without slippery ground under feet that sink and are not known to slide: what is soft
+    creeps.
+    """
+    slid = {one["location"] for one in told.residual_shape if one["shape"] == SLIPS}
+    soft = {(SLIPPERY, one.foot) for one in feet if one.shape == SINKS and one.foot not in slid}
+    kept = tuple(c for c in told.causes if (c.effect, c.location) not in soft)
+    if len(kept) == len(told.causes):
+        return told
+    sets = tuple(group for group in told.equivalent if not soft.intersection(group))
+    verdict = "explained" if told.verdict == "ambiguous" and not sets else told.verdict
+    return replace(
+        told,
+        verdict=verdict,
+        causes=kept,
+        equivalent=sets,
+        separating_experiment=told.separating_experiment if sets else None,
+    )

@@ -1,0 +1,139 @@
+"""Diagnose the gap between logs and a robot's model: where it lies, which effects cause it, how far
+it shrinks with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.checks.check import Check, check_log
+from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.decide import decide
+from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, imu_offset
+from hyperleg_design.gap.inference.detectors.sinking import EFFECT as SOFT
+from hyperleg_design.gap.inference.detectors.sinking import sinks
+from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
+from hyperleg_design.gap.inference.detectors.slipping import slips
+from hyperleg_design.gap.inference.preparation import prepare
+from hyperleg_design.gap.inference.sensitivity import smallest
+from hyperleg_design.gap.inference.thresholds import Thresholds, load_thresholds
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.pipeline.answer import Answer
+from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_imu
+from hyperleg_design.gap.results.diagnosis import Diagnosis
+from hyperleg_design.gap.signals.conditioning import condition
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.signals.signals import Signals
+
+
+def diagnose(
+    robot: str | Path | None,
+    logs: Sequence[Log],
+    reference: Sequence[Log] = (),
+    *,
+    seed: int = 0,
+    thresholds: str | Path | Thresholds | None = None,
+    threads: int = 2,
+    show: Callable[[str], None] | None = None,
+) -> Diagnosis:
+    """Diagnose logs of a robot.
+
+    Args:
+        robot: a design of ours, an MJCF or a URDF file; none: what the logs name.
+        logs: to be diagnosed; those whose metadata call them references count as such.
+        reference: of the same robot when all was well.
+        seed: of the bootstrap; the same logs and seed give the same diagnosis.
+        thresholds: rules, or a file of them; the shipped ones by default.
+        threads: that share the work; they change no result.
+        show: takes lines of progress.
+
+    Raises:
+        InputError: no log to diagnose, a log that is not fit for it, or one that does not go with
+        the robot.
+    """
+    say = show or (lambda _: None)
+    tests = [log for log in logs if log.metadata.role != "reference"]
+    well = [*(log for log in logs if log.metadata.role == "reference"), *reference]
+    healthy = [log.changed(metadata=replace(log.metadata, role="reference")) for log in well]
+    if not tests:
+        raise InputError(
+            "diagnose",
+            "logs",
+            len(logs),
+            "name no log to be diagnosed: give at least one that is not a reference",
+        )
+    subject = load_subject(robot, [*tests, *healthy])
+    checks = [check_log(log, subject) for log in [*tests, *healthy]]
+    for check in checks:
+        check.refuse()
+    say(f"conditioning {len(checks)} logs of {subject.name}")
+    return diagnose_signals(
+        [condition(log, subject) for log in tests],
+        [condition(log, subject) for log in healthy],
+        seed=seed,
+        thresholds=thresholds,
+        threads=threads,
+        show=show,
+        checks=checks,
+    )
+
+
+def diagnose_signals(
+    signals: Sequence[Signals],
+    references: Sequence[Signals] = (),
+    *,
+    seed: int = 0,
+    thresholds: str | Path | Thresholds | None = None,
+    threads: int = 2,
+    show: Callable[[str], None] | None = None,
+    checks: Sequence[Check] = (),
+    effects: Sequence[str] | None = None,
+) -> Diagnosis:
+    """Diagnose conditioned logs; arguments as of `diagnose`.
+
+    Args:
+        signals: of the logs to be diagnosed.
+        references: of logs of the healthy robot.
+        seed: of the bootstrap.
+        thresholds: rules, or a file of them.
+        threads: that share the work.
+        show: takes lines of progress.
+        checks: of the logs, for remarks and doubts.
+        effects: of the catalogue that are tried; all by default.
+
+    Raises:
+        InputError: no log, or none with a residual.
+    """
+    say = show or (lambda _: None)
+    rules = thresholds if isinstance(thresholds, Thresholds) else load_thresholds(thresholds)
+    if not signals:
+        raise InputError("diagnose", "logs", None, "are missing: give at least one log")
+    say("calibration errors and floor")
+    ready = prepare(signals, references, rules, threads)
+    samples = ready.base.samples
+    say(
+        f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue"
+    )
+    places = screen.places(samples.sieves[0].signals.subject, effects)
+    judge, found = decide(ready.base, rules, places, threads, references)
+    say("intervals, rivals, the next experiment and what these logs can show")
+    told = Answer(
+        ready, judge, found, seed, list(signals), list(references), list(checks)
+    ).diagnosis()
+    judged = [
+        name for name in places if name not in {(n.effect, n.location) for n in found.not_judged}
+    ]
+    told = replace(told, sensitivity=tuple(one.mapping() for one in smallest(judge, judged)))
+    for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
+        if effects is None or effect in effects:
+            told = of_feet(told, tell(signals, references))
+    if effects is not None and PLACE[0] not in effects:
+        return told
+    offset = imu_offset(signals, references)
+    return told if offset is None else of_imu(told, offset)

@@ -1,0 +1,166 @@
+"""What an added effect changes: how well the simulation replays logs, and what it says of a
+policy's walk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.evaluation import statistics
+from hyperleg_design.evaluation.evaluate import evaluate_many
+from hyperleg_design.evaluation.measures import measure_of
+from hyperleg_design.gap.playback.replay import best_input, replay, short_windows
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from hyperleg_design.evaluation.protocol import Protocol
+    from hyperleg_design.gap.playback.overlay import Overlay
+    from hyperleg_design.gap.signals.signals import Signals
+
+COMPARED = (
+    "fell",
+    "mean_speed",
+    "cost_of_transport",
+    "battery_cost_of_transport",
+    "power",
+    "grf_peak",
+    "grf_loading_rate",
+    "cadence",
+    "step_length",
+    "double_support",
+    "time",
+    "mean_deviation",
+    "peak_deviation",
+)
+"""Measures of a walk or a T-test that are set side by side, those that its protocol has."""
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """Error of the predicted position of one joint over short windows of all logs, root mean square
+    [rad].
+    """
+
+    joint: str
+    before: float
+    after: float
+    windows: int
+    """Lost ones, in which a simulation diverged, left out."""
+    follows: str
+    """What the replay followed: `target`, or `torque`."""
+
+
+@dataclass(frozen=True)
+class Changed:
+    """One measure of a policy's trials without and with the effect; the trials begin alike."""
+
+    measure: str
+    unit: str
+    before: float
+    after: float
+    """Means over the trials."""
+    difference: float
+    low: float
+    high: float
+    """Of after less before, trial by trial, with its 95 % interval; NaN where fewer than two trials
+    have both."""
+    trials: int
+
+
+def replayed(signals: Sequence[Signals], overlay: Overlay, *, threads: int = 1) -> list[Replayed]:
+    """Replay logs without and with an overlay, over short windows that start from the logged
+    states.
+
+    Args:
+        signals: conditioned logs of one robot; held-out ones, if the overlay came of logs.
+        overlay: causes to add.
+        threads: of MuJoCo; the result does not depend on them.
+
+    Raises:
+        InputError: no stretch without gaps, or a place that the robot does not have.
+    """
+    squares: list[np.ndarray] = []
+    for one in signals:
+        changes: Sequence[Any] = [(), overlay.alterations(one.subject)]
+        position, _ = replay(one, changes, short_windows(one), threads=threads).errors(one)
+        squares.append(
+            np.nanmean(position**2, axis=2)
+            if position.size
+            else np.zeros((2, 0, len(one.subject.joints)))
+        )
+    together = np.concatenate(squares, 1)
+    kept = np.isfinite(together).all((0, 2))
+    root = np.sqrt(together[:, kept].mean(1))
+    subject, follows = signals[0].subject, best_input(signals[0])
+    return [
+        Replayed(joint, float(root[0, j]), float(root[1, j]), int(kept.sum()), follows)
+        for j, joint in enumerate(subject.joints)
+    ]
+
+
+def walked(
+    policy: str | Path,
+    overlay: Overlay,
+    protocol: Protocol | str | Path | None = None,
+    *,
+    workers: int = 2,
+) -> list[Changed]:
+    """Evaluate a policy without and with an overlay, from the same starting states.
+
+    Args:
+        policy: ONNX file, or name of a shipped training.
+        overlay: causes to add.
+        protocol: what suits the policy's task by default.
+        workers: processes.
+
+    Raises:
+        InputError: as `evaluation.evaluate`, or a place that the robot does not have.
+    """
+    (before,) = evaluate_many([policy], protocol, workers=workers)
+    (after,) = evaluate_many([policy], protocol, workers=workers, alterations=overlay.alterations)
+    found = []
+    for name in COMPARED:
+        if name not in before.measures[0] or name not in after.measures[0]:
+            continue
+        first, second = before.values(name), after.values(name)
+        both = np.isfinite(first) & np.isfinite(second)
+        nan = float("nan")
+        one = statistics.estimate([second[both] - first[both]]) if both.sum() > 1 else None
+        mean, low, high = (one.mean, one.low, one.high) if one else (nan, nan, nan)
+        found.append(
+            Changed(
+                name,
+                measure_of(name).unit,
+                _mean(first),
+                _mean(second),
+                mean,
+                low,
+                high,
+                int(both.sum()),
+            )
+        )
+    return found
+
+
+def _mean(values: np.ndarray) -> float:
+    return float(np.nanmean(values)) if np.isfinite(values).any() else float("nan")
+
+
+def mapping(logs: Sequence[Replayed], walk: Sequence[Changed]) -> dict[str, Any]:
+    """Plain values for a file."""
+
+    def plain(row: dict[str, Any]) -> dict[str, Any]:
+        return {
+            key: None if isinstance(value, float) and not np.isfinite(value) else value
+            for key, value in row.items()
+        }
+
+    return {
+        "replayed": [plain(asdict(one)) for one in logs],
+        "walked": [plain(asdict(one)) for one in walk],
+    }

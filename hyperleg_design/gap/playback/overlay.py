@@ -1,0 +1,248 @@
+"""Overlays: effects that a diagnosis found, to be added to the simulation, as a YAML file.
+
+    schema: 1
+    robot: hyperleg
+    effects:
+      - {effect: coulomb_friction, location: left_knee, parameters: {torque: 1.9}}
+    source: {diagnosis: results/gap/diagnosis.json, verdict: explained, closed: 0.93}
+
+Parameters that are not given stay at their nulls. `source` says where the effects come from;
+nothing depends on it.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import yaml
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.effects import effect
+from hyperleg_design.reading import read_json, read_yaml, short_name
+from hyperleg_design.writing import write_text
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.effects.effect import Change
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.simulation.alteration import Alteration
+
+SCHEMA = 1
+_KEYS = ("schema", "robot", "effects", "source")
+_EFFECT_KEYS = ("effect", "location", "parameters")
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """Effects to add to a robot's simulation, and where they come from."""
+
+    robot: str
+    """Name of the robot that they were found on."""
+    change: Change
+    """Values of parameters by (effect, location); those that are missing are at their nulls."""
+    source: Mapping[str, Any] = field(default_factory=dict)
+    """Of the effects: plain values, for people."""
+
+    def __post_init__(self) -> None:
+        checked = {}
+        for (identifier, location), values in self.change.items():
+            checked[identifier, location] = _checked(
+                self.robot or "overlay", f"{identifier} at {location}", identifier, values
+            )
+        object.__setattr__(self, "change", checked)
+
+    def alterations(self, robot: Subject | Design) -> tuple[Alteration, ...]:
+        """What adds the effects to a simulation of a robot.
+
+        Raises:
+            InputError: the robot has no such place.
+        """
+        from hyperleg_design.gap.model.subject import Subject, subject_of
+
+        subject = robot if isinstance(robot, Subject) else subject_of(robot)
+        return alterations(self.change, subject)
+
+    def mapping(self) -> dict[str, Any]:
+        """As the file has it."""
+        effects = [
+            {"effect": e, "location": place, "parameters": dict(values)}
+            for (e, place), values in self.change.items()
+        ]
+        return {
+            "schema": SCHEMA,
+            "robot": self.robot,
+            "effects": effects,
+            "source": dict(self.source),
+        }
+
+
+def alterations(change: Change, subject: Subject) -> tuple[Alteration, ...]:
+    """What adds effects to a simulation of a subject, in the order of the change.
+
+    Raises:
+        InputError: no such effect, or no such place on this robot.
+    """
+    found = []
+    for (identifier, location), values in change.items():
+        one = effect(identifier)
+        numbers = np.array([values.get(p.name, p.null) for p in one.parameters], float)
+        found.append(one.alteration(one.place(location, subject), numbers, subject))
+    return tuple(found)
+
+
+def read_overlay(path: str | Path) -> Overlay:
+    """Read an overlay's file.
+
+    Raises:
+        InputError: it cannot be read, or something in it is wrong.
+    """
+    path = Path(path)
+    return overlay_from_mapping(read_yaml(path), short_name(path))
+
+
+def overlay_from_mapping(content: Mapping[str, Any], where: str) -> Overlay:
+    """An overlay from what its file holds.
+
+    Raises:
+        InputError: something in it is wrong.
+    """
+    _only(content, _KEYS, where, "")
+    if content.get("schema") != SCHEMA:
+        raise InputError(
+            where,
+            "schema",
+            content.get("schema"),
+            f"expects {SCHEMA}; another version of hyperleg wrote this file",
+        )
+    entries, source, robot = (
+        content.get("effects"),
+        content.get("source") or {},
+        content.get("robot", ""),
+    )
+    if not isinstance(entries, list):
+        raise InputError(where, "effects", entries, "expects a list of effects")
+    if not isinstance(source, dict):
+        raise InputError(where, "source", source, "expects a mapping")
+    if not isinstance(robot, str):
+        raise InputError(where, "robot", robot, "expects a name")
+    change: dict[tuple[str, str], Mapping[str, float]] = {}
+    for number, entry in enumerate(entries):
+        place = f"effects.{number}"
+        if not isinstance(entry, dict):
+            raise InputError(where, place, entry, "expects effect, location and parameters")
+        _only(entry, _EFFECT_KEYS, where, place)
+        for name in ("effect", "location"):
+            if not isinstance(entry.get(name), str):
+                raise InputError(where, f"{place}.{name}", entry.get(name), "expects a name")
+        key = entry["effect"], entry["location"]
+        if key in change:
+            raise InputError(where, place, f"{key[0]} at {key[1]}", "stands twice")
+        change[key] = _checked(where, place, key[0], entry.get("parameters") or {})
+    return Overlay(robot, change, source)
+
+
+def write_overlay(path: str | Path, overlay: Overlay) -> Path:
+    """Write an overlay's file, whole or not at all; numbers keep all their digits."""
+    return write_text(path, yaml.safe_dump(overlay.mapping(), sort_keys=False, allow_unicode=True))
+
+
+def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
+    """The causes that a `diagnosis.json` names, all of them.
+
+    Args:
+        path: of the file, or of the folder that holds it.
+        robot: name to write down.
+
+    Raises:
+        InputError: it cannot be read, or names no cause.
+    """
+    path = Path(path)
+    path = path / "diagnosis.json" if path.is_dir() else path
+    where = short_name(path)
+    content = read_json(path)
+    if (
+        not isinstance(content, dict)
+        or content.get("schema") != 1
+        or not isinstance(content.get("causes"), list)
+    ):
+        raise InputError(
+            where, "", None, "is not a diagnosis: expects schema 1 and a list of causes"
+        )
+    verdict = content.get("verdict")
+    if not content["causes"]:
+        raise InputError(where, "causes", [], f"there is nothing to add: the verdict is {verdict}")
+    change: dict[tuple[str, str], Mapping[str, float]] = {}
+    for number, cause in enumerate(content["causes"]):
+        try:
+            key = cause["effect"], cause["location"]
+            own = {
+                p.name for p in effect(str(key[0])).parameters
+            }  # the rest is told for people: a limit for its inverse
+            values = {
+                name: value["value"] for name, value in cause["parameters"].items() if name in own
+            }
+        except (TypeError, KeyError, AttributeError):
+            raise InputError(
+                where,
+                f"causes.{number}",
+                cause,
+                "expects effect, location and parameters, each with a value",
+            ) from None
+        if not values:
+            raise InputError(
+                where,
+                f"causes.{number}.parameters",
+                sorted(cause["parameters"]),
+                f"none is a parameter of {key[0]}: {', '.join(own)}",
+            )
+        change[key] = _checked(where, f"causes.{number}", key[0], values)
+    gap = content.get("gap")
+    closed = gap.get("closed") if isinstance(gap, dict) else None
+    source = {"diagnosis": str(path), "verdict": verdict, "closed": closed}
+    return Overlay(robot or str(content.get("robot", "")), change, source)
+
+
+def _only(content: Mapping[str, Any], known: tuple[str, ...], where: str, place: str) -> None:
+    for key in content:
+        if key not in known:
+            near = difflib.get_close_matches(str(key), known, n=1)
+            remedy = (
+                f"no such field; did you mean {near[0]}?"
+                if near
+                else f"no such field; there are {', '.join(known)}"
+            )
+            raise InputError(where, f"{place}.{key}".lstrip("."), None, remedy)
+
+
+def _checked(where: str, place: str, identifier: Any, values: Any) -> dict[str, float]:
+    """Values of one effect's parameters, each a number that can be."""
+    one = effect(str(identifier))
+    if not isinstance(values, Mapping):
+        raise InputError(where, f"{place}.parameters", values, "expects a mapping of numbers")
+    known = {p.name: p for p in one.parameters}
+    _only(values, tuple(known), where, f"{place}.parameters")
+    found = {}
+    for name, value in values.items():
+        at = f"{place}.parameters.{name}"
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, int | float | np.floating | np.integer)
+            or not math.isfinite(value)
+        ):
+            raise InputError(where, at, value, "expects a finite number")
+        parameter = known[name]
+        if not parameter.low <= value <= parameter.high:
+            raise InputError(
+                where,
+                at,
+                float(value),
+                f"expects {parameter.low:g} .. {parameter.high:g} {parameter.unit}".rstrip(),
+            )
+        found[name] = float(value)
+    return found

@@ -1,0 +1,1 @@
+"""What an answer is: the diagnosis and its schema, and findings about logs."""

@@ -1,0 +1,1 @@
+"""From logs to residuals: smoothing, filtering, base motion, contact and residual channels."""

@@ -1,0 +1,62 @@
+"""Channels of a log: onto even ticks, of motors under any of their names, and through matrices that
+keep what is unknown unknown.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.model.subject import Subject
+
+GAP = 2.5
+"""Ticks between two samples from which there is a gap."""
+
+
+def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Rows `(t, k)` through a matrix `(l, k)`, `(t, l)`; NaN only where something unknown is really
+    needed.
+    """
+    unknown = ~np.isfinite(values)
+    if not unknown.any():
+        return np.asarray(values @ matrix.T)
+    product = np.where(unknown, 0.0, values) @ matrix.T
+    product[(unknown.astype(float) @ np.abs(matrix).T) > 0] = np.nan
+    return np.asarray(product)
+
+
+def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
+    """A signal of the motors, under their names or those of their actuators, on the subject's side
+    of gears `(s, m)`.
+    """
+    own = log.stack(kind, subject.motors)
+    if subject.motor_aliases != subject.motors:
+        own = np.where(np.isfinite(own), own, log.stack(kind, subject.motor_aliases))
+    return own * subject.motor_scale[kind] if kind in subject.motor_scale else own
+
+
+def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:
+    """Channels `(s, k)` interpolated onto ticks `(t, k)`; NaN where a channel is unknown for more
+    than `GAP` of its own steps.
+    """
+    out = np.full((len(ticks), values.shape[1]), np.nan)
+    for column in range(values.shape[1]):
+        known = np.isfinite(values[:, column])
+        if known.sum() < 2:
+            continue
+        at = time[known]
+        found = np.interp(ticks, at, values[known, column])
+        reach = GAP * float(np.median(np.diff(at)))
+        after = np.clip(np.searchsorted(at, ticks), 0, len(at) - 1)
+        before = np.clip(after - 1, 0, len(at) - 1)
+        near = np.minimum(np.abs(at[after] - ticks), np.abs(ticks - at[before]))
+        out[:, column] = np.where(near <= reach / 2, found, np.nan)
+    return out
+
+
+def resampled_or_none(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray | None:
+    """`resampled`, None where nothing is known."""
+    return resampled(time, values, ticks) if np.isfinite(values).any() else None

@@ -1,0 +1,202 @@
+"""Joints that chatter: a line in the motion above all that was commanded, as of a control loop on
+the edge of its stability.
+
+A smoother takes it for noise, and rightly leaves it out of accelerations. But friction sees it: a
+joint that swings to and fro with the speed a sin(phi) while it moves at v is held back by the mean
+of sign(v + a sin(phi)), 2/pi asin(v / a) where |v| < a, and hardly at all at rest
+(Armstrong-Helouvry, Dupont and Canudas de Wit 1994, on dither). And it is a sign: healthy loops are
+damped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.signals.smoothing import bridged
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.samples import Samples
+    from hyperleg_design.gap.signals.signals import Signals
+    from hyperleg_design.gap.signals.smoothing import Smooth
+
+PRESLIDING = 3e-4
+"""Half the way over which friction turns over [rad]; assumed: bristles of gears bend by 0.1-1 mrad
+before they slide."""
+LEAST_LINE = 0.5
+"""Share of what smoothing leaves that a line must have; white noise has a tenth."""
+HALF_WIDTH = 6
+"""Of a line, in steps of the spectrum; a chatter's frequency wanders with posture and load."""
+SEGMENT = 256
+"""Ticks of a piece of the averaged spectrum."""
+LOWEST = 0.15
+"""Of a line, over the log's rate: 30 Hz at 200 Hz; commanded motion may leave something below."""
+ABOVE = 1.3
+"""Lowest frequency of a line over that of the smoother."""
+WINDOW = 0.2
+"""Time over which the chatter's size is averaged [s]."""
+PHASES = 48
+"""Of a swing over which friction is averaged."""
+UNSETTLED = 0.2
+"""Share of a log in which a joint must chatter to count as unsettled."""
+MOVED = 0.3
+"""Share of the largest joint's swing from which a joint's own loop and motors may be to blame."""
+UNSETTLING = (
+    "command_delay",
+    "actuator_bandwidth",
+    "controller_gain",
+    "transmission_elasticity",
+    "backlash",
+)
+"""Effects that can bring a control loop to the edge of its stability."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chatter:
+    """Of `n` joints on `t` ticks."""
+
+    speed: np.ndarray
+    """Amplitude of the joints' speed beyond what bends friction's bristles `(t, n)` [rad/s]; 0
+    where a joint does not chatter."""
+    frequency: np.ndarray
+    """`(n,)` [Hz], as sampled; NaN where a joint does not chatter."""
+    share: np.ndarray
+    """Of the variance of the positions about their smooth course that the line makes `(n,)`."""
+    joints: np.ndarray
+    """Which joints are unsettled by it `(n,)` of bool."""
+
+
+def chatter(
+    position: np.ndarray, velocity: np.ndarray, motion: Smooth, step: float
+) -> Chatter | None:
+    """Chatter of joints; None where there is none.
+
+    Args:
+        position: logged, on the ticks `(t, n)` [rad].
+        velocity: logged, on the ticks `(t, n)` [rad/s]; a channel without any is derived from the
+            positions.
+        motion: smoothed.
+        step: of the ticks [s].
+    """
+    ticks, count = position.shape
+    found = Chatter(
+        np.zeros((ticks, count)), np.full(count, np.nan), np.zeros(count), np.zeros(count, bool)
+    )
+    for joint in range(count):
+        apart = _filled(position[:, joint] - motion.value[:, joint])
+        if apart is None:
+            continue
+        fast = _filled(velocity[:, joint] - motion.first[:, joint])
+        if fast is None:
+            fast = np.gradient(apart, step)
+        lowest = max(LOWEST / step, ABOVE * float(motion.crossover[joint]) / (2 * np.pi))
+        frequency, share = _line(fast, step, lowest)
+        if share < LEAST_LINE:
+            continue
+        square = _averaged(fast**2, max(round(WINDOW / step), 1))
+        most = np.sqrt(2 * share * square)
+        found.speed[:, joint] = np.maximum(most - PRESLIDING * 2 * np.pi * frequency, 0.0)
+        found.frequency[joint], found.share[joint] = frequency, _line(apart, step, lowest)[1]
+        found.joints[joint] = bool((found.speed[:, joint] > 0).mean() >= UNSETTLED)
+    return found if found.speed.any() else None
+
+
+def sliding_share(velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray) -> np.ndarray:
+    """Mean of tanh((v + a sin(phi)) / width) over a swing; arguments of one shape, or broadcast
+    [rad/s].
+    """
+    phases = (np.arange(PHASES) + 0.5) * 2 * np.pi / PHASES
+    return np.asarray(
+        sum(np.tanh((velocity + swing * np.sin(phase)) / width) for phase in phases) / PHASES
+    )
+
+
+def chattering(signals: Sequence[Signals]) -> np.ndarray:
+    """Which joints are unsettled in any of some logs `(n,)` of bool; `()`, False, where none is in
+    any.
+    """
+    return np.asarray(np.any([s.chatter.joints for s in signals if s.chatter is not None], 0))
+
+
+def newly(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Signals]:
+    """Logs in which only those joints count as unsettled that were settled in all reference
+    logs.
+    """
+    known = chattering(references)
+    return [
+        s
+        if s.chatter is None
+        else replace(s, chatter=replace(s.chatter, joints=s.chatter.joints & ~known))
+        for s in signals
+    ]
+
+
+def unsettled(samples: Samples) -> tuple[str, ...]:
+    """Joints that chatter in any log, and did not in reference logs."""
+    signals = [s.signals for s in samples.sieves]
+    joints = signals[0].subject.joints
+    return tuple(
+        joints[j] for j in np.flatnonzero(np.broadcast_to(chattering(signals), len(joints)))
+    )
+
+
+def shaking(samples: Samples) -> tuple[str, ...]:
+    """Those of the unsettled joints whose own loops or belts may be to blame, in any log: the
+    others are shaken along.
+    """
+    names = unsettled(samples)
+    signals = [
+        s.signals
+        for s in samples.sieves
+        if s.signals.chatter is not None and s.signals.chatter.joints.any()
+    ]
+    found: set[str] = set()
+    for one in signals:
+        assert one.chatter is not None
+        size = np.sqrt(np.mean(one.chatter.speed**2, 0)) * one.chatter.joints
+        found |= {one.subject.joints[j] for j in np.flatnonzero(size >= MOVED * size.max())}
+    return tuple(name for name in names if name in found)
+
+
+def swings(signals: Sequence[Signals], joint: str) -> str:
+    """How a joint chatters, in the log where it does most; for people."""
+    place = signals[0].subject.joints.index(joint)
+    shaken = [
+        s.chatter
+        for s in signals
+        if s.chatter is not None and np.isfinite(s.chatter.frequency[place])
+    ]
+    size, frequency = max(
+        (float(np.sqrt(np.mean(c.speed[:, place] ** 2))), float(c.frequency[place])) for c in shaken
+    )
+    return (
+        f"swings to and fro by {size:.2g} rad/s at {frequency:.0f} Hz (or a frequency that this "
+        f"log's rate folds there), which nothing commands: "
+        f"its control loop is on the edge of stability, as of {', '.join(UNSETTLING)}"
+    )
+
+
+def _filled(values: np.ndarray) -> np.ndarray | None:
+    return bridged(values) if np.isfinite(values).sum() >= SEGMENT else None
+
+
+def _line(values: np.ndarray, step: float, lowest: float) -> tuple[float, float]:
+    """Frequency of the strongest line above one [Hz], and its share of all."""
+    from scipy.signal import welch
+
+    frequency, power = welch(values, 1 / step, nperseg=SEGMENT, detrend="linear")
+    high = np.where(frequency >= lowest, power, 0.0)
+    if not high.any():
+        return np.nan, 0.0
+    top = int(np.argmax(high))
+    line = high[max(top - HALF_WIDTH, 0) : top + HALF_WIDTH + 1].sum()
+    return float(frequency[top]), float(line / power.sum())
+
+
+def _averaged(values: np.ndarray, window: int) -> np.ndarray:
+    from scipy.ndimage import uniform_filter1d
+
+    return np.asarray(uniform_filter1d(values, window))

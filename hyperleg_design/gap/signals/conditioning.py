@@ -1,0 +1,356 @@
+"""From a log to `Signals`: an even time base, motion smoothed without delay, torques believed, and
+the residuals of the balances.
+
+Motion comes from `smoothing` (a fixed-interval smoother whose noise the log itself tells).
+Everything else is interpolated onto the same ticks and not smoothed: whoever compares torques
+filters both sides alike. Gaps in the clock or in a joint's positions are bridged, and marked as not
+valid.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.checks.plausibility import frozen
+from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.supply import over_nominal
+from hyperleg_design.gap.signals import contact, transmission
+from hyperleg_design.gap.signals.base_motion import base_motion
+from hyperleg_design.gap.signals.channels import (
+    GAP,
+    applied,
+    of_motors,
+    resampled,
+    resampled_or_none,
+)
+from hyperleg_design.gap.signals.chatter import chatter
+from hyperleg_design.gap.signals.control import control_residual
+from hyperleg_design.gap.signals.ground import balance as ground_balance
+from hyperleg_design.gap.signals.sensed import sensed_velocity
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.smoothing import smooth
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.smoothing import Smooth
+
+EDGE = 4.0
+"""Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a
+log."""
+STOP = 0.003
+"""Distance from the end of a joint's range within which its stop may push [rad]; assumed, a few
+steps of a sensor."""
+NO_STOP = 0.1
+"""Distance beyond its range that shows that a joint has no stop there [rad]; assumed, more than any
+stop gives way."""
+LONGEST_EDGE = 0.25
+"""[s] However slow the smoother."""
+
+
+def condition(log: Log, subject: Subject) -> Signals:
+    """Make a log ready for the balances.
+
+    Args:
+        log: with positions, and with targets, torque commands, torques or currents.
+        subject: the robot; what the log declares of it (gains, torque constants, payload) is
+            applied here.
+
+    Raises:
+        InputError: none of the robot's joints moves in this log, or nothing tells the torque of any
+        motor.
+    """
+    subject = subject.declare(log.metadata)
+    step = log.step
+    ticks = log.time[0] + step * np.arange(int(np.floor(log.duration / step + 1e-6)) + 1)
+    if len(ticks) < 16:
+        raise InputError(log.name, "t", len(ticks), "is too short a log: expects at least 16 ticks")
+    notes = []
+    position = log.stack("position", subject.joints)
+    for column, joint in enumerate(subject.joints):
+        if (stuck := frozen(log, joint)) is not None:
+            position[stuck, column] = np.nan
+            notes.append(
+                f"{joint}: position frozen from {log.time[stuck.start]:.4g} s, left out until it "
+                f"moves again"
+            )
+    velocity = log.stack("velocity", subject.joints)
+    motion = smooth(log.time, position, ticks, velocity)
+    lacking = ~np.isfinite(motion.value).any(0)
+    if lacking.all():
+        raise InputError(
+            log.name,
+            "position",
+            sorted(log.joints)[:8],
+            f"knows no joint of this robot, {', '.join(subject.joints)}",
+        )
+    if lacking.any():
+        notes.append(
+            f"joints without positions in this log, taken to stand still: "
+            f"{_names(subject.joints, lacking)}"
+        )
+        motion.value[:, lacking] = subject.default[lacking]
+        motion.first[:, lacking] = motion.second[:, lacking] = 0.0
+    base = None
+    if subject.floating:
+        base, derived = base_motion(log, subject, ticks)
+        notes += derived
+    voltage = _voltage(log, ticks)
+    command, target, control, others = _command(log, subject, ticks, motion)
+    measured = _measured(log, subject, ticks)
+    limited = None if command is None else limited_torque(subject, command, motion.first, voltage)
+    believed, more = _believed(log, subject, measured, limited)
+    notes += more
+    own = (
+        None
+        if base is None
+        else rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
+    )
+    ground = contact.contacts(
+        log, subject, ticks, motion.value, base, None if own is None else own[:, :3]
+    )
+    needed = rigid.inverse_dynamics(subject, motion.value, motion.first, motion.second, base)
+    shaken = chatter(
+        resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
+    )
+    needed = needed + rigid.friction_torque(
+        subject, motion.value, motion.first, None if shaken is None else shaken.speed
+    )
+    residual: dict[str, np.ndarray] = {}
+    if ground.pad_force is not None:
+        pushed, wrench = rigid.contact_torque(
+            subject,
+            motion.value,
+            None if base is None else base.rotation,
+            np.nan_to_num(ground.pad_force),
+        )
+        needed = needed - pushed
+        if own is not None:
+            residual["base"] = np.where(
+                np.isfinite(ground.pad_force).all((1, 2))[:, None], wrench - own, np.nan
+            )
+    unknown = contact.unknown_rows(
+        subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step))
+    )
+    unknown = unknown | at_stop(subject, motion.value)
+    residual["motion"] = np.where(
+        unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed
+    )
+    if measured is not None and limited is not None:
+        residual["drive"] = measured - limited
+    if control is not None:
+        residual["control"] = control
+    if (
+        spin := resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)
+    ) is not None:
+        spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
+        if np.isfinite(spin).any():
+            residual["transmission"], refused = transmission.balance(
+                subject, spin, motion.first, step
+            )
+            notes += refused
+    if others:
+        notes.append(
+            f"motors whose logged commands are not those of a controller with stiffness and "
+            f"damping: {', '.join(others)}"
+        )
+    valid = _valid(log, ticks, position[:, ~lacking], _edge(motion, lacking))
+    signals = Signals(
+        log=log,
+        subject=subject,
+        step=step,
+        time=ticks,
+        position=motion.value,
+        velocity=motion.first,
+        acceleration=motion.second,
+        base=base,
+        sensed=sensed_velocity(resampled(log.time, velocity, ticks), motion, step),
+        target=target,
+        command=command,
+        measured=measured,
+        believed=believed,
+        rigid=needed,
+        temperature=resampled_or_none(
+            log.time, of_motors(log, "motor_temperature", subject), ticks
+        ),
+        voltage=voltage,
+        contact=ground.foot_force,
+        valid=valid,
+        residual=residual,
+        pad_force=ground.pad_force,
+        touching=ground.touching,
+        bandwidth=motion.crossover / (2 * np.pi),
+        noise=motion.level,
+        chatter=shaken,
+        notes=tuple(notes),
+    )
+    ground_residual = ground_balance(signals)
+    if ground_residual is not None:
+        residual["ground"] = ground_residual
+    return signals
+
+
+def wrong_limits(subject: Subject, position: np.ndarray) -> np.ndarray:
+    """Joints whose log goes so far beyond the nominal range that there is no stop `(n,)`; positions
+    `(t, n)` [rad].
+    """
+    return np.asarray(
+        (
+            (position < subject.position_low - NO_STOP)
+            | (position > subject.position_high + NO_STOP)
+        ).any(0)
+    )
+
+
+def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
+    """Ticks at which a stop may push on a joint, with a force that nobody knows `(t, n)`; positions
+    `(t, n)` [rad].
+    """
+    beyond = (position < subject.position_low + STOP) | (position > subject.position_high - STOP)
+    return np.asarray(beyond & ~wrong_limits(subject, position))
+
+
+def limited_torque(
+    subject: Subject, torque: np.ndarray, velocity: np.ndarray, voltage: np.ndarray | None = None
+) -> np.ndarray:
+    """Motor torques within peak torque and DC-motor line of the nominal motors `(t, m)` [Nm].
+
+    Args:
+        subject: the robot.
+        torque: of the motors `(t, m)` [Nm].
+        velocity: of the joints `(t, n)` [rad/s].
+        voltage: of the battery `(t,)` [V], which motors without current control follow.
+    """
+    torque = np.clip(torque, -subject.torque_limit, subject.torque_limit)
+    line = np.isfinite(subject.stall_torque) & np.isfinite(subject.no_load_speed)
+    if line.any():
+        speed = velocity @ subject.joint_from_motor[:, line]
+        stall = subject.stall_torque[line]
+        droop = stall / subject.no_load_speed[line] * speed
+        stall = stall * over_nominal(subject, voltage)[:, line]
+        peak = subject.torque_limit[line]
+        torque[:, line] = np.clip(
+            np.maximum(np.minimum(torque[:, line], stall - droop), -stall - droop), -peak, peak
+        )
+    return torque
+
+
+def _command(
+    log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth
+) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
+    """Motor torque that the controller asks for, position targets, the balance of the control, and
+    motors that it cannot speak of.
+    """
+    raw_target = log.stack("position_target", subject.joints)
+    logged = of_motors(log, "motor_torque_command", subject)
+    command = resampled(log.time, logged, ticks)
+    target = resampled_or_none(log.time, raw_target, ticks)
+    control: np.ndarray | None = None
+    others: tuple[str, ...] = ()
+    if target is not None:
+        speed = log.stack("velocity", subject.joints)
+        derived = np.stack([np.interp(log.time, ticks, v) for v in motion.first.T], -1)
+        speed = np.where(np.isfinite(speed), speed, derived)
+        stiffness, damping = subject.gains.T
+        spring, damper = (
+            stiffness * (raw_target - log.stack("position", subject.joints)),
+            -damping * speed,
+        )
+        spring[:, subject.passive] = damper[:, subject.passive] = 0.0
+        if np.isfinite(logged).any():
+            residual, others = control_residual(subject, logged, spring, damper)
+            control = resampled_or_none(log.time, residual, ticks)
+        supplied = over_nominal(subject, log.column("battery_voltage"))
+        asked = supplied * applied(subject.motor_from_joint, spring) + applied(
+            subject.motor_from_joint, damper
+        )
+        torque = resampled(log.time, asked, ticks)
+        command = np.where(np.isfinite(command), command, torque)
+    if subject.one_to_one and subject.passive.any():
+        command[:, subject.passive] = 0.0
+    return (
+        (command if np.isfinite(command[:, _driven(subject)]).any() else None),
+        target,
+        control,
+        others,
+    )
+
+
+def _driven(subject: Subject) -> np.ndarray:
+    return ~subject.passive if subject.one_to_one else np.ones(len(subject.motors), bool)
+
+
+def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | None:
+    """Motor torque, else current times constant, else what joint torques tell; None where nothing
+    was measured.
+    """
+    torque = of_motors(log, "motor_torque", subject)
+    current = of_motors(log, "motor_current", subject) * subject.torque_constant
+    torque = np.where(np.isfinite(torque), torque, current)
+    from_joints = applied(subject.motor_from_joint, log.stack("joint_torque", subject.joints))
+    found = resampled(log.time, np.where(np.isfinite(torque), torque, from_joints), ticks)
+    if not np.isfinite(found).any():
+        return None
+    if subject.one_to_one:
+        found[:, subject.passive] = 0.0
+    return found
+
+
+def _believed(
+    log: Log, subject: Subject, measured: np.ndarray | None, limited: np.ndarray | None
+) -> tuple[np.ndarray, list[str]]:
+    if measured is None and limited is None:
+        lacks = (
+            "gains (in the metadata, or in the robot's file) for its targets"
+            if log.names("position_target")
+            else "targets"
+        )
+        currents = log.names("motor_current")
+        if currents and not np.isfinite(subject.torque_constant).any():
+            lacks = f"torque_constant in the metadata for its currents, or {lacks}"
+        remedy = (
+            f"tells the torque of no motor: it has neither torques nor currents that can be "
+            f"read, and lacks {lacks}"
+        )
+        raise InputError(log.name, "motor_torque", None, remedy)
+    if measured is None or limited is None:
+        believed = measured if measured is not None else limited
+        assert believed is not None
+    else:
+        believed = np.where(np.isfinite(measured).any(0), measured, limited)
+    blind = ~np.isfinite(believed).any(0)
+    notes = (
+        [f"motors whose torque nothing tells: {_names(subject.motors, blind)}"]
+        if blind.any()
+        else []
+    )
+    return believed.copy(), notes
+
+
+def _voltage(log: Log, ticks: np.ndarray) -> np.ndarray | None:
+    found = resampled_or_none(log.time, log.column("battery_voltage")[:, None], ticks)
+    return None if found is None else found[:, 0]
+
+
+def _edge(motion: Smooth, lacking: np.ndarray) -> float:
+    return min(EDGE / float(np.nanmin(motion.crossover[~lacking])), LONGEST_EDGE)
+
+
+def _valid(log: Log, ticks: np.ndarray, position: np.ndarray, edge: float) -> np.ndarray:
+    """Ticks away from the ends and from gaps in the clock or in any joint's positions."""
+    step = log.step
+    edge = min(edge, 0.1 * log.duration)
+    valid = (ticks >= log.time[0] + edge) & (ticks <= log.time[-1] - edge)
+    for column in position.T:
+        at = log.time[np.isfinite(column)]
+        ends = np.concatenate([[log.time[0]], at, [log.time[-1]]])
+        for gap in np.flatnonzero(np.diff(ends) > GAP * step):
+            valid &= (ticks < ends[gap] - edge) | (ticks > ends[gap + 1] + edge)
+    return valid
+
+
+def _names(names: tuple[str, ...], which: np.ndarray) -> str:
+    return ", ".join(n for n, w in zip(names, which, strict=True) if w)

@@ -1,0 +1,149 @@
+"""Where and how a robot meets the ground in a log: forces of its pads, and which feet touch, or
+may.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model import rigid
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import BaseMotion
+
+TOUCHING_FORCE = 2.0
+"""Force from which a foot touches [N]; assumed, above the noise of foot sensors."""
+TOUCHING_HEIGHT = 0.03
+"""Height over the lowest foot up to which a foot may touch, where no force is logged [m]; assumed,
+a low swing."""
+
+FLIGHT = 0.1
+"""Force that the motion needs from outside, over the weight, below which no foot touches;
+assumed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """What a log knows of the ground, `t` ticks."""
+
+    foot_force: np.ndarray | None
+    """World frame `(t, f, 3)` [N]."""
+    pad_force: np.ndarray | None
+    """World frame `(t, P, 3)` [N]; NaN on the pads of a foot while it touches and the place of its
+    force is unknown."""
+    touching: np.ndarray | None
+    """Feet that touch, or may `(t, f)`; None of a fixed base without contact forces."""
+
+
+def contacts(
+    log: Log,
+    subject: Subject,
+    ticks: np.ndarray,
+    position: np.ndarray,
+    base: BaseMotion | None,
+    needed: np.ndarray | None = None,
+) -> Ground:
+    """Contact of one log. Forces are logged by pad, or by foot, which is as good where a foot has
+    one pad.
+
+    Args:
+        log: of this subject.
+        subject: the robot.
+        ticks: `(t,)` [s].
+        position: of the joints `(t, n)` [rad].
+        base: of a floating base.
+        needed: force that the motion of a floating base needs from outside `(t, 3)` [N]; in flight
+            none.
+
+    Raises:
+        InputError: a force on a foot that the robot does not have.
+    """
+    from hyperleg_design.gap.signals.channels import resampled
+
+    feet, pads = subject.feet, subject.pads
+    pad_names = [p.name for p in pads]
+    foot_of_pad = np.array([p.foot for p in pads], int)
+    for name in log.feet:
+        if name not in feet and name not in pad_names:
+            raise InputError(
+                log.name,
+                "contact_force",
+                name,
+                f"is no foot of this robot; there are {', '.join((*feet, *pad_names)) or 'none'}",
+            )
+    if not feet:
+        return Ground(None, None, None)
+    if not log.feet:
+        touching = _may_touch(subject, position, base) if base is not None else None
+        if touching is not None and needed is not None:
+            touching &= (np.linalg.norm(needed, axis=1) > FLIGHT * _weight(subject))[:, None]
+        return Ground(None, None, touching)
+
+    def force(names: list[str] | tuple[str, ...]) -> np.ndarray:
+        columns = [f"{name}_{axis}" for name in names for axis in "xyz"]
+        return resampled(log.time, log.stack("contact_force", columns), ticks).reshape(
+            len(ticks), -1, 3
+        )
+
+    on_pads, on_feet = force(pad_names), force(feet)
+    total = np.stack(
+        [np.where(foot_of_pad[:, None] == f, on_pads, 0.0).sum(1) for f in range(len(feet))], 1
+    )
+    total = np.where(np.isfinite(total), total, on_feet)
+    touching = np.linalg.norm(total, axis=-1) > TOUCHING_FORCE
+    touching |= ~np.isfinite(total).all(-1)
+    for foot in range(len(feet)):
+        own = np.flatnonzero(foot_of_pad == foot)
+        missing = ~np.isfinite(on_pads[:, own]).all((1, 2))
+        shared = (
+            on_feet[:, foot] if len(own) == 1 else np.where(touching[:, foot, None], np.nan, 0.0)
+        )
+        on_pads[:, own] = np.where(missing[:, None, None], shared[:, None], on_pads[:, own])
+    return Ground(total, on_pads, touching)
+
+
+def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
+    """Joint rows `(t, n)` that an unknown force of the ground reaches, widened by a margin of
+    ticks; `(1, n)` where none is.
+    """
+    chains = [_foot_chain(subject, foot) for foot in range(len(subject.feet))]
+    if ground.touching is None:
+        return np.zeros((1, len(subject.joints)), bool)
+    unknown = ground.touching
+    if ground.pad_force is not None:
+        of_foot = np.array([p.foot for p in subject.pads])
+        lost = ~np.isfinite(ground.pad_force).all(-1)
+        unknown = np.stack([lost[:, of_foot == f].any(1) for f in range(len(subject.feet))], 1)
+    out = np.zeros((len(unknown), len(subject.joints)), bool)
+    for foot, chain in enumerate(chains):
+        wide = np.convolve(unknown[:, foot], np.ones(2 * margin + 1), "same") > 0.5
+        out[:, chain] |= wide[:, None]
+    return out
+
+
+def _foot_chain(subject: Subject, foot: int) -> list[int]:
+    found: set[int] = set()
+    for pad in subject.pads:
+        if pad.foot == foot:
+            found |= set(subject.tree.chain(int(subject.tree.link_joint[pad.link])))
+    return sorted(found)
+
+
+def _may_touch(subject: Subject, position: np.ndarray, base: BaseMotion) -> np.ndarray:
+    """Feet near the lowest one, by forward kinematics."""
+    points = rigid.pad_points(subject, position, base.rotation)
+    height = np.einsum("ti,tpi->tp", base.rotation[:, 2], points)
+    of_foot = np.array([p.foot for p in subject.pads])
+    lowest = np.stack([height[:, of_foot == f].min(1) for f in range(len(subject.feet))], 1)
+    return np.asarray(lowest < lowest.min(1, keepdims=True) + TOUCHING_HEIGHT)
+
+
+def _weight(subject: Subject) -> float:
+    mass = subject.tree.base_inertial[0] + subject.tree.inertial[:, 0].sum()
+    return float(mass * np.linalg.norm(subject.gravity))

@@ -1,0 +1,57 @@
+"""Balance of the control: motor commands as logged against what the declared gains make of the
+logged targets and state.
+
+It is drawn up for controllers of the declared form alone. Others (feed-forward, integral terms,
+gravity compensation) ask for torques that no gains explain; of them nothing is known, and nothing
+said.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.model.subject import Subject
+
+OTHERWISE = 0.1
+"""Largest share of a command's variance that the declared form, with gains of any size, may leave
+(assumed)."""
+FEWEST = 100
+"""Samples that it takes to tell."""
+
+
+def control_residual(
+    subject: Subject, logged: np.ndarray, spring: np.ndarray, damper: np.ndarray
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Logged command minus the one that the declared gains make `(s, m)` [Nm], NaN where nothing is
+    said.
+
+    Args:
+        subject: the robot, with the declared gains; m motors, n joints.
+        logged: motor torque commands `(s, m)` [Nm], NaN where unknown.
+        spring: stiffness (target - position) of the joints `(s, n)` [Nm].
+        damper: -damping velocity of the joints `(s, n)` [Nm].
+
+    Returns:
+        The residual, and the motors whose controllers have another form.
+    """
+    found, others = np.full(logged.shape, np.nan), []
+    for motor, name in enumerate(subject.motors):
+        share = subject.motor_from_joint[motor]
+        joints = np.flatnonzero(share)
+        terms = np.concatenate([spring[:, joints], damper[:, joints]], 1) * np.tile(
+            share[joints], 2
+        )
+        known = np.isfinite(logged[:, motor]) & np.isfinite(terms).all(1)
+        if known.sum() < FEWEST or not terms[known].any():
+            continue
+        centred = terms[known] - terms[known].mean(0)
+        command = logged[known, motor] - logged[known, motor].mean()
+        left = command - centred @ np.linalg.lstsq(centred, command, rcond=None)[0]
+        if np.sum(left**2) > OTHERWISE * np.sum(command**2):
+            others.append(name)
+            continue
+        found[known, motor] = logged[known, motor] - terms[known].sum(1)
+    return found, tuple(others)

@@ -1,0 +1,410 @@
+"""Balance of the ground: logged contact forces against those of the nominal ground at the logged
+motion.
+
+Each foot is judged by its whole force F, world frame, and by its pads:
+
+    sliding                    tangential force -mu F_z v_t / |v_t|; of a pyramid of friction, between its sides and its edges
+    sticking                   any tangential force within the cone mu F_z: the logged one, cut to the cone
+    pressing                   F_z = sum over the pads below the floor of k(d) d + c(d) d', d the depth
+
+v_t is the velocity of what the foot touches the ground with: a pad that rolls does not slide. Soft
+contacts creep below the cone, in a simulation as in rubber, by F_t / c or less with c = b' i / (1 -
+i) over a pad's inverse weight, and more for a moment after each jerk; a foot slides for sure where
+its softest pad alone would be at the cone, away from where it lands and lifts off. k and c are
+MuJoCo's of the foot's shapes: with i(d) the impedance of `solimp` and R = (1 - i) / i times the
+body's inverse weight, F = (i k' d + b' d') / R, k' = 1 / (i_max T r)^2 and b' = 2 / (i_max T) of
+`solref` (T, r), or the two given as they are where negative; a pyramid of friction makes it 2 /
+(mu^2 (1 + mu^2)) as stiff. The floor lies where the nominal ground bears the logged mean force,
+since no log knows a floor to a tenth of a millimetre.
+
+A base whose height nobody measured leaves the vertical rows unknown, one whose velocity nobody
+measured knows no sliding. MuJoCo's contacts also resist acceleration, as a mass 1 / R would: that
+is left out, as no log tells a foot's acceleration so well, and counts as doubt; vertical rows of a
+standing foot are a few per cent of its load off by it, those of one that lands all.
+"""  # noqa: E501
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.signals.contact import TOUCHING_FORCE
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
+
+SLIDING = 0.05
+"""Speed from which a foot may slide [m/s] (assumed: above what noise of encoders makes)."""
+LANDING = 0.02
+"""Time around ticks without load, in which speed and force of a foot change too fast to go together
+[s] (assumed)."""
+HEIGHT = 0.001
+"""Height of a pad is known so well [m]: offsets of a leg's encoders, and of what tells where the
+base is (assumed)."""
+KEPT = 32
+"""Results of `Footing.pressing` that are kept."""
+HALVINGS = 34
+"""Of the range in which the floor is sought: to a nanometre."""
+LOADED = 10 * TOUCHING_FORCE
+"""Force from which a foot is judged [N]; below, directions are noise (assumed)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """How the model's ground bears p pads."""
+
+    spring: np.ndarray
+    """k' [1/s^2], `(p,)`."""
+    damper: np.ndarray
+    """b' [1/s], `(p,)`."""
+    weight: np.ndarray
+    """Inverse of the inertia that a pad stands for [1/kg], `(p,)`."""
+    impedance: np.ndarray
+    """MuJoCo's `solimp`: least, most, width, middle, power, `(p, 5)`."""
+    weakest: float = 1.0
+    """Friction along the flat sides of its cone over that along the edges: a pyramid's holds less
+    there, and nobody knows its edges."""
+
+    @property
+    def creep(self) -> float:
+        """Tangential force over speed of one pad below the cone, of the softest at its softest
+        [Ns/m].
+        """
+        return float(np.min(self.damper * self._mass(self.impedance[:, 0])))
+
+    def force(
+        self, depth: np.ndarray, sink: np.ndarray, spring: float = 1.0, damper: float = 1.0
+    ) -> np.ndarray:
+        """Vertical force on all pads together `(t,)` [N]; pads push and never pull.
+
+        Args:
+            depth: under the floor `(t, p)` [m].
+            sink: its rate `(t, p)` [m/s].
+            spring: scale of k'.
+            damper: scale of b'.
+        """
+        impedance = self._impedance(depth)
+        push = (
+            spring * self.spring * impedance * depth + damper * self.damper * sink
+        ) * self._mass(impedance)
+        return np.asarray(np.where(depth > 0, np.maximum(push, 0.0), 0.0 * depth).sum(-1))
+
+    def mass(self, depth: np.ndarray) -> np.ndarray:
+        """1 / R of pads under the floor `(t, p)` [kg], by which contacts resist acceleration;
+        arguments as of `force`.
+        """
+        return np.asarray(np.where(depth > 0, self._mass(self._impedance(depth)), 0.0))
+
+    def _mass(self, impedance: np.ndarray) -> np.ndarray:
+        return np.asarray(impedance / ((1 - impedance) * self.weight))
+
+    def _impedance(self, depth: np.ndarray) -> np.ndarray:
+        least, most, width, middle, power = self.impedance.T
+        x = np.clip(np.nan_to_num(depth) / width, 0.0, 1.0)
+        rising = x**power / middle ** (power - 1)
+        falling = 1 - (1 - x) ** power / (1 - middle) ** (power - 1)
+        return np.asarray(least + (most - least) * np.where(x < middle, rising, falling))
+
+
+@dataclass(frozen=True, eq=False)
+class Footing:
+    """One foot on its ground in a log of t ticks."""
+
+    force: np.ndarray
+    """Logged `(t, 3)` [N]; NaN where unknown."""
+    slide: np.ndarray
+    """Horizontal velocity of its loaded point `(t, 2)` [m/s]; NaN where unknown."""
+    pad_force: np.ndarray
+    """Logged on its p pads `(t, p, 3)` [N]; NaN where unknown."""
+    pad_slide: np.ndarray
+    """Horizontal velocity of their lowest points `(t, p, 2)` [m/s]; NaN where unknown."""
+    height: np.ndarray
+    """Of its p pads over the origin `(t, p)` [m]; NaN where unknown."""
+    sink: np.ndarray
+    """Rate at which they go down `(t, p)` [m/s]."""
+    fall: np.ndarray
+    """Rate of that `(t, p)` [m/s^2]."""
+    friction: float
+    """mu, nominal."""
+    law: Law
+    """Of its pads."""
+    judged: np.ndarray
+    """Ticks by whose mean force the floor is found `(t,)`."""
+    settled: np.ndarray
+    """Ticks with load all around `(t,)`."""
+    known: dict[tuple[float, float], np.ndarray] = field(default_factory=dict)
+    """What `pressing` found already; most of what asks differs in friction alone."""
+
+    def pressing(self, spring: float, damper: float) -> np.ndarray:
+        """Vertical force of a ground at this motion `(t,)` [N], its floor where it bears the mean
+        of the logged forces.
+
+        Args:
+            spring: scale of k.
+            damper: scale of c.
+        """
+        key = float(spring), float(damper)
+        found = self.known.get(key)
+        if found is None:
+            found = self._pressing(*key)
+            if len(self.known) < KEPT:
+                self.known[key] = found
+        return found
+
+    def _pressing(self, spring: float, damper: float) -> np.ndarray:
+        if not self.judged.any():
+            return np.full(len(self.force), np.nan)
+        return self.law.force(self._floor(spring, damper) - self.height, self.sink, spring, damper)
+
+    def _floor(self, spring: float, damper: float) -> float:
+        """Height at which the floor bears the mean of the logged forces [m]."""
+        mean, height, sink = (
+            float(self.force[self.judged, 2].mean()),
+            self.height[self.judged],
+            self.sink[self.judged],
+        )
+        low, high = float(height.min()), float(height.max()) + 0.1
+        for _ in range(HALVINGS):
+            # bisection, as a higher floor bears more
+            middle = (low + high) / 2
+            if self.law.force(middle - height, sink, spring, damper).mean() < mean:
+                low = middle
+            else:
+                high = middle
+        return (low + high) / 2
+
+    def doubt(self) -> np.ndarray:
+        """What the vertical force of a nominal ground leaves open, by its pads' height and by their
+        acceleration `(t,)` [N].
+        """
+        if not self.judged.any():
+            return np.zeros(len(self.force))
+        floor = self._floor(1.0, 1.0)
+        above, below = (
+            self.law.force(floor + sign * HEIGHT - self.height, self.sink) for sign in (1, -1)
+        )
+        resisted = np.abs((self.law.mass(floor - self.height) * self.fall).sum(-1))
+        return np.asarray(np.hypot((above - below) / 2, np.nan_to_num(resisted)))
+
+    def ground(
+        self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray
+    ) -> np.ndarray:
+        """Force of a ground with scaled properties at this motion `(k, t, 3)` [N].
+
+        Args:
+            friction: scale of mu `(k,)`.
+            compliance: scale of 1 / k `(k,)`.
+            damping: scale of the damping ratio c / (2 sqrt(k m)) `(k,)`.
+        """
+        normal = np.maximum(self.force[:, 2], 0.0)
+        limit = friction[:, None] * self.friction * normal
+        tangential = self.force[None, :, :2]
+        size = np.linalg.norm(self.force[:, :2], axis=-1)
+        cut = np.minimum(1.0, limit / np.maximum(size, 1e-9))[..., None] * tangential
+        speed = np.linalg.norm(self.slide, axis=-1)
+        along = self.slide / np.maximum(speed, 1e-9)[:, None]
+        sliding = (
+            self.settled & (speed > np.maximum(SLIDING, self.friction * normal / self.law.creep))
+        )[:, None]
+        slid = np.clip(size, self.law.weakest * limit, limit)
+        tangential = np.where(sliding, -slid[..., None] * along, cut)
+        pressing = np.stack(
+            [self.pressing(1 / c, d / np.sqrt(c)) for c, d in zip(compliance, damping, strict=True)]
+        )
+        found = np.concatenate([tangential, pressing[..., None]], -1)
+        return np.where(
+            (normal > LOADED)[None, :, None],
+            found,
+            np.where(normal[None, :, None] <= 0, self.force[None], np.nan),
+        )
+
+
+_FOOTINGS: WeakKeyDictionary[Signals, tuple[Footing, ...]] = WeakKeyDictionary()
+
+
+def footings(signals: Signals) -> tuple[Footing, ...]:
+    """Every foot of a log with contact forces and a floating base; kept while the signals live."""
+    if signals not in _FOOTINGS:
+        _FOOTINGS[signals] = _footings(signals)
+    return _FOOTINGS[signals]
+
+
+def balance(signals: Signals) -> np.ndarray | None:
+    """Logged less nominal force of the ground on each foot `(t, 3 f)` [N]; NaN where unknown; None
+    without logged forces.
+    """
+    feet = footings(signals)
+    if not feet:
+        return None
+    one = np.ones(1)
+    return np.concatenate([foot.force - foot.ground(one, one, one)[0] for foot in feet], 1)
+
+
+def _footings(signals: Signals) -> tuple[Footing, ...]:
+    from scipy.ndimage import minimum_filter1d
+
+    subject, base = signals.subject, signals.base
+    if signals.contact is None or base is None or not subject.pads:
+        return ()
+    relative = np.einsum(
+        "tij,tpj->tpi", base.rotation, rigid.pad_points(subject, signals.position, base.rotation)
+    )
+    points = base.position[:, None] + relative
+    velocity = np.einsum("tij,tj->ti", base.rotation, base.linear_velocity)[:, None] + np.gradient(
+        relative, signals.step, axis=0
+    )
+    velocity += rigid.pad_rolling(subject, signals.position, base.rotation, signals.step)
+    of_foot = np.array([p.foot for p in subject.pads])
+    found = []
+    for index in range(len(subject.feet)):
+        own = np.flatnonzero(of_foot == index)
+        force = signals.contact[:, index]
+        lowest = own[np.argmin(np.nan_to_num(relative[:, own, 2]), 1)]
+        weight = _loads(signals, own, lowest)
+        slide = np.einsum("tp,tpi->ti", weight, velocity[:, own, :2])
+        height, sink = points[:, own, 2], -velocity[:, own, 2]
+        friction, law = nominal_ground(
+            subject, tuple(subject.tree.links[subject.pads[p].link] for p in own)
+        )
+        loaded = (
+            np.isfinite(force[:, 2])
+            & (np.nan_to_num(force[:, 2]) > LOADED)
+            & np.isfinite(height).all(1)
+            & signals.valid
+        )
+        span = 2 * max(round(LANDING / signals.step), 1) + 1
+        settled = minimum_filter1d(np.nan_to_num(force[:, 2]) > LOADED, span)
+        fall = np.gradient(sink, signals.step, axis=0)
+        on_pads = (
+            np.full((len(force), len(own), 3), np.nan)
+            if signals.pad_force is None
+            else signals.pad_force[:, own]
+        )
+        found.append(
+            Footing(
+                force,
+                slide,
+                on_pads,
+                velocity[:, own, :2],
+                height,
+                sink,
+                fall,
+                friction,
+                law,
+                loaded,
+                settled,
+            )
+        )
+    return tuple(found)
+
+
+def _loads(signals: Signals, own: np.ndarray, lowest: np.ndarray) -> np.ndarray:
+    """Share of each of a foot's pads in its load `(t, p)`; all on the lowest where nobody measured
+    it.
+    """
+    alone = (own[None, :] == lowest[:, None]).astype(float)
+    if signals.pad_force is None:
+        return alone
+    load = np.maximum(np.nan_to_num(signals.pad_force[:, own, 2]), 0.0)
+    total = load.sum(1, keepdims=True)
+    return np.where(total > TOUCHING_FORCE, load / np.maximum(total, 1e-9), alone)
+
+
+def foot_bodies(subject: Subject, foot: int) -> tuple[str, ...]:
+    """Links of a foot that may touch the ground."""
+    return tuple(dict.fromkeys(subject.tree.links[p.link] for p in subject.pads if p.foot == foot))
+
+
+def foot_geoms(model: mujoco.MjModel, bodies: tuple[str, ...]) -> list[int]:
+    """Shapes of these bodies that collide."""
+    ids = {model.body(name).id for name in bodies}
+    return [
+        g
+        for g in range(model.ngeom)
+        if int(model.geom_bodyid[g]) in ids and (model.geom_contype[g] or model.geom_conaffinity[g])
+    ]
+
+
+def floor_geoms(model: mujoco.MjModel) -> list[int]:
+    """Shapes of the world that collide."""
+    return [
+        g
+        for g in range(model.ngeom)
+        if model.geom_bodyid[g] == 0 and (model.geom_contype[g] or model.geom_conaffinity[g])
+    ]
+
+
+def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Friction `(3,)`, `solref` `(2,)` and number of contact dimensions between a shape and the
+    floor, as MuJoCo mixes them.
+    """
+    floor = floor_geoms(model)
+    if not floor:
+        return (
+            model.geom_friction[geom].copy(),
+            model.geom_solref[geom].copy(),
+            int(model.geom_condim[geom]),
+        )
+    other = floor[0]
+    ranks = model.geom_priority[geom], model.geom_priority[other]
+    if ranks[0] != ranks[1]:
+        chosen = geom if ranks[0] > ranks[1] else other
+        return (
+            model.geom_friction[chosen].copy(),
+            model.geom_solref[chosen].copy(),
+            int(model.geom_condim[chosen]),
+        )
+    friction = np.maximum(model.geom_friction[geom], model.geom_friction[other])
+    parts = model.geom_solmix[[geom, other]]
+    share = parts[0] / parts.sum() if parts.sum() > 0 else 0.5
+    own, theirs = model.geom_solref[geom], model.geom_solref[other]
+    solref = (
+        share * own + (1 - share) * theirs
+        if own[0] > 0 and theirs[0] > 0
+        else np.minimum(own, theirs)
+    )
+    return friction, solref, int(max(model.geom_condim[geom], model.geom_condim[other]))
+
+
+def nominal_ground(subject: Subject, links: tuple[str, ...]) -> tuple[float, Law]:
+    """Friction coefficient of the model's ground under the first, and how it bears one pad of each
+    of these links.
+    """
+    import mujoco
+
+    model = subject.model
+    rows: list[tuple[float, float, float, np.ndarray]] = []
+    coefficient = 0.0
+    for link in links:
+        geom = foot_geoms(model, (link,))[0]
+        friction, solref, dimensions = pair_settings(model, geom)
+        coefficient = coefficient or float(friction[0])
+        impedance = model.geom_solimp[geom].copy()
+        impedance[:2] = np.clip(impedance[:2], 1e-4, 0.9999)
+        impedance[2] = max(impedance[2], 1e-9)
+        most, weight = (
+            impedance[1],
+            max(float(model.body_invweight0[model.geom_bodyid[geom], 0]), 1e-9),
+        )
+        if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and dimensions > 1:
+            weight *= (
+                float(friction[0]) ** 2 * (1 + float(friction[0]) ** 2) / (2 * model.opt.impratio)
+            )
+        if solref[0] > 0:
+            rows.append(
+                (1 / (most * solref[0] * solref[1]) ** 2, 2 / (most * solref[0]), weight, impedance)
+            )
+        else:
+            rows.append((-solref[0] / most**2, -solref[1] / most, weight, impedance))
+    spring, damper, weights, impedances = (np.array(values) for values in zip(*rows, strict=True))
+    pyramid = model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
+    return coefficient, Law(
+        spring, damper, weights, impedances, float(np.sqrt(0.5)) if pyramid else 1.0
+    )

@@ -1,0 +1,129 @@
+"""A log made ready for the balances: one even time base, smooth motion, believed torques, inverse
+dynamics.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.model.supply import over_nominal
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.chatter import Chatter
+
+
+BALANCES = {
+    "motion": ("joint", "Nm"),
+    "drive": ("motor", "Nm"),
+    "control": ("motor", "Nm"),
+    "transmission": ("motor", "rad/s"),
+    "base": ("robot", "N, Nm"),
+    "ground": ("foot", "N"),
+}
+"""Kind of place and unit of the rows of each of `Signals.residual`."""
+OF_MOTORS = tuple(balance for balance, (kind, _) in BALANCES.items() if kind == "motor")
+"""Balances with a row for each motor."""
+
+
+@dataclass(frozen=True, eq=False)
+class BaseMotion:
+    """How the base moves; of a fixed base, there is none."""
+
+    position: np.ndarray
+    """In the world `(t, 3)` [m]; NaN where nobody measured it."""
+    rotation: np.ndarray
+    """World from base `(t, 3, 3)`."""
+    linear_velocity: np.ndarray
+    """In the base's frame `(t, 3)` [m/s]; NaN where nobody measured it."""
+    angular_velocity: np.ndarray
+    """In the base's frame `(t, 3)` [rad/s]."""
+    specific_force: np.ndarray
+    """Acceleration minus gravity at the base's origin, in the base's frame `(t, 3)` [m/s^2]."""
+    angular_acceleration: np.ndarray
+    """In the base's frame `(t, 3)` [rad/s^2]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Signals:
+    """One log on an even time base, `t` ticks, `n` joints, `m` motors, `f` feet; motion smoothed
+    without delay.
+
+    Balances, each what the log shows minus what the nominal model explains:
+        motion: believed joint torque minus the torque that the logged motion needs `(t, n)` [Nm];
+        drive: measured motor torque minus the torque that the controller asks for, within nominal
+            limits `(t, m)` [Nm], where both are known;
+        control: logged command of the motors minus the one that the declared gains make of the
+            logged targets and state `(t, m)` [Nm], where both are known and the controller is of
+            that form;
+        base: of a floating base whose contact forces are logged, the six rows of the base `(t, 6)`
+            [N, Nm];
+        transmission: logged speed of the motors minus that of the joints' motion `(t, m)` [rad/s],
+            where both are known;
+        ground: logged contact force minus the nominal ground's at the logged motion `(t, 3 f)` [N].
+    """
+
+    log: Log
+    subject: Subject
+    step: float
+    """Of the time base [s]."""
+    time: np.ndarray
+    """`(t,)` [s]."""
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    """Of the joints `(t, n)` [rad, rad/s, rad/s^2]."""
+    base: BaseMotion | None
+    sensed: np.ndarray
+    """Velocity that controllers see, see `sensed` `(t, n)` [rad/s]."""
+    target: np.ndarray | None
+    """Position target `(t, n)` [rad]."""
+    command: np.ndarray | None
+    """Motor torque that the controller asks for `(t, m)` [Nm]: logged, or from targets and gains;
+    before any limit."""
+    measured: np.ndarray | None
+    """Motor torque that the log measured, or current times the declared torque constant `(t, m)`
+    [Nm]."""
+    believed: np.ndarray
+    """Motor torque that the balance of motion trusts: measured, else command within the nominal
+    limits `(t, m)` [Nm]."""
+    rigid: np.ndarray
+    """Joint torque that the logged motion needs: inverse dynamics, rotors, nominal friction,
+    contact forces `(t, n)` [Nm]."""
+    temperature: np.ndarray | None
+    """`(t, m)` [degC]."""
+    voltage: np.ndarray | None
+    """Battery `(t,)` [V]."""
+    contact: np.ndarray | None
+    """Force of the ground on each foot, world frame `(t, f, 3)` [N]."""
+    valid: np.ndarray
+    """Ticks fit for use `(t,)`: no gap in the log near, not at its ends."""
+    residual: dict[str, np.ndarray]
+    """By balance that this log allows."""
+    pad_force: np.ndarray | None = None
+    """Force of the ground on each of `subject.pads`, world frame `(t, P, 3)` [N], where the place
+    of the force is known."""
+    touching: np.ndarray | None = None
+    """Of a floating base: whether each foot touches the ground, or may `(t, f)`."""
+    bandwidth: np.ndarray | None = None
+    """Frequency above which smoothing takes motion for noise `(n,)` [Hz]; NaN for joints that this
+    log lacks."""
+    noise: np.ndarray | None = None
+    """Standard deviation of the noise of a position sample, as the log itself tells `(n,)`
+    [rad]."""
+    chatter: Chatter | None = None
+    """Of joints that swing to and fro above all that was commanded; None where none does."""
+    notes: tuple[str, ...] = ()
+    """What this log lacked and what was assumed in its place."""
+
+    @cached_property
+    def supplied(self) -> np.ndarray:
+        """Voltage over the nominal one of motors that follow it, 1 of others `(t, m)`, or `(1, m)`;
+        see `supply`.
+        """
+        return over_nominal(self.subject, self.voltage)

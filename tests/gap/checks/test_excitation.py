@@ -1,0 +1,140 @@
+import numpy as np
+from rig import rig_log, spoiled
+
+from hyperleg_design.gap.checks.excitation import RULES, excitation_of
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
+
+CATALOGUE = [
+    "coulomb_friction",
+    "viscous_friction",
+    "stribeck_friction",
+    "load_dependent_friction",
+    "torque_constant",
+    "torque_saturation",
+    "thermal_derating",
+    "voltage_sag",
+    "command_delay",
+    "actuator_bandwidth",
+    "rotor_inertia",
+    "transmission_elasticity",
+    "backlash",
+    "transmission_ratio",
+    "encoder_offset",
+    "controller_gain",
+    "payload",
+    "link_mass",
+    "link_com",
+    "cogging",
+    "joint_spring",
+    "imu_bias",
+    "ground_friction",
+    "ground_compliance",
+]
+
+
+def of(log):
+    return {e.effect: e for e in excitation_of(log)}
+
+
+def test_every_effect_of_the_catalogue_has_a_rule():
+    from hyperleg_design.gap.effects import EFFECTS
+
+    assert list(RULES) == CATALOGUE
+    assert set(EFFECTS) <= set(RULES)
+
+
+def test_a_rich_log():
+    found = of(rig_log())
+    for effect in (
+        "coulomb_friction",
+        "viscous_friction",
+        "payload",
+        "torque_constant",
+        "controller_gain",
+        "encoder_offset",
+        "backlash",
+    ):
+        assert found[effect].shown, effect
+        assert found[effect].where == ("hip", "knee")
+    for effect, word in (
+        ("thermal_derating", "temperature"),
+        ("voltage_sag", "voltage"),
+        ("imu_bias", "gyroscope"),
+        ("ground_compliance", "contact"),
+    ):
+        assert not found[effect].shown
+        assert word in found[effect].why
+    assert "delay" in found["transmission_elasticity"].why
+
+
+def test_without_reversals_no_friction_and_no_backlash():
+    time = np.arange(2000) * 0.005
+    signals = {"position/knee": 0.2 * time, "position_target/knee": 0.2 * time + 0.1}
+    found = of(Log("ramp", time, signals, Metadata(gains={"knee": (20.0, 1.0)})))
+    for effect in (
+        "coulomb_friction",
+        "viscous_friction",
+        "stribeck_friction",
+        "backlash",
+        "load_dependent_friction",
+    ):
+        assert not found[effect].shown, effect
+    assert "reverses" in found["coulomb_friction"].why
+    assert found["payload"].shown
+
+
+def test_without_any_torque():
+    log = rig_log(gains={})
+    log = spoiled(
+        log,
+        **{
+            f"{kind}__{j}": None
+            for kind in ("motor_torque_command", "motor_torque", "motor_current")
+            for j in ("hip", "knee")
+        },
+    )
+    found = of(log)
+    assert not any(e.shown for e in found.values())
+    assert "no torque" in found["coulomb_friction"].why
+    assert "not told from controller_gain" in found["torque_constant"].why
+
+
+def test_fast_content_tells_elasticity_from_delay():
+    time = np.arange(4000) * 0.002
+    position = 0.1 * np.sin(2 * np.pi * 15 * time)
+    signals = {"position/knee": position, "position_target/knee": np.roll(position, 3)}
+    found = of(Log("fast", time, signals, Metadata(gains={"knee": (20.0, 1.0)})))
+    assert found["transmission_elasticity"].shown
+    assert found["actuator_bandwidth"].shown
+    assert not found["payload"].shown
+
+
+def test_a_voltage_that_all_drives_follow_is_no_news():
+    sagging = 12.0 - 2 * np.linspace(0, 1, 4000)
+    line = (12.0, 3.0, 8.0)
+
+    def shown(**supply):
+        return of(spoiled(rig_log(supply=supply), battery_voltage=sagging))["voltage_sag"].shown
+
+    assert shown()
+    assert shown(hip=line)
+    assert not shown(hip=line, knee=line)
+
+
+def test_temperature_voltage_and_ground():
+    ramp = np.linspace(0, 1, 4000)
+    log = spoiled(
+        rig_log(),
+        motor_temperature__hip=30 + 40 * ramp,
+        motor_temperature__knee=30 + ramp,
+        battery_voltage=24 - 2 * ramp,
+        contact_force__foot_z=ramp,
+        gyro__x=ramp,
+    )
+    found = of(log)
+    assert found["thermal_derating"].where == ("hip",)
+    assert found["voltage_sag"].shown
+    assert found["ground_compliance"].where == ("foot",)
+    assert not found["ground_friction"].shown
+    assert found["imu_bias"].where == ("gyro",)

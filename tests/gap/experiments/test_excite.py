@@ -1,0 +1,176 @@
+import csv
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pandas
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.experiments import excite as module
+from hyperleg_design.gap.experiments import information as info
+from hyperleg_design.gap.experiments.excite import (
+    CLEAR,
+    apart,
+    design_experiment,
+    excite,
+    fixed_subject,
+    inseparable,
+)
+from hyperleg_design.gap.model.subject import load_subject
+
+
+@pytest.fixture(scope="module")
+def made(robot_files, tmp_path_factory):
+    import robots
+
+    folder = tmp_path_factory.mktemp("plan")
+    path = folder / "servo.xml"
+    servo = '<position name="servo" joint="swing" kp="12" kv="0.4" forcerange="-3 3"/>'
+    path.write_text(
+        robots.PENDULUM.replace(
+            '<motor name="servo" joint="swing" ctrlrange="-3 3"/>', servo
+        ).replace('axis="0 1 0"', 'axis="0 1 0" range="-80 80"')
+    )
+    out = folder / "out"
+    out.mkdir()
+    return SimpleNamespace(path=path, out=out, plan=excite(path, out, rate=100.0, kinds="both"))
+
+
+def test_targets_stay_inside_the_joints_limits_and_start_and_end_gently(made):
+    low, high = made.plan.subject.position_low[0], made.plan.subject.position_high[0]
+    for motion in made.plan.motions:
+        target = motion.target[~motion.off, 0]
+        assert target.min() >= low
+        assert target.max() <= high
+        steps = np.abs(np.diff(target))
+        assert steps[:3].max() < 0.1 * max(steps.max(), 0.02)
+        assert np.abs(np.diff(target)).max() * 100 < 8
+
+
+def test_files_hold_the_targets(made):
+    for motion in made.plan.motions:
+        with open(made.out / f"{motion.name}.csv", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        assert len(rows) == len(motion.time)
+        assert list(rows[0]) == ["t", "position_target/swing", "drives_on"]
+        assert [row["drives_on"] == "0" for row in rows] == motion.off.tolist()
+        assert float(rows[7]["position_target/swing"]) == pytest.approx(
+            motion.target[7, 0], abs=1e-6
+        )
+        assert all(
+            (row["position_target/swing"] == "") == off
+            for row, off in zip(rows, motion.off, strict=True)
+        )
+        table = pandas.read_parquet(made.out / f"{motion.name}.parquet")
+        assert np.allclose(table["position_target/swing"], motion.target[:, 0], equal_nan=True)
+
+
+def test_plan_says_what_each_motion_tells(made):
+    plan = json.loads((made.out / "plan.json").read_text())
+    assert plan["schema"] == 1
+    by_name = {m["name"]: m for m in plan["motions"]}
+    assert "command_delay" in by_name["chirp"]["shows"]
+    assert "command_delay" not in by_name["ramps"]["shows"]
+    assert "coulomb_friction" in by_name["ramps"]["shows"]
+    coulomb = by_name["ramps"]["effects"]["coulomb_friction"]["swing"]["standard_deviation"][
+        "torque"
+    ]
+    assert 0 < coulomb < 0.05
+    assert any("not checked" in note for note in plan["notes"])
+    assert all(m["use"]["envelope"] <= 0.8 + 1e-9 for m in plan["motions"])
+    assert plan["start_posture"].keys() == {"swing"}
+
+
+def test_shortest_set_tells_all_that_can_be_told_with_nothing_to_spare(made):
+    plan = made.plan
+    chosen, whole = plan.gram(plan.chosen), plan.gram()
+    for place in plan.blocks.places:
+        if info.strength(whole, plan.blocks, place) >= CLEAR:
+            assert info.strength(chosen, plan.blocks, place) >= CLEAR
+    for pair in plan.pairs:
+        if apart(whole, plan.blocks, pair) >= CLEAR:
+            assert apart(chosen, plan.blocks, pair) >= CLEAR
+
+    def all_told(names):
+        gram = plan.gram(names)
+        shown = all(
+            info.strength(gram, plan.blocks, p) >= CLEAR
+            for p in plan.blocks.places
+            if info.strength(whole, plan.blocks, p) >= CLEAR
+        )
+        return shown and all(
+            apart(gram, plan.blocks, p) >= CLEAR
+            for p in plan.pairs
+            if apart(whole, plan.blocks, p) >= CLEAR
+        )
+
+    for name in plan.chosen:
+        fewer = [n for n in plan.chosen if n != name]
+        assert not fewer or not all_told(fewer)
+
+
+def test_known_look_alikes_of_a_pendulum_stay_inseparable(made):
+    # one joint: a shifted encoder and a shifted centre of mass turn gravity alike
+    found = {(p.first[0], p.second[0]) for p in inseparable(made.plan)}
+    assert ("encoder_offset", "link_com") in found
+    assert ("coulomb_friction", "backlash") not in found
+
+
+def test_without_torque_less_is_known(made):
+    subject = made.plan.subject
+    blind = design_experiment(subject, rate=100.0, torque=False)
+    delay, constant = ("command_delay", "robot"), ("torque_constant", "swing")
+    assert blind.shown(delay) > CLEAR
+    pair = next(
+        p
+        for p in blind.pairs
+        if p.first[0] == "viscous_friction" and p.second[0] == "controller_gain"
+    )
+    assert blind.apart(pair) < made.plan.apart(
+        next(p for p in made.plan.pairs if (p.first, p.second) == (pair.first, pair.second))
+    )
+    assert constant in blind.blocks.places
+
+
+def test_same_seed_gives_the_same_bytes(made, tmp_path):
+    excite(made.path, tmp_path, rate=100.0)
+    for name in ("chirp.csv", "postures.csv"):
+        assert (tmp_path / name).read_bytes() == (made.out / name).read_bytes()
+
+
+def test_greedy_choice_on_a_made_up_case():
+    # three effects of one parameter; motion b shows two of them in half the time, c the third, a
+    # only what b shows
+    blocks = info.Blocks(
+        (("e", "1"), ("e", "2"), ("e", "3")), (0, 2, 4), (("p",),) * 3, (np.ones(1),) * 3
+    )
+
+    def shows(*which):
+        gram = np.zeros((6, 6))
+        for place in which:
+            gram[2 * place : 2 * place + 2, 2 * place : 2 * place + 2] = 25.0
+        return gram
+
+    grams = {"a": shows(0), "b": shows(0, 1), "c": shows(2)}
+    assert module.shortest_set(grams, {"a": 10.0, "b": 5.0, "c": 20.0}, blocks, ()) == ("b", "c")
+
+
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [
+        ({"rate": 5.0}, "rate"),
+        ({"noise": 0.0}, "noise"),
+        ({"kinds": "xlsx"}, "format"),
+        ({"base": "floating"}, "fixed"),
+    ],
+)
+def test_bad_input_is_refused(made, tmp_path, options, match):
+    with pytest.raises(InputError, match=match):
+        excite(made.path, tmp_path, **options)
+
+
+def test_a_floating_robot_is_put_on_a_rig():
+    assert not fixed_subject("hyperleg").floating
+    with pytest.raises(InputError, match="base"):
+        design_experiment(load_subject("hyperleg"))

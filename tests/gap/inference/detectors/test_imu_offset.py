@@ -1,0 +1,172 @@
+"""Constant errors of an IMU, on a base that sways as formulas say: what its sensors feel is derived
+here, by nothing of the package.
+"""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.inference.detectors.imu_offset import SURE, felt_upright, imu_offset
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.conditioning import condition
+
+GYRO_OFF, FELT_OFF = np.array([0.03, -0.05, 0.0]), np.array([0.3, 0.0, -0.4])
+
+
+@pytest.fixture(scope="module")
+def subject():
+    return load_subject("hyperleg")
+
+
+@pytest.fixture(scope="module")
+def swaying(subject):
+    """A base that turns by yaw psi(t), then pitch theta(t), and moves; its joints stand still."""
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.logs.metadata import Metadata
+
+    time = np.arange(0, 8, 0.005)
+    yaw, yaw_rate = 0.4 * np.sin(time), 0.4 * np.cos(time)
+    pitch, pitch_rate = 0.2 * np.sin(2 * time), 0.4 * np.cos(2 * time)
+    zero, one = np.zeros_like(time), np.ones_like(time)
+    about_z = np.array(
+        [[np.cos(yaw), -np.sin(yaw), zero], [np.sin(yaw), np.cos(yaw), zero], [zero, zero, one]]
+    )
+    about_y = np.array(
+        [
+            [np.cos(pitch), zero, np.sin(pitch)],
+            [zero, one, zero],
+            [-np.sin(pitch), zero, np.cos(pitch)],
+        ]
+    )
+    rotation = np.einsum("ijt,jkt->tik", about_z, about_y)
+    spin = np.stack([-yaw_rate * np.sin(pitch), pitch_rate, yaw_rate * np.cos(pitch)], -1)
+    turn = np.gradient(spin, time, axis=0, edge_order=2)
+    velocity = np.stack(
+        [0.3 * np.sin(3 * time), 0.2 * np.cos(2 * time), 0.1 * np.sin(5 * time)], -1
+    )
+    acceleration = np.stack(
+        [0.9 * np.cos(3 * time), -0.4 * np.sin(2 * time), 0.5 * np.cos(5 * time)], -1
+    )
+    arm = subject.imu_position
+    felt = (
+        np.einsum("tji,tj->ti", rotation, acceleration + np.array([0, 0, 9.81]))
+        + np.cross(turn, arm)
+        + np.cross(spin, np.cross(spin, arm))
+    )
+    half = yaw / 2, pitch / 2
+    quaternion = np.stack(
+        [
+            np.cos(half[0]) * np.cos(half[1]),
+            -np.sin(half[0]) * np.sin(half[1]),
+            np.cos(half[0]) * np.sin(half[1]),
+            np.sin(half[0]) * np.cos(half[1]),
+        ],
+        -1,
+    )
+    rng = np.random.default_rng(1)
+    channels = {
+        "gyro": (spin @ subject.imu_rotation, "xyz", 2e-3),
+        "accelerometer": (felt @ subject.imu_rotation, "xyz", 0.03),
+        "base_orientation": (quaternion, "wxyz", 2e-4),
+        "base_velocity": (velocity, "xyz", 3e-3),
+    }
+    signals = {
+        f"{k}/{a}": v[:, i] + noise * rng.normal(size=len(time))
+        for k, (v, axes, noise) in channels.items()
+        for i, a in enumerate(axes)
+    }
+    for joint, angle in zip(
+        subject.joints, 0.1 + 0.05 * np.arange(len(subject.joints)), strict=True
+    ):
+        signals[f"position/{joint}"] = angle + 1e-4 * rng.normal(size=len(time))
+    signals |= {
+        f"motor_torque/{motor}": 0.1 * rng.normal(size=len(time)) for motor in subject.motors
+    }
+    return Log("swaying", time, signals, Metadata(base="floating"))
+
+
+def off(log, gyro=(0, 0, 0), felt=(0, 0, 0)):
+    """A log whose IMU has errors."""
+    added = {f"gyro/{a}": e for a, e in zip("xyz", gyro, strict=True)} | {
+        f"accelerometer/{a}": e for a, e in zip("xyz", felt, strict=True)
+    }
+    return log.changed(signals={c: v + added.get(c, 0.0) for c, v in log.signals.items()})
+
+
+def found(subject, *logs, references=()):
+    return imu_offset(
+        [condition(one, subject) for one in logs], [condition(one, subject) for one in references]
+    )
+
+
+def test_a_good_sensor_has_none(swaying, subject):
+    assert found(subject, swaying) is None
+
+
+def test_both_errors_are_found_with_their_intervals(swaying, subject):
+    one = found(subject, off(swaying, GYRO_OFF, FELT_OFF))
+    for kind, error in (("gyro", GYRO_OFF), ("accelerometer", FELT_OFF)):
+        for axis, true in zip("xyz", error, strict=True):
+            value = one.parameters[f"{kind}_{axis}"]
+            assert value.value == pytest.approx(true, abs=0.002 if kind == "gyro" else 0.02)
+            assert value.low <= value.value <= value.high
+    assert one.kind == "gyro"
+    assert one.size == pytest.approx(np.linalg.norm(GYRO_OFF), rel=0.05)
+    assert one.closed > 0.9
+
+
+def test_the_sensors_own_axes_are_told(swaying, subject):
+    """A sensor that is turned by a quarter tells the same motion in other columns, and its error in
+    its own.
+    """
+    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    log = swaying
+    turned = {
+        f"{kind}/{a}": (log.vector(kind) @ quarter)[:, i]
+        for kind in ("gyro", "accelerometer")
+        for i, a in enumerate("xyz")
+    }
+    moved = dataclasses.replace(subject, imu_rotation=subject.imu_rotation @ quarter)
+    one = imu_offset(
+        [condition(off(log.changed(signals={**log.signals, **turned}), GYRO_OFF), moved)]
+    )
+    assert [one.parameters[f"gyro_{a}"].value for a in "xyz"] == pytest.approx(GYRO_OFF, abs=0.002)
+
+
+def test_a_vertical_that_leans_is_not_blamed_on_the_accelerometer(swaying, subject):
+    told = found(subject, off(swaying, felt=(0.5, 0.3, 0.0)))
+    assert told.leans == pytest.approx(np.hypot(0.5, 0.3) / 9.81, rel=0.1)
+    assert "leans by 0.05" in told.says
+    assert found(subject, off(swaying, felt=(0.06, 0.0, 0.0))) is None
+    assert found(subject, off(swaying, felt=(0.5, 0.3, 0.4))).leans == 0
+
+
+def test_errors_as_usual_and_those_of_references_are_no_news(swaying, subject):
+    log = swaying
+    assert found(subject, off(log, gyro=(0.002, 0, 0), felt=(0.03, 0, 0.03))) is None
+    assert found(subject, off(log, GYRO_OFF), references=[off(log, GYRO_OFF)]) is None
+    assert found(subject, off(log, GYRO_OFF), references=[log]) is not None
+
+
+@pytest.mark.parametrize("lacking", ["base_orientation", "gyro"])
+def test_without_both_nothing_is_said(swaying, subject, lacking):
+    log = off(swaying, GYRO_OFF)
+    less = log.changed(
+        signals={c: v for c, v in log.signals.items() if not c.startswith(f"{lacking}/")}
+    )
+    assert found(subject, less) is None
+
+
+def test_the_error_along_the_vertical_is_told_apart_from_how_the_base_leans(swaying, subject):
+    logs = [condition(off(swaying, felt=felt), subject) for felt in ((0, 0, 0), FELT_OFF)]
+    (up, none, _), (_, error, deviation) = (felt_upright([log]) for log in logs)
+    assert np.linalg.norm(up) == pytest.approx(1)
+    assert none == pytest.approx(0, abs=2 * SURE)
+    assert error - none == pytest.approx(up @ FELT_OFF)
+    assert error == pytest.approx(up @ FELT_OFF, abs=3 * deviation)
+    assert SURE <= deviation < 0.05
+    still = swaying.changed(
+        signals={c: v for c, v in swaying.signals.items() if not c.startswith("base_velocity/")}
+    )
+    assert felt_upright([condition(still, subject)]) is None

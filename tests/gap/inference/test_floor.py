@@ -1,0 +1,106 @@
+import dataclasses
+
+import diagnosed
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.inference.floor import expected
+from hyperleg_design.gap.inference.thresholds import load_thresholds
+from hyperleg_design.gap.signals.filtering import sieve
+
+
+@pytest.fixture(scope="module")
+def one(robot_files):
+    signals = diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
+    return sieve(signals)
+
+
+@pytest.fixture(scope="module")
+def jittering(robot_files):
+    return sieve(diagnosed.conditioned(robot_files["servos"], diagnosed.stamped_badly(0))[0])
+
+
+def noise_of(one, floors, row):
+    band, _, _ = one.labels(row)
+    return {
+        b: float(np.sqrt(np.mean(floors[row][band == b] ** 2))) for b in np.unique(band).tolist()
+    }
+
+
+def test_white_torque_noise_is_told_from_the_log_itself(one):
+    nothing = dataclasses.replace(
+        load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0
+    )
+    rng = np.random.default_rng(0)
+    level = 0.3
+    noisy = dataclasses.replace(
+        one.signals,
+        residual={"motion": level * rng.normal(size=one.signals.residual["motion"].shape)},
+    )
+    noisy_sieve = sieve(noisy)
+    floors = expected(noisy_sieve, nothing)
+    band, _, _ = noisy_sieve.labels(0)
+    values = noisy_sieve.sample(0, noisy.residual["motion"][:, 0][None])[0]
+    for b in np.unique(band).tolist()[1:]:
+        real = np.sqrt(np.mean(values[band == b] ** 2))
+        # interpolation onto even ticks is allowed for, and noise of accelerations comes on top
+        assert 0.9 * real < noise_of(noisy_sieve, floors, 0)[b] < 1.6 * real
+
+
+def test_what_rings_at_high_frequencies_is_no_noise_at_low_ones(one):
+    nothing = dataclasses.replace(
+        load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0
+    )
+    rng = np.random.default_rng(1)
+    quiet = 0.05 * rng.normal(size=one.signals.residual["motion"].shape)
+    rung = np.zeros_like(quiet)
+    for frequency in np.linspace(25, 45, 400):  # a dense ringing above all bands
+        rung += 0.03 * np.sin(
+            2 * np.pi * frequency * one.signals.time[:, None] + rng.uniform(0, 2 * np.pi)
+        )
+    floors = []
+    for residual in (quiet, quiet + rung):
+        noisy = sieve(dataclasses.replace(one.signals, residual={"motion": residual}))
+        floors.append(noise_of(noisy, expected(noisy, nothing), 0))
+    low = sorted(floors[0])[1:3]
+    assert all(floors[1][b] < 1.6 * floors[0][b] for b in low)
+
+
+def test_a_worse_known_torque_raises_the_floor(one):
+    rules = load_thresholds()
+    low = expected(one, rules)
+    high = expected(one, dataclasses.replace(rules, floor_torque=10 * rules.floor_torque))
+    for a, b in zip(low, high, strict=True):
+        assert np.all(a > 0)
+        assert np.all(b >= a)
+    assert high[0].mean() > 1.2 * low[0].mean()
+
+
+def test_positions_stamped_early_or_late_are_noisier_where_joints_are_fast(jittering):
+    signals, rules = jittering.signals, load_thresholds()
+    even = sieve(
+        dataclasses.replace(signals, velocity=np.ones_like(signals.velocity))
+    )  # no tick faster than any other
+    for row, (told, before) in enumerate(
+        zip(expected(jittering, rules), expected(even, rules), strict=True)
+    ):
+        top = jittering.labels(row)[0] == jittering.labels(row)[0].max()
+        shown = (
+            jittering.sample(row, signals.residual["motion"][:, jittering.rows[row].column][None])[
+                0
+            ][top]
+            ** 2
+        )
+        after, flat = (
+            np.corrcoef(np.log(shown), np.log(floors[top]))[0, 1] for floors in (told, before)
+        )
+        assert after > flat + 0.1
+
+
+def test_noise_of_one_joint_is_in_the_balances_of_those_that_it_shakes(jittering):
+    signals, floors = jittering.signals, []
+    for times in (1.0, 10.0):
+        noisier = dataclasses.replace(signals, noise=signals.noise * np.array([1.0, times]))
+        floors.append(expected(dataclasses.replace(jittering, signals=noisier), load_thresholds()))
+    hip = next(i for i, row in enumerate(jittering.rows) if row.name == "hip")
+    assert floors[1][hip].max() > 2 * floors[0][hip].max()

@@ -1,0 +1,206 @@
+"""What a diagnosis makes of causes that no balance shows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from diagnosed import run
+
+from hyperleg_design.gap.inference.detectors.heard import KNOCKING, Heard
+from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, Offset
+from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_heard, of_imu
+from hyperleg_design.gap.pipeline.diagnose import diagnose
+from hyperleg_design.gap.results.diagnosis import Named, Place, Value
+from hyperleg_design.report.gap_text import diagnosis_text
+
+OTHER = Named("coulomb_friction", "hip", 0.9, 0.8, {})
+PLAY, SPRING = (
+    Named(effect, "m_back", share, 0.7, {})
+    for effect, share in (("backlash", 0.7), ("transmission_elasticity", 0.3))
+)
+BELT = Heard(
+    "m_back",
+    KNOCKING,
+    "knocks about",
+    np.nan,
+    2.0,
+    "Nm",
+    0.7,
+    (0.6, 0.8),
+    "motor",
+    {"m_front": 0.2, "m_back": 0.8},
+    (PLAY, SPRING),
+)
+
+
+@pytest.fixture(scope="module")
+def none(robot_files):
+    found = diagnose(
+        robot_files["coupled"], [run("healthy", s, session="today") for s in (0, 1)], threads=1
+    )
+    assert found.verdict == "none"
+    return found
+
+
+@pytest.fixture
+def offset():
+    errors = {
+        f"{kind}_{axis}": Value(0.05 * (axis == "y"), 0.0, 0.1, "")
+        for kind in ("gyro", "accelerometer")
+        for axis in "xyz"
+    }
+    return Offset(errors, "gyro", 0.05, 0.001)
+
+
+def certain(told):
+    return sum(c.probability for c in (*told.causes, *told.rivals))
+
+
+def names(causes):
+    return [(c.effect, c.location) for c in causes]
+
+
+def test_a_sensor_is_the_cause_where_nothing_else_is(none, offset):
+    told = of_imu(none, offset)
+    assert told.verdict == "explained"
+    assert names(told.causes) == [PLACE]
+    assert (told.gap.before, told.gap.after, told.gap.unit) == (0.05, 0.001, "rad/s")
+    assert told.gap.closed == pytest.approx(0.98)
+    assert told.where[0].location == "imu"
+    assert all(rival.closed == 0 for rival in told.rivals)
+    assert "base_orientation by a constant: 0, 0.05, 0 rad/s" in diagnosis_text(told.mapping())
+    assert certain(told) < 1 + 1e-9
+
+
+def test_a_sensor_is_one_cause_more_beside_others_and_is_not_named_twice(none, offset):
+    told = of_imu(replace(none, verdict="explained", causes=(OTHER,)), offset)
+    assert names(told.causes) == [("coulomb_friction", "hip"), PLACE]
+    assert of_imu(told, offset) is told
+
+
+def test_a_sensor_that_is_named_already_has_the_surer_of_both_sizes(none, offset):
+    rough = {name: Value(0.0, -0.1, 0.1, "") for name in offset.parameters}
+    sure = {**rough, "gyro_x": Value(0.01, 0.009, 0.011, "")}
+    blind = replace(offset, parameters={**offset.parameters, "gyro_z": Value(0.0, 0.0, 0.0, "")})
+    told = (
+        of_imu(replace(none, verdict="explained", causes=(Named(*PLACE, 0.9, 0.8, sure),)), blind)
+        .causes[0]
+        .parameters
+    )
+    assert told["gyro_y"] == offset.parameters["gyro_y"]  # other sensors know it better
+    assert told["gyro_x"] == sure["gyro_x"]  # balances do
+    assert told["gyro_z"] == rough["gyro_z"]  # no other sensor tells it
+
+
+def test_a_sensor_does_not_explain_a_gap_that_is_unknown(none, offset):
+    told = of_imu(replace(none, verdict="unknown"), offset)
+    assert (told.verdict, told.causes) == ("unknown", ())
+    assert names(told.rivals)[0] == PLACE
+    assert told.residual_shape[0]["shape"] == "offset"
+    assert diagnosis_text(told.mapping()).count("base_orientation by a constant") == 1
+    assert certain(told) < 1 + 1e-9
+
+
+def test_a_vertical_that_leans_is_an_unknown_gap_and_no_cause(none, offset):
+    leaning = replace(offset, kind="accelerometer", leans=0.03)
+    told = of_imu(none, leaning)
+    assert (told.verdict, told.causes) == ("unknown", ())
+    assert names(told.rivals)[0] == PLACE
+    assert "leans by 0.03 rad" in diagnosis_text(told.mapping())
+    assert names(of_imu(replace(none, verdict="explained", causes=(OTHER,)), leaning).causes) == [
+        ("coulomb_friction", "hip")
+    ]
+
+
+def test_a_belt_is_the_cause_where_nothing_else_is(none):
+    told = of_heard(none, BELT)
+    assert told.verdict == "ambiguous"
+    assert names(told.causes) == [("backlash", "m_back")]
+    assert told.equivalent == ((("backlash", "m_back"), ("transmission_elasticity", "m_back")),)
+    assert (told.gap.before, told.gap.closed, told.gap.closed_interval) == (2.0, 0.7, (0.6, 0.8))
+    assert told.gap.after == pytest.approx(0.6)
+    assert [(place.location, place.share) for place in told.where] == [
+        ("m_back", 0.8),
+        ("m_front", 0.2),
+    ]
+    assert told.causes[0].probability > told.rivals[0].probability
+    assert certain(told) < 1 + 1e-9
+
+
+def test_a_belt_beside_another_cause_leaves_that_ones_gap_as_it_is(none):
+    explained = replace(none, verdict="explained", causes=(OTHER,))
+    told = of_heard(explained, BELT)
+    assert names(told.causes) == [("coulomb_friction", "hip"), ("backlash", "m_back")]
+    assert told.gap == explained.gap
+    assert (told.verdict, told.residual_shape[0]["location"]) == ("ambiguous", "m_back")
+
+
+def feet(effect, shape, says, unit):
+    return tuple(
+        Underfoot(
+            effect, foot, {"scale": Value(0.5, 0.4, 0.6, "")}, shape, says, weight, 30.0, 3.0, unit
+        )
+        for foot, weight in (("left_foot", 2.0), ("right_foot", 1.0))
+    )
+
+
+SLIDING, SOFT = (
+    feet("ground_friction", "slips", "slides for 2 s", "N"),
+    feet("ground_compliance", "sinks", "sinks by 1 mm", "m"),
+)
+BOTH = [("ground_friction", "left_foot"), ("ground_friction", "right_foot")]
+
+
+def test_slippery_ground_is_the_cause_where_nothing_else_is(none):
+    told = of_feet(none, SLIDING)
+    assert (told.verdict, names(told.causes)) == ("explained", BOTH)
+    assert (told.gap.before, told.gap.unit) == (pytest.approx(30.0), "N")
+    assert told.gap.closed == pytest.approx(0.9)
+    assert [(w.location, w.share) for w in told.where] == [
+        ("left_foot", pytest.approx(2 / 3)),
+        ("right_foot", pytest.approx(1 / 3)),
+    ]
+    assert sum(r.probability for r in told.rivals) < 0.06
+    assert "slides for 2 s" in diagnosis_text(told.mapping())
+
+
+def test_slippery_ground_is_one_cause_more_beside_others_and_is_not_named_twice(none):
+    told = of_feet(replace(none, verdict="explained", causes=(OTHER,)), SLIDING)
+    assert names(told.causes) == [("coulomb_friction", "hip"), *BOTH]
+    assert of_feet(told, SLIDING) is told
+    assert of_feet(none, ()) is none
+
+
+def test_an_unknown_gap_under_feet_that_slide_is_theirs_and_another_is_not(none):
+    unknown = replace(none, verdict="unknown")
+    under = (
+        Place("left_foot", "foot", "all", 0.4),
+        Place("right_foot", "foot", "all", 0.3),
+        Place("hip", "joint", "all", 0.3),
+    )
+    assert of_feet(replace(unknown, where=under), SLIDING).verdict == "explained"
+    elsewhere = of_feet(replace(unknown, where=(Place("hip", "joint", "all", 1.0),)), SLIDING)
+    assert (elsewhere.verdict, elsewhere.causes) == ("unknown", ())
+    assert names(elsewhere.rivals)[0] == BOTH[0]
+
+
+def test_soft_ground_that_creeps_is_not_slippery_but_one_that_feet_slide_on_may_be(none):
+    slippery = Named("ground_friction", "left_foot", 0.9, 0.5, {})
+    soft = [("ground_compliance", foot) for _, foot in BOTH]
+    assert (
+        names(of_feet(replace(none, verdict="explained", causes=(slippery,)), SOFT).causes) == soft
+    )
+    assert names(of_feet(of_feet(none, SLIDING), SOFT).causes) == [*BOTH, *soft]
+    alike = replace(
+        none,
+        verdict="ambiguous",
+        causes=(OTHER, slippery),
+        equivalent=((BOTH[0], ("link_mass", "hip")),),
+    )
+    told = of_feet(alike, SOFT)
+    assert (told.verdict, told.equivalent, names(told.causes)) == (
+        "explained",
+        (),
+        [("coulomb_friction", "hip"), *soft],
+    )

@@ -1,0 +1,59 @@
+"""What an added effect changes: replays of logs, and walks."""
+
+from __future__ import annotations
+
+import diagnosed
+import numpy as np
+import pytest
+
+from hyperleg_design.evaluation.protocol import (
+    load_protocol,
+    protocol_from_mapping,
+    protocol_mapping,
+)
+from hyperleg_design.gap.playback import added
+from hyperleg_design.gap.playback.overlay import Overlay
+from hyperleg_design.report.gap_text import changed_text, replayed_text
+
+TRUE = Overlay("coupled", {("viscous_friction", "knee"): {"damping": 0.3}})
+WRONG = Overlay("coupled", {("viscous_friction", "hip"): {"damping": 0.3}})
+
+
+@pytest.fixture(scope="module")
+def signals(robot_files):
+    return diagnosed.conditioned(robot_files["coupled"], diagnosed.run("viscous", 3))
+
+
+def test_the_true_effect_makes_replays_better_and_a_wrong_one_does_not(signals):
+    rows = {row.joint: row for row in added.replayed(signals, TRUE)}
+    assert rows["knee"].after < 0.3 * rows["knee"].before
+    assert rows["knee"].windows > 20
+    worse = {row.joint: row for row in added.replayed(signals, WRONG)}
+    assert worse["knee"].after > 0.5 * worse["knee"].before
+    text = replayed_text(list(rows.values()))
+    assert "knee" in text
+    assert replayed_text([]) == changed_text([]) == ""
+
+
+def test_a_mapping_has_no_nan(signals):
+    rows = added.replayed(signals, TRUE)
+    nan = float("nan")
+    told = added.mapping(rows, [added.Changed("time", "s", 15.0, nan, nan, nan, nan, 0)])
+    assert told["walked"][0]["after"] is None
+    assert told["replayed"][0]["joint"] == rows[0].joint
+
+
+@pytest.mark.slow
+def test_a_stiff_knee_costs_a_walk_energy():
+    short = protocol_from_mapping({**protocol_mapping(load_protocol("walk")), "trials": 2}, "short")
+    overlay = Overlay(
+        "hyperleg",
+        {
+            ("coulomb_friction", "left_knee"): {"torque": 3.0},
+            ("coulomb_friction", "right_knee"): {"torque": 3.0},
+        },
+    )
+    rows = {row.measure: row for row in added.walked("walk-toe-0", overlay, short, workers=1)}
+    assert rows["power"].difference > 0
+    assert np.isclose(rows["power"].difference, rows["power"].after - rows["power"].before)
+    assert rows["power"].low < rows["power"].difference < rows["power"].high

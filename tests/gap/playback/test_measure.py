@@ -1,0 +1,108 @@
+import numpy as np
+import pytest
+import robots
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.playback.measure import measure
+from hyperleg_design.gap.signals.conditioning import condition
+
+
+def noisy(log, seed, torque=0.02):
+    rng = np.random.default_rng(seed)
+    rounded = robots.quantised(log, 5e-4)
+    return rounded.changed(
+        signals={
+            c: v + rng.normal(0, torque, len(v)) if c.startswith("motor_torque/") else v
+            for c, v in rounded.signals.items()
+        }
+    )
+
+
+def conditioned(robot_files, name, *logs):
+    subject = load_subject(robot_files[name], logs)
+    return [condition(log, subject) for log in logs]
+
+
+@pytest.fixture(scope="module")
+def stiction():
+    """The coupled rig with more friction at the knee than its file says."""
+    text = robots.COUPLED.replace(
+        'name="knee" axis="0 1 0" damping="0.03"', 'name="knee" axis="0 1 0" damping="0.23"'
+    )
+    return robots.servo_run(text, robots.waves(2, [1.0, 1.0]), 10.0)
+
+
+def test_a_faultless_log_has_no_excess_over_its_references(robot_files, runs):
+    one, two = conditioned(
+        robot_files, "coupled", noisy(runs["coupled"], 0), noisy(runs["coupled"], 1)
+    )
+    gap = measure([one], [two])
+    assert gap.floor_from == "reference"
+    for row in gap.select("torque"):
+        assert row.gap == pytest.approx(row.floor, rel=0.2)
+
+
+def test_the_gap_lies_where_the_fault_is(robot_files, runs, stiction):
+    test, reference = conditioned(
+        robot_files, "coupled", noisy(stiction, 0), noisy(runs["coupled"], 1)
+    )
+    gap = measure([test], [reference])
+    rows = {r.location: r for r in gap.select("torque", "joint")}
+    assert rows["knee"].share > 0.9
+    truth = 0.2 * np.sqrt(np.mean(test.velocity[test.valid, 1] ** 2))
+    assert rows["knee"].excess == pytest.approx(truth, rel=0.1)
+    # both motors drive the knee, with four and minus four: the fault shows at both alike
+    motors = {r.location: r for r in gap.select("torque", "motor")}
+    assert motors["m_front"].excess == pytest.approx(motors["m_back"].excess, rel=0.2)
+    assert motors["m_front"].excess == pytest.approx(truth / 8, rel=0.2)
+    # the logged torque exceeds the needed one in the direction of motion, more the faster it is
+    regimes = {r.regime: r for r in gap.select("torque", "joint", "knee", "")}
+    assert regimes["forward"].mean > 0.1
+    assert regimes["backward"].mean < -0.1
+    assert regimes["fast"].gap > 1.5 * regimes["slow"].gap
+    assert regimes["still"].gap < 0.3 * regimes["fast"].gap
+    position = {r.location: r for r in gap.select("position", "joint")}
+    assert position["knee"].gap > 3 * position["knee"].floor
+
+
+def test_shares_of_all_places_add_up(robot_files, runs, stiction):
+    (test,) = conditioned(robot_files, "coupled", noisy(stiction, 0))
+    gap = measure([test])
+    assert gap.floor_from == "split"
+    for signal, kind in (("torque", "joint"), ("torque", "motor"), ("position", "joint")):
+        assert sum(r.share for r in gap.select(signal, kind)) == pytest.approx(1.0)
+
+
+def test_split_floor_is_the_noise_of_the_torques(robot_files, runs):
+    (test,) = conditioned(robot_files, "pendulum", noisy(runs["pendulum"], 3, torque=0.05))
+    row = measure([test], predict=False).select("torque")[0]
+    # white noise of 0.05 Nm at 200 Hz keeps a tenth of its power below 10 Hz
+    assert row.floor == pytest.approx(0.05 * np.sqrt(0.1), rel=0.15)
+    assert row.gap == pytest.approx(row.floor, rel=0.3)
+
+
+def test_repeats_of_a_motion_are_found_and_give_the_floor(robot_files, runs):
+    logs = [noisy(runs["arm"], seed, torque=0.5) for seed in (0, 1)]
+    gap = measure(conditioned(robot_files, "arm", *logs), predict=False)
+    assert gap.floor_from == "repeats"
+    assert gap.select("torque", "joint", "shoulder_pan")[0].floor == pytest.approx(
+        0.5 * np.sqrt(0.1), rel=0.2
+    )
+
+
+def test_table_and_bands(robot_files, runs, stiction):
+    (test,) = conditioned(robot_files, "coupled", noisy(stiction, 0))
+    gap = measure([test], predict=False)
+    table = gap.table()
+    assert len({len(column) for column in table.values()}) == 1
+    bands = [r for r in gap.select("torque", "joint", "knee", "") if r.regime.endswith("Hz")]
+    whole = gap.select("torque", "joint", "knee")[0]
+    assert np.sqrt(sum(r.gap**2 for r in bands if r.regime != "10-25 Hz")) == pytest.approx(
+        whole.gap, rel=0.05
+    )
+
+
+def test_no_logs():
+    with pytest.raises(InputError, match="at least one log"):
+        measure([])

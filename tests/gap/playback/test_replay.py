@@ -1,0 +1,179 @@
+import numpy as np
+import pytest
+import robots
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.playback.replay import (
+    Windows,
+    best_input,
+    replay,
+    short_windows,
+    whole_log,
+)
+from hyperleg_design.gap.signals.conditioning import condition
+
+
+@pytest.fixture(scope="module")
+def signals(robot_files, runs):
+    return {
+        name: condition(log, load_subject(robot_files[name], [log])) for name, log in runs.items()
+    }
+
+
+def rms(values):
+    return np.sqrt(np.nanmean(values**2, (0, 1, 2)))
+
+
+@pytest.mark.parametrize(("name", "worst"), [("pendulum", 1e-4), ("coupled", 2e-3), ("arm", 3e-3)])
+def test_torque_replays_reproduce_the_simulation(signals, name, worst):
+    one = signals[name]
+    found = replay(one, follow="torque")
+    position, velocity = found.errors(one)
+    assert (rms(position) < worst).all()
+    assert (rms(velocity) < 12 * worst).all()
+    np.testing.assert_allclose(found.torque[0, :, 0], one.believed[found.windows.start], atol=1e-9)
+
+
+def test_closed_loop_replay_of_the_whole_log(signals):
+    one = signals["arm"]
+    assert best_input(one) == "target"
+    position, _ = replay(one, windows=whole_log(one)).errors(one)
+    # the simulation's targets moved on between ticks, where a replay holds them: half a tick of
+    # delay
+    speed = np.sqrt(np.mean(one.velocity**2, 0))
+    assert (rms(position) < 1.2 * one.step / 2 * speed).all()
+
+
+def test_the_result_does_not_depend_on_threads(signals):
+    one = signals["coupled"]
+    np.testing.assert_array_equal(replay(one, threads=1).position, replay(one, threads=2).position)
+
+
+def test_finer_steps_come_nearer(signals):
+    one = signals["pendulum"]
+    coarse, fine = (
+        rms(replay(one, follow="torque", time_step=step).errors(one)[0])[0]
+        for step in (0.005, 0.0005)
+    )
+    assert fine < coarse < 1e-3
+
+
+def test_stiff_dry_friction_does_not_chatter(tmp_path):
+    """A light joint with friction of a hundred times what a step can stand explicitly comes to
+    rest, and stays.
+    """
+    text = robots.PENDULUM.replace(
+        'armature="0.003"', 'armature="0.0001" frictionloss="0.3"'
+    ).replace('damping="0.02"', "")
+    (tmp_path / "dry.xml").write_text(text)
+    log = robots.servo_run(text, robots.waves(1, 0.2), 3.0)
+    one = condition(log, load_subject(tmp_path / "dry.xml", [log]))
+    velocity = replay(one, follow="torque").velocity[0]
+    settled = velocity[:, velocity.shape[1] // 2 :]
+    assert np.abs(np.diff(settled, axis=1)).max() < 0.02
+    assert np.sqrt(np.mean(settled**2)) < 0.02
+
+
+def test_windows_keep_off_gaps(robot_files, runs):
+    keep = np.ones(2000, bool)
+    keep[700:760] = False
+    one = condition(runs["pendulum"].part(keep), load_subject(robot_files["pendulum"]))
+    windows = short_windows(one, 0.3)
+    assert one.valid[windows.ticks].all()
+    assert windows.length == 60
+    with pytest.raises(InputError, match="longer than any stretch"):
+        short_windows(one, 60.0)
+
+
+def test_bad_requests(signals):
+    with pytest.raises(InputError, match="expects one of"):
+        replay(signals["pendulum"], follow="wishes")
+    with pytest.raises(InputError, match="is not in this log"):
+        replay(signals["pendulum"], follow="target")
+
+
+def test_diverged_simulations_become_unknown(robot_files, runs):
+    """Torque beyond all reason in one window leaves the other windows alone."""
+    import dataclasses
+
+    one = condition(runs["pendulum"], load_subject(robot_files["pendulum"]))
+    believed = one.believed.copy()
+    believed[300:400] = 1e12
+    found = replay(
+        dataclasses.replace(one, believed=believed),
+        windows=Windows(np.array([100, 310]), 50),
+        follow="torque",
+    )
+    assert np.isfinite(found.position[0, 0]).all()
+    assert not np.isfinite(found.position[0, 1]).all()
+
+
+INERTIA = 'mass="0.8" diaginertia="0.008 0.008 0.001"/>'
+"""Of the rig's shank."""
+
+
+@pytest.fixture(scope="module")
+def altered(robot_files):
+    """The coupled rig with another knee damping, rotor, and mass than its file says, one at a
+    time.
+    """
+    base = robots.COUPLED
+    texts = {
+        "viscous_friction": base.replace(
+            'axis="0 1 0" damping="0.03"', 'axis="0 1 0" damping="0.33"'
+        ),
+        "rotor_inertia": base.replace(
+            'name="front" armature="0.002"', 'name="front" armature="0.004"'
+        ),
+        "payload": base.replace(
+            INERTIA, f'{INERTIA}<body><geom size="0.001" mass="0.5" pos="0 0 -0.2"/></body>'
+        ),
+        "encoder_offset": base + " ",
+    }
+    found = {}
+    for name, text in texts.items():
+        assert text != base
+        log = robots.servo_run(text, robots.waves(2, [1.0, 1.0]), 5.0)
+        if name == "encoder_offset":
+            log = log.changed(
+                signals={**log.signals, "position/knee": log.column("position/knee") + 0.1}
+            )
+        found[name] = condition(log, load_subject(robot_files["coupled"], [log]))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("effect", "location", "values"),
+    [
+        ("viscous_friction", "knee", {"damping": 0.3}),
+        ("rotor_inertia", "m_front", {"inertia": 0.002}),
+        ("encoder_offset", "knee", {"offset": 0.1}),
+        ("payload", "shank", {"mass": 0.5, "com_z": -0.2}),
+    ],
+)
+def test_the_right_change_closes_the_gap_in_position(altered, effect, location, values):
+    one = altered[effect]
+    found = replay(one, ({}, {(effect, location): values}), follow="torque")
+    position, _ = found.errors(one)
+    before, after = (np.sqrt(np.nanmean(e**2)) for e in position)
+    assert after < 0.1 * before
+
+
+def test_gains_too_stiff_for_a_joint_without_rotor_stay_stable(tmp_path):
+    """Ten times what an explicit step can stand; the joint follows its target as a stiff servo
+    does.
+    """
+    text = robots.PENDULUM.replace('armature="0.003"', "").replace(
+        'diaginertia="0.0006 0.0006 0.0001"', 'diaginertia="1e-5 1e-5 1e-5"'
+    )
+    text = text.replace('pos="0 0 -0.1" mass="0.5"', 'pos="0 0 -0.01" mass="0.05"')
+    text = text.replace(
+        '<motor name="servo" joint="swing" ctrlrange="-3 3"/>',
+        '<position name="servo" joint="swing" kp="9" kv="0.5"/>',
+    )
+    (tmp_path / "servo.xml").write_text(text)
+    log = robots.servo_run(text.replace("RK4", "implicitfast"), robots.waves(1, 0.4), 3.0)
+    one = condition(log, load_subject(tmp_path / "servo.xml", [log]))
+    position, _ = replay(one, windows=whole_log(one)).errors(one)
+    assert rms(position)[0] < 1.5 * one.step / 2 * np.sqrt(np.mean(one.velocity**2))

@@ -1,0 +1,152 @@
+import numpy as np
+import pytest
+import robots
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.conditioning import condition
+
+QUANTUM = 1.5e-3
+"""Of position sensors that came to hand [rad]."""
+
+
+def share(signals, balance="motion"):
+    """Root mean square of a residual over that of the believed joint torque, by joint."""
+    torque = signals.believed @ signals.subject.joint_from_motor.T
+    residual = signals.residual[balance][signals.valid]
+    return np.sqrt(np.nanmean(residual**2, 0)) / np.sqrt(np.mean(torque[signals.valid] ** 2, 0))
+
+
+@pytest.mark.parametrize(
+    ("name", "clean", "rough"),
+    [("pendulum", 1e-4, 0.02), ("arm", 0.02, 0.02), ("coupled", 1e-3, 0.08)],
+)
+def test_motion_balance_of_a_simulated_robot_vanishes(robot_files, runs, name, clean, rough):
+    log = runs[name]
+    assert share(condition(log, load_subject(robot_files[name], [log]))).max() < clean
+    rounded = robots.quantised(log, QUANTUM)
+    assert share(condition(rounded, load_subject(robot_files[name], [rounded]))).max() < rough
+
+
+def test_drive_balance_of_a_servo_is_nothing(robot_files, runs):
+    log = runs["arm"]
+    signals = condition(log, load_subject(robot_files["arm"], [log]))
+    np.testing.assert_allclose(signals.residual["drive"], 0, atol=1e-9)
+
+
+def test_wrong_gains_show_in_the_drive_and_wrong_payload_in_the_motion(robot_files, runs):
+    log = runs["arm"]
+    wrong = log.changed(metadata=Metadata(gains={"elbow": (1500.0, 150.0)}))
+    signals = condition(wrong, load_subject(robot_files["arm"], [wrong]))
+    assert share(signals, "drive")[2] > 0.1
+    loaded = log.changed(metadata=Metadata(payload={"flange": (2.0, 0.0, 0.0, 0.0)}))
+    assert share(condition(loaded, load_subject(robot_files["arm"], [loaded])))[1] > 0.1
+    # a subject made for one log fits the next, whatever that declares
+    again = condition(log, load_subject(robot_files["arm"], [loaded]))
+    assert share(again).max() < 0.02
+
+
+def test_torques_from_currents_and_joint_torques(robot_files, runs):
+    log = runs["coupled"]
+    subject = load_subject(robot_files["coupled"], [log])
+    torque = log.stack("motor_torque", ("m_front", "m_back"))
+    kept = {c: v for c, v in log.signals.items() if c.startswith("position/")}
+    current = {
+        f"motor_current/{m}": torque[:, i] / 0.25 for i, m in enumerate(("m_front", "m_back"))
+    }
+    joint = {
+        f"joint_torque/{j}": (torque @ subject.joint_from_motor.T)[:, i]
+        for i, j in enumerate(subject.joints)
+    }
+    declared = Metadata(torque_constant={"m_front": 0.25, "m_back": 0.25})
+    for signals in (
+        condition(Log("c", log.time, kept | current, declared), subject),
+        condition(Log("j", log.time, kept | joint), subject),
+    ):
+        np.testing.assert_allclose(signals.measured, torque, atol=1e-9)
+        assert signals.command is None
+    with pytest.raises(InputError, match="torque_constant"):
+        condition(Log("c", log.time, kept | current), subject)
+
+
+def test_targets_with_gains_stand_in_for_torques(robot_files, runs):
+    log = runs["arm"]
+    kept = {c: v for c, v in log.signals.items() if not c.startswith("motor_torque/")}
+    signals = condition(Log("t", log.time, kept), load_subject(robot_files["arm"]))
+    assert signals.measured is None
+    np.testing.assert_allclose(
+        signals.believed, log.stack("motor_torque", ("a1", "a2", "a3", "a4", "a5", "a6")), atol=1e-6
+    )
+    bare = {c: v for c, v in kept.items() if c.startswith("position/")}
+    with pytest.raises(InputError, match="tells the torque of no motor"):
+        condition(Log("t", log.time, bare), load_subject(robot_files["arm"]))
+
+
+def test_commands_stop_at_the_nominal_limits(robot_files, runs):
+    log = runs["arm"]
+    kept = {c: v for c, v in log.signals.items() if not c.startswith("motor_torque/")}
+    shifted = {c: v + 0.5 if c == "position_target/elbow" else v for c, v in kept.items()}
+    signals = condition(Log("t", log.time, shifted), load_subject(robot_files["arm"]))
+    assert signals.command[:, 2].max() > 800
+    assert signals.believed[:, 2].max() == 150.0
+
+
+def test_jitter_and_gaps_in_the_clock(robot_files, runs):
+    log = runs["pendulum"]
+    rng = np.random.default_rng(0)
+    keep = np.ones(len(log.time), bool)
+    keep[600:660] = False
+    keep[rng.integers(0, len(keep), 40)] = False
+    signals = condition(log.part(keep), load_subject(robot_files["pendulum"]))
+    np.testing.assert_allclose(np.diff(signals.time), signals.step)
+    assert not signals.valid[600:660].any()
+    assert signals.valid[900:1200].all()
+    assert share(signals).max() < 0.02
+
+
+def test_a_joint_that_only_other_logs_know_has_no_rows(robot_files, runs):
+    log = runs["arm"]
+    part = log.changed(signals={c: v for c, v in log.signals.items() if not c.endswith("/wrist_3")})
+    signals = condition(part, load_subject(robot_files["arm"], [log, part]))
+    assert np.isnan(signals.residual["motion"][:, 5]).all()
+    assert "wrist_3" in signals.notes[0]
+
+
+def test_too_short_or_of_another_robot(robot_files, runs):
+    with pytest.raises(InputError, match="too short"):
+        condition(runs["arm"].part(slice(0, 10)), load_subject(robot_files["arm"]))
+    with pytest.raises(InputError, match="no joint of this robot"):
+        condition(runs["pendulum"], load_subject(robot_files["arm"]))
+
+
+def test_units_of_the_rows(robot_files, runs):
+    signals = condition(runs["coupled"], load_subject(robot_files["coupled"]))
+    assert (
+        signals.position.shape
+        == signals.rigid.shape
+        == signals.residual["motion"].shape
+        == (2000, 2)
+    )
+    assert signals.believed.shape == (2000, 2)
+    assert signals.bandwidth.shape == (2,)
+
+
+def test_stops_push_with_a_force_that_nobody_knows(robot_files, runs, tmp_path):
+    """Range that ends inside the motion: rows there are unknown; a range that is exceeded by far is
+    none.
+    """
+    log = runs["pendulum"]
+    position = log.column("position/swing")
+    for margin, hits in ((0.05, True), (0.3, False)):
+        high = position.max() - margin
+        text = robots.PENDULUM.replace(
+            'name="swing"', f'name="swing" limited="true" range="-200 {np.rad2deg(high)}"'
+        )
+        (tmp_path / "stop.xml").write_text(text)
+        signals = condition(log, load_subject(tmp_path / "stop.xml"))
+        np.testing.assert_array_equal(
+            np.isnan(signals.residual["motion"][:, 0]),
+            hits & (signals.position[:, 0] > high - 0.003),
+        )

@@ -1,0 +1,84 @@
+import numpy as np
+import pytest
+import robots
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.playback.replay import replay, short_windows
+from hyperleg_design.gap.signals.conditioning import condition
+
+
+def conditioned(log):
+    return condition(log, load_subject(None, [log]))
+
+
+def residual(signals, balance="motion"):
+    return signals.residual[balance][signals.valid]
+
+
+@pytest.mark.parametrize("state", ["standing", "thrown"])
+def test_balances_of_a_floating_robot_vanish(biped_runs, state):
+    signals = conditioned(biped_runs[state])
+    assert np.isfinite(residual(signals)).all()
+    assert np.abs(residual(signals)).max() < 0.3  # of 15 Nm, at the knees
+    assert np.sqrt(np.mean(residual(signals, "base")[:, :3] ** 2)) < 0.5  # of 318 N of weight
+    assert np.sqrt(np.mean(residual(signals, "base")[:, 3:] ** 2)) < 0.1
+
+
+def test_without_forces_stance_is_unknown_and_flight_is_not(biped_runs):
+    standing = conditioned(robots.without(biped_runs["standing"], "contact_force"))
+    assert np.isnan(residual(standing)).all()
+    assert "base" not in standing.residual
+    thrown = conditioned(robots.without(biped_runs["thrown"], "contact_force"))
+    assert not thrown.touching.any()
+    assert np.abs(residual(thrown)).max() < 0.3
+
+
+def test_a_foot_in_the_air_keeps_its_rows(biped_runs):
+    """Right leg drawn up: forward kinematics alone says that only the left may touch."""
+    log = robots.without(biped_runs["standing"], "contact_force")
+    lifted = log.changed(
+        signals={
+            c: v + {"position/right_knee": 0.8, "position/right_hip_pitch": -0.4}.get(c, 0.0)
+            for c, v in log.signals.items()
+        }
+    )
+    signals = conditioned(lifted)
+    joints = signals.subject.joints
+    right = [i for i, j in enumerate(joints) if j.startswith("right")]
+    left = [i for i, j in enumerate(joints) if j.startswith("left")]
+    assert np.isfinite(residual(signals)[:, right]).all()
+    assert np.isnan(residual(signals)[:, left]).all()
+
+
+def test_total_of_a_foot_with_several_pads_has_no_known_place(biped_runs):
+    log = biped_runs["standing"]
+    signals = {c: v for c, v in log.signals.items() if not c.startswith("contact_force/")}
+    for side in ("left", "right"):
+        for axis in "xyz":
+            pads = [
+                v
+                for c, v in log.signals.items()
+                if c.startswith(f"contact_force/{side}") and c.endswith(f"_{axis}")
+            ]
+            signals[f"contact_force/{side}_foot_{axis}"] = np.sum(pads, 0)
+    found = conditioned(log.changed(signals=signals))
+    np.testing.assert_allclose(found.contact, conditioned(log).contact, atol=1e-9)
+    assert np.isnan(residual(found)).all()
+
+
+def test_force_on_a_foot_of_another_robot(biped_runs):
+    log = biped_runs["standing"]
+    wrong = log.changed(signals={**log.signals, "contact_force/tail_x": log.time})
+    with pytest.raises(InputError, match="tail"):
+        conditioned(wrong)
+
+
+def test_replays_of_stance_and_flight(biped_runs):
+    for state in ("standing", "thrown"):
+        signals = conditioned(biped_runs[state])
+        found = replay(signals, windows=short_windows(signals, 0.2))
+        position, _ = found.errors(signals)
+        assert np.nanmax(np.abs(position)) < 3e-3
+        place = signals.base.position[found.windows.ticks]
+        assert np.nanmax(np.abs(found.base[0, ..., :3] - place)) < 3e-3

@@ -1,0 +1,86 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hyperleg_design.validation.blind.chain import GRAVITY, chain
+from hyperleg_design.validation.blind.nuisance import perfect
+from hyperleg_design.validation.blind.plant_walking import (
+    Ground,
+    Stand,
+    WalkingPlant,
+    simulate_walking,
+    walking_model,
+)
+from hyperleg_design.validation.blind.recorder import Recorder
+from hyperleg_design.validation.blind.residual import rms
+from hyperleg_design.validation.blind.rig_build import build_rig
+from hyperleg_design.validation.blind.walking_case import (
+    NOMINAL_GROUND,
+    Floor,
+    _Walker,
+    walking_residual,
+)
+from hyperleg_design.validation.blind.wrong import Wrong
+
+STILL = Stand(0.0, 0.0, 0.0, 0.0, np.ones(5))
+MOVING = Stand(0.22, 0.04, 0.04, 0.008, np.array([0.6, 0.4, 0.7, 0.5, 0.4]), spread=0.1, turn=0.1)
+
+
+@pytest.fixture(scope="module")
+def robot():
+    return chain("hyperleg")
+
+
+def plant(robot, **changes):
+    model = walking_model(robot, robot, Ground(1.0, *NOMINAL_GROUND), 1.0, GRAVITY)
+    return replace(
+        WalkingPlant(
+            model, build_rig(robot, perfect(robot)), np.zeros(3), np.zeros(3), np.zeros(3)
+        ),
+        **changes,
+    )
+
+
+def test_a_robot_that_stands_weighs_what_it_weighs(robot):
+    made = plant(robot)
+    trace = simulate_walking(made, robot, STILL, 1.0, 200.0, 0)
+    assert not trace.fell
+    weight = made.model.body_mass.sum() * 9.81
+    np.testing.assert_allclose(trace.contact[500:, :, 2].sum(1).mean(), weight, rtol=0.005)
+    assert np.linalg.norm(trace.accelerometer[500:].mean(0)) == pytest.approx(9.81, rel=0.005)
+
+
+def test_motion_on_both_feet_balances_with_the_nominal_robot(robot):
+    walker = _Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
+    log = walker.log(walker.trace((), MOVING, 2.0, 0), 0, "x")
+    assert log is not None
+    left = walking_residual(log, robot)
+    base = rms(left[:, :6])
+    assert np.all(base[:3] < 2.0)  # of 313 N
+    assert np.all(base[3:] < 1.5)
+    assert np.ptp(log.column("base_position/z")) > 0.02
+
+
+def test_a_load_on_the_pelvis_is_felt_by_the_ground(robot):
+    walker = _Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
+    weights = []
+    for wrongs in ((), (Wrong("payload", "pelvis", 3.0, {"x": 0.0, "y": 0.0, "z": 0.1}),)):
+        log = walker.log(walker.trace(wrongs, STILL, 1.0, 0), 0, "x")
+        assert log is not None
+        weights.append(
+            sum(
+                v[100:].mean()
+                for k, v in log.signals.items()
+                if k.startswith("contact_force") and k.endswith("_z")
+            )
+        )
+    assert weights[1] - weights[0] == pytest.approx(3.0 * 9.81, rel=0.03)
+
+
+def test_smooth_ground_lets_feet_slip(robot):
+    walker = _Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
+    _, firm = walker.trace((), MOVING, 2.0, 0)
+    _, slick = walker.trace((Wrong("ground_friction", "ground", 0.93, {}),), MOVING, 2.0, 0)
+    hips = [np.ptp(t.encoder[:, 1] - t.encoder[:, 8]) for t in (firm, slick)]
+    assert hips[1] > 1.2 * hips[0]  # legs spread farther where nothing holds the feet
