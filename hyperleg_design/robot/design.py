@@ -11,7 +11,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import MISSING, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +29,8 @@ from hyperleg_design.robot.sections import (
     Contact,
     Electrical,
     Foot,
+    FrictionModel,
+    GearModel,
     Hip,
     Joints,
     MassModel,
@@ -58,6 +60,8 @@ class Design:
     reference: ReferenceBuild
     masses: MassModel
     contact: Contact
+    friction: FrictionModel = field(default_factory=FrictionModel)
+    gears: GearModel = field(default_factory=GearModel)
     variant: str = "toe"
     """Ablation that made it; informative."""
     origins: Mapping[str, Origin] = field(default_factory=dict, repr=False)
@@ -306,6 +310,7 @@ def _build(
     from hyperleg_design.robot.masses import check_printed
 
     sections = parameters.section_types(Design)
+    optional = {f.name for f in dataclasses.fields(Design) if f.default_factory is not MISSING}
     for key in data:
         if key not in sections:
             raise InputError(
@@ -314,6 +319,8 @@ def _build(
     parts: dict[str, Any] = {}
     for key, cls in sections.items():
         if key not in data:
+            if key in optional:
+                continue
             raise InputError(where, key, None, "is missing")
         parts[key] = parameters.from_mapping(cls, data[key], where, key, origins)
     for path in parameters.rules(Design):

@@ -1,6 +1,97 @@
-"""What is assumed of joint friction beyond the printed Coulomb and viscous parts."""
+"""Joint friction over motors and reductions.
+
+Table I prints Coulomb and viscous friction per joint, of one build. Law `reflected` splits both into
+a part of motors and gears, which the reductions reflect to the joint, and a part of the joint itself
+(bearings, belts), which stays. A motor's own coefficients f_m (Coulomb) and d_m (viscous) are in
+proportion to its peak torque, so at joint j, with s the motors' share and M_ref, f_ref, d_ref of the
+reference build,
+
+    coulomb_j = F_j (1 + s (sum_m |M_jm| f_m / sum_m |M_ref,jm| f_ref,m - 1)) + load_j
+    viscous_j = D_j (1 + s (sum_m M_jm^2 d_m / sum_m M_ref,jm^2 d_ref,m - 1))
+
+with F_j, D_j the declared friction and load_j the loss under load of other reductions (`gear`). At the
+reference build this is the declared friction for every s, and the constant of proportion cancels. A
+motor that is not installed has no friction. Another law is one function, registered with
+`friction_law`.
+"""  # noqa: E501
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import gear, transmission
+from hyperleg_design.robot.names import JOINTS
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
 FRICTION_SPEED = 0.1
 """Width v_m of the Coulomb friction's tanh [rad/s] (assumed; the paper does not print it)."""
+
+Law = Callable[["Design"], tuple[np.ndarray, np.ndarray]]
+_LAWS: dict[str, Law] = {}
+
+
+def friction_law(name: str) -> Callable[[Law], Law]:
+    """Register a law of friction under the name that `friction.law` uses."""
+
+    def register(law: Law) -> Law:
+        _LAWS[name] = law
+        return law
+
+    return register
+
+
+def joint_friction(design: Design) -> tuple[np.ndarray, np.ndarray]:
+    """Friction of the seven joints of one leg by the design's law.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Coulomb [Nm] and viscous [Nms/rad] friction, each `(..., 7)` in the order of `JOINTS`; a
+        locked toe's has no effect.
+
+    Raises:
+        InputError: no such law.
+    """
+    if design.friction.law not in _LAWS:
+        raise InputError(
+            design.source or design.name,
+            "friction.law",
+            design.friction.law,
+            f"expects one of {', '.join(sorted(_LAWS))}",
+        )
+    return _LAWS[design.friction.law](design)
+
+
+@friction_law("declared")
+def declared(design: Design) -> tuple[np.ndarray, np.ndarray]:
+    """The declared friction, whatever motors and reductions."""
+    return _declared(design, "coulomb"), _declared(design, "viscous")
+
+
+@friction_law("reflected")
+def reflected(design: Design) -> tuple[np.ndarray, np.ndarray]:
+    """The motors' share reflected through the reductions; see the module."""
+    share = np.expand_dims(design.friction.motor_share, -1)
+    matrix, reference = gear.absolute_reductions(design)
+    peak, reference_peak = gear.peak_torques(design)
+    peak = peak * gear.installed(design)
+
+    def scaled(field: str, power: int) -> np.ndarray:
+        now = transmission.joint_torque(matrix**power, peak)
+        then = transmission.joint_torque(reference**power, reference_peak)
+        return np.asarray(_declared(design, field) * (1.0 + share * (now / then - 1.0)))
+
+    coulomb = scaled("coulomb", 1) + gear.gear_change(design).load_torque
+    return np.maximum(coulomb, 0.0), scaled("viscous", 2)
+
+
+def _declared(design: Design, field: str) -> np.ndarray:
+    values: list[Any] = [getattr(getattr(design.joints, joint), field) for joint in JOINTS]
+    return np.stack(np.broadcast_arrays(*values), -1).astype(float)

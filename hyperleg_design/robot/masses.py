@@ -3,7 +3,8 @@
 Law `components`: a segment weighs what the design declares for its reference build, plus the
 actuators it houses now, less those it housed then, and its structure (the rest) grows in proportion
 to the segment's length. An actuator weighs its motor plus a gear in proportion to the gear's peak
-output torque. Another law is one function, registered with `mass_law`.
+output torque; the stages behind the gears weigh what `gear` says. Another law is one function,
+registered with `mass_law`.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import motors
+from hyperleg_design.robot import gear, motors
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SEGMENTS
 
 if TYPE_CHECKING:
@@ -148,6 +149,8 @@ def components(design: Design) -> MassTable:
         housed += _moved(design, name, before, after)
         place = getattr(design.reference.places, name).housed_in
         load[place] = load[place] + _legs(place) * before
+    for joint, change in gear.gear_change(design).stage_mass.items():
+        housed.append(HousedMass(*gear.STAGE_PLACES[joint], change))
     return _table(design, housed, load)
 
 

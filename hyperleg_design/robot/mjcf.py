@@ -19,6 +19,7 @@ import numpy as np
 
 from hyperleg_design.robot import description, transmission
 from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot.gear import rotor_inertia
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.robot.tree import Tree, build_tree
@@ -166,12 +167,10 @@ def _add_drives(spec: mujoco.MjSpec, design: Design) -> None:
 
     matrix = transmission.joint_from_motor(design)
     joints, names = transmission.joint_names(design), transmission.motor_names(design)
-    constants = motor_arrays(design)
+    constants, inertia = motor_arrays(design), rotor_inertia(design)
     for side in SIDES:
         for column, motor in enumerate(names):
-            tendon = spec.add_tendon(
-                name=f"{side}_{motor}", armature=constants.rotor_inertia[column]
-            )
+            tendon = spec.add_tendon(name=f"{side}_{motor}", armature=inertia[column])
             for row, joint in enumerate(joints):
                 if matrix[row, column]:
                     tendon.wrap_joint(f"{side}_{joint}", matrix[row, column])

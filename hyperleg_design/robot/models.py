@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import description, transmission
-from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.gear import rotor_inertia
 from hyperleg_design.robot.tree import Tree, build_tree
 
 if TYPE_CHECKING:
@@ -129,7 +129,7 @@ def quaternion_matrix(xyzw: np.ndarray) -> np.ndarray:
 
 def leg_reflected_inertia(design: Design, posture: str | None = None) -> np.ndarray:
     """M diag(J) M^T of one leg, `(..., joints, joints)` [kg m^2]."""
-    rotors = motor_arrays(design).rotor_inertia[..., : len(transmission.motor_names(design))]
+    rotors = rotor_inertia(design)[..., : len(transmission.motor_names(design))]
     return transmission.reflected_inertia(transmission.joint_from_motor(design, posture), rotors)
 
 

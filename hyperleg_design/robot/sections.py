@@ -281,8 +281,32 @@ class Places:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class ReferenceReductions(_Checked):
+    """Total reductions of the reference build in one posture; 0 stands for the design's own."""
+
+    knee: Any = number("", 0, 1000, default=0.0)
+    """Knee over each of the knee, ankle and toe motors [-]."""
+    ankle_pitch: Any = number("", 0, 1000, default=0.0)
+    """Ankle pitch over each ankle motor [-]."""
+    ankle_roll: Any = number("", 0, 1000, default=0.0)
+    """Ankle roll over each ankle motor [-]."""
+    toe_ankle_pitch: Any = number("", 0, 1000, default=0.0)
+    """Ankle pitch over the toe motor [-]."""
+    toe: Any = number("", 0, 1000, default=0.0)
+    """Toe over the toe motor [-]."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ReferenceTransmission:
+    """Reductions for which friction and gears are declared."""
+
+    walking: ReferenceReductions = field(default_factory=ReferenceReductions)
+    standing: ReferenceReductions = field(default_factory=ReferenceReductions)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ReferenceBuild(_Checked):
-    """The build for which segment masses, lengths and reductions are declared."""
+    """The build for which segment masses, lengths, friction and reductions are declared."""
 
     hip_motor: Any = text()
     knee_motor: Any = text()
@@ -301,6 +325,7 @@ class ReferenceBuild(_Checked):
     shank_length: Any = number("m", 0.05, 2)
     """[m]"""
     places: Places
+    transmission: ReferenceTransmission = field(default_factory=ReferenceTransmission)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -318,6 +343,33 @@ class MassModel(_Checked):
     """Printed mass of the reference build, checked on loading; 0 for no check [kg]."""
     expected_leg: Any = number("kg", 0, 100, default=0.0)
     """Printed mass of one leg of the reference build, checked on loading; 0 for no check [kg]."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FrictionModel(_Checked):
+    """How joint friction follows from motors and reductions."""
+
+    law: Any = text(default="declared")
+    """Name of a registered law: `reflected`, or `declared` for the joints' own numbers whatever the
+    motors and reductions."""
+    motor_share: Any = number("", 0, 1, default=0.5)
+    """Part of the declared friction that belongs to motors and gears and is reflected through the
+    reductions [-]; the rest belongs to the joint."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GearModel(_Checked):
+    """What other reductions than the reference build's change in the gears."""
+
+    law: Any = text(default="declared")
+    """Name of a registered law: `catalogue`, or `declared` for no change."""
+    inertia_per_torque: Any = number("kg m^2/Nm^(5/3)", 0, 1e-5, default=0.0)
+    """Inertia of a gear at its rotor over its peak output torque to the power 5/3."""
+    stage_mass_per_torque: Any = number("kg/Nm", 0, 0.2, default=0.0)
+    """Mass of belt, pulleys and levers behind the gears over the peak torque at the joint
+    [kg/Nm]."""
+    loss_per_doubling: Any = number("", 0, 0.1, default=0.0)
+    """Part of the transmitted power that is lost for each doubling of the reduction [-]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -11,6 +11,8 @@ dimensions pass through.
 
 from __future__ import annotations
 
+import dataclasses
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +20,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, POSTURES
+from hyperleg_design.robot.sections import LinkageScale
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
@@ -56,7 +59,29 @@ def full_joint_from_motor(design: Design, posture: str | None = None) -> np.ndar
     posture = posture or design.transmission.posture
     if posture not in POSTURES:
         raise InputError("posture", "", posture, f"expects one of {', '.join(POSTURES)}")
-    printed, scale = getattr(design.transmission, posture), design.transmission.scale
+    return _matrix(
+        getattr(design.transmission, posture), design.transmission.scale, gear_ratios(design)
+    )
+
+
+def reference_joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
+    """M of the reference build, for which friction and gears are declared, `(..., 7, 7)` [-]; a
+    reduction that the reference build leaves open is the design's own.
+    """
+    posture = posture or design.transmission.posture
+    own = getattr(design.transmission, posture)
+    stated = getattr(design.reference.transmission, posture)
+    reductions = {}
+    for item in dataclasses.fields(own):
+        value = getattr(stated, item.name)
+        reductions[item.name] = np.where(value == 0, getattr(own, item.name), value)
+    gear = np.asarray(design.reference.hip_gear, float)[..., None] * np.ones(3)
+    gears = np.concatenate([gear, np.ones((*gear.shape[:-1], 4))], -1)
+    return _matrix(SimpleNamespace(**reductions), LinkageScale(), gears)
+
+
+def _matrix(printed: Any, scale: LinkageScale, gears: np.ndarray) -> np.ndarray:
+    """M from the reductions below the hip, the factors on them, and `gear_ratios`."""
     entries = {
         (KNEE, M_KNEE): -printed.knee * scale.knee,
         (KNEE, M_ANKLE_LEFT): -printed.knee * scale.knee,
@@ -69,7 +94,6 @@ def full_joint_from_motor(design: Design, posture: str | None = None) -> np.ndar
         (ANKLE_ROLL, M_ANKLE_RIGHT): -printed.ankle_roll * scale.ankle_roll,
         (TOE, M_TOE): printed.toe * scale.toe,
     }
-    gears = gear_ratios(design)
     batch = np.broadcast_shapes(gears.shape[:-1], *(np.shape(v) for v in entries.values()))
     matrix = np.zeros((*batch, 7, 7))
     matrix[..., range(3), range(3)] = 1.0

@@ -11,6 +11,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.inertials import LEG_LINKS, inertials
 from hyperleg_design.robot.names import JOINTS, SIDES
 
@@ -133,6 +134,7 @@ def build_tree(design: Design) -> Tree:
 
 def _leg_joints(design: Design, side: str, sign: float) -> list[TreeJoint]:
     moving = transmission.joint_names(design)
+    coulomb, viscous = joint_friction(design)
     effort = transmission.max_joint_torque(design, str(design.transmission.posture))
     speed = transmission.single_joint_speed(design, str(design.transmission.posture))
     positions = {
@@ -163,8 +165,8 @@ def _leg_joints(design: Design, side: str, sign: float) -> list[TreeJoint]:
                 upper=float(np.deg2rad(joint.upper_deg)),
                 effort=0.0 if fixed else float(effort[index]),
                 velocity=0.0 if fixed else float(speed[index]),
-                coulomb=joint.coulomb,
-                viscous=joint.viscous,
+                coulomb=float(coulomb[index]),
+                viscous=float(viscous[index]),
                 default=float(np.deg2rad(joint.default_deg)),
             )
         )

@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
 
@@ -83,6 +84,7 @@ def actuation_model(design: Design) -> ActuationModel:
         for n in ("no_load_speed", "stall_torque", "peak_torque", "power_constant")
     }
     matrix = transmission.joint_from_motor(design)
+    coulomb, viscous = joint_friction(design)
     return ActuationModel(
         joint_from_motor=legs(matrix, 2),
         motor_from_joint=legs(motor_from_joint(matrix, envelope.power_constant), 2),
@@ -90,8 +92,8 @@ def actuation_model(design: Design) -> ActuationModel:
         rated_torque=legs(arrays.rated_torque[..., : len(motors)], 1),
         stiffness=of_joints("stiffness"),
         damping=of_joints("damping"),
-        coulomb=of_joints("coulomb"),
-        viscous=of_joints("viscous"),
+        coulomb=legs(coulomb[..., : len(joints)], 1),
+        viscous=legs(viscous[..., : len(joints)], 1),
     )
 
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.robot import transmission
-from hyperleg_design.robot.motors import gather, motor_arrays
+from hyperleg_design.robot import gear, transmission
+from hyperleg_design.robot.motors import gather
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SIDES
 from hyperleg_design.simulation.actuation import ActuationModel, actuation_model
 from hyperleg_design.simulation.alteration import Machine
@@ -106,6 +106,4 @@ def bus_voltage(design: Design) -> float:
 
 def rotor_inertia(design: Design) -> np.ndarray:
     """Of one leg's motors [kg m^2], a robot's `(motors,)` or a batch's `(n, motors)`."""
-    return np.asarray(
-        motor_arrays(design).rotor_inertia[..., : len(transmission.motor_names(design))], float
-    )
+    return gear.rotor_inertia(design)[..., : len(transmission.motor_names(design))]

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot import friction
 from hyperleg_design.robot.friction import FRICTION_SPEED
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.transmission import (
@@ -161,9 +162,8 @@ def joint_friction(design: Design, velocity: np.ndarray) -> np.ndarray:
     """Friction that the motors must overcome, `coulomb tanh(v / v_m) + viscous v`, `(..., joints)`
     [Nm].
     """
-    names = joint_names(design)
-    coulomb = np.array([getattr(design.joints, n).coulomb for n in names], float)
-    viscous = np.array([getattr(design.joints, n).viscous for n in names], float)
+    moving = slice(len(joint_names(design)))
+    coulomb, viscous = (part[..., moving] for part in friction.joint_friction(design))
     return coulomb * np.tanh(np.asarray(velocity) / FRICTION_SPEED) + viscous * velocity
 
 

@@ -32,7 +32,8 @@ def of_design(design: Design, path: Path, base: str, known: set[str] | None) -> 
     """
     from hyperleg_design.robot import transmission
     from hyperleg_design.robot.friction import FRICTION_SPEED as DESIGN_FRICTION_SPEED
-    from hyperleg_design.robot.motors import find_motor, motor_arrays
+    from hyperleg_design.robot.gear import rotor_inertia
+    from hyperleg_design.robot.motors import find_motor
     from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SIDES
     from hyperleg_design.robot.tree import build_tree
     from hyperleg_design.simulation.model import simulation_spec
@@ -52,7 +53,7 @@ def of_design(design: Design, path: Path, base: str, known: set[str] | None) -> 
     kept = [every.index(j.name) for j in moving]
     motors = [f"{side}_{name}" for side in SIDES for name in names]
     used = np.flatnonzero(np.any(full[kept] != 0, 0))
-    arrays, envelope = motor_arrays(design), motor_envelope(design)
+    envelope = motor_envelope(design)
 
     def of_motors(values: np.ndarray) -> np.ndarray:
         return np.tile(np.asarray(values, float)[: len(names)], 2)[used]
@@ -71,7 +72,7 @@ def of_design(design: Design, path: Path, base: str, known: set[str] | None) -> 
         joint.frictionloss = 0.0
     robot_file.set_base(spec, base, path)
     held = robot_file.lock(spec, [j.name for j in moving])
-    rotor = of_motors(arrays.rotor_inertia)
+    rotor = of_motors(rotor_inertia(design))
     used_names = tuple(motors[i] for i in used)
     _add_rotors(spec, [j.name for j in moving], used_names, full, rotor)
     joints = {j.name: getattr(design.joints, j.name.split("_", 1)[1]) for j in moving}

@@ -1,0 +1,175 @@
+"""What a reduction other than the reference build's changes besides torque and speed: the inertia
+of the gears at the rotors, the mass of the stages behind the gears, and the loss under load.
+
+Every law gives *changes against the reference build*, so a design at its reference reductions keeps
+its declared numbers to the last bit. Law `catalogue`, with T the peak torque at a gear's or a
+stage's output and r a total reduction, |M| of `transmission.joint_from_motor`:
+
+    gear inertia at the rotor    J = c T^(5/3)             similar gears: T ~ length^3, J ~ length^5
+    mass of a stage              m = k T                   similar stages: m ~ length^3
+    loss under load              1 - eta = loss log2(r)    equal stages in series, small losses
+
+The mass of the gear at a motor is `masses.gear_mass_per_torque`, which follows the same m = k T.
+The loss acts at each motor's rated torque and enters the friction of the joint (`friction`), so all
+rooms pay for it in the same place. The catalogue behind the three coefficients is cited in the design
+file. Another law is one function, registered with `gear_law`.
+"""  # noqa: E501
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import motors, transmission
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+STAGE_PLACES = {
+    "knee": ("thigh", 1.0),
+    "ankle_pitch": ("shank", 1.0),
+    "ankle_roll": ("shank", 1.0),
+    "toe": ("shank", 1.0),
+}
+"""Segment that carries the stage of each joint below the hip, and where along it from the upper
+joint [-]: at the knee's axis, and at the ankle's, where the toe's idler sits, too. The hip has no
+stage behind its gears."""
+_REFERENCE_OF_ACTUATOR = {"hip_yaw": "hip", "hip_roll": "hip", "hip_pitch": "hip"}
+
+
+@dataclass(frozen=True, eq=False)
+class GearChange:
+    """Changes against the reference build, of one leg of a design or batch."""
+
+    rotor_inertia: Any = 0.0
+    """At each motor's rotor [kg m^2], `(..., 7)`."""
+    load_torque: Any = 0.0
+    """Coulomb torque at each joint that stands for the loss under load [Nm], `(..., 7)`."""
+    stage_mass: Mapping[str, Any] = field(default_factory=dict)
+    """Of the stage of each joint of `STAGE_PLACES` [kg], `(...)`."""
+
+
+Law = Callable[["Design"], GearChange]
+_LAWS: dict[str, Law] = {}
+
+
+def gear_law(name: str) -> Callable[[Law], Law]:
+    """Register a law of gears under the name that `gears.law` uses."""
+
+    def register(law: Law) -> Law:
+        _LAWS[name] = law
+        return law
+
+    return register
+
+
+def gear_change(design: Design) -> GearChange:
+    """Changes against the reference build by the design's law.
+
+    Raises:
+        InputError: no such law.
+    """
+    if design.gears.law not in _LAWS:
+        raise InputError(
+            design.source or design.name,
+            "gears.law",
+            design.gears.law,
+            f"expects one of {', '.join(sorted(_LAWS))}",
+        )
+    return _LAWS[design.gears.law](design)
+
+
+@gear_law("declared")
+def declared(design: Design) -> GearChange:
+    """No change, whatever the reductions."""
+    return GearChange()
+
+
+@gear_law("catalogue")
+def catalogue(design: Design) -> GearChange:
+    """Similar gears and stages for other torques, and equal stages in series; see the module."""
+    gears = design.gears
+    matrix, reference = absolute_reductions(design)
+    peak, reference_peak = peak_torques(design)
+    at_gear = (
+        _of_motors([getattr(design.actuators, a).gear for a in ACTUATOR_OF_MOTOR]) * peak,
+        _of_motors([reference_part(design, a, "gear") for a in ACTUATOR_OF_MOTOR]) * reference_peak,
+    )
+    inertia = np.expand_dims(gears.inertia_per_torque, -1) * (
+        at_gear[0] ** (5 / 3) - at_gear[1] ** (5 / 3)
+    )
+    at_joint = transmission.joint_torque(matrix, peak) - transmission.joint_torque(
+        reference, reference_peak
+    )
+    stage = {
+        name: gears.stage_mass_per_torque * at_joint[..., JOINTS.index(name)]
+        for name in STAGE_PLACES
+    }
+    # A motor that a design decouples from a joint has no loss there, before or after.
+    coupled = (matrix > 0) & (reference > 0)
+    doublings = np.log2(np.where(coupled, matrix, 1.0) / np.where(coupled, reference, 1.0))
+    rated = _of_motors(
+        [
+            motors.gather(getattr(design.actuators, a).motor, lambda m: m.rated_torque)
+            for a in ACTUATOR_OF_MOTOR
+        ]
+    ) * installed(design)
+    load = np.expand_dims(gears.loss_per_doubling, -1) * transmission.joint_torque(
+        matrix * doublings, rated
+    )
+    return GearChange(inertia, load, stage)
+
+
+def rotor_inertia(design: Design) -> np.ndarray:
+    """Inertia that turns with each motor, the rotor and the change of its gear, `(..., 7)`
+    [kg m^2].
+    """
+    return np.asarray(
+        motors.motor_arrays(design).rotor_inertia + gear_change(design).rotor_inertia, float
+    )
+
+
+def absolute_reductions(design: Design) -> tuple[np.ndarray, np.ndarray]:
+    """|M| of the design and of its reference build in the design's posture, each `(..., 7, 7)`
+    [-].
+    """
+    return (
+        np.abs(transmission.full_joint_from_motor(design)),
+        np.abs(transmission.reference_joint_from_motor(design)),
+    )
+
+
+def peak_torques(design: Design) -> tuple[np.ndarray, np.ndarray]:
+    """Peak torque of the seven motors of a leg, of the design and of its reference build [Nm], each
+    `(..., 7)`; a toe motor that is not installed counts.
+    """
+
+    def peak(names: list[Any]) -> np.ndarray:
+        kind = design.electrical.constants
+        return _of_motors([motors.gather(n, lambda m: m.peak_torque(kind)) for n in names])
+
+    return (
+        peak([getattr(design.actuators, a).motor for a in ACTUATOR_OF_MOTOR]),
+        peak([reference_part(design, a, "motor") for a in ACTUATOR_OF_MOTOR]),
+    )
+
+
+def installed(design: Design) -> np.ndarray:
+    """1 for each motor that is there, 0 for a toe motor that is not, `(7,)`."""
+    there = np.ones(len(ACTUATOR_OF_MOTOR))
+    there[len(transmission.motor_names(design)) :] = 0.0
+    return there
+
+
+def reference_part(design: Design, actuator: str, part: str) -> Any:
+    """`motor` or `gear` of the reference build for an actuator of the design."""
+    return getattr(design.reference, f"{_REFERENCE_OF_ACTUATOR.get(actuator, actuator)}_{part}")
+
+
+def _of_motors(values: list[Any]) -> np.ndarray:
+    return np.stack(np.broadcast_arrays(*values), -1).astype(float)
