@@ -1,0 +1,184 @@
+"""The analysis plan of a study, fixed before its trainings are run: outcomes, arms, margins and
+when a training counts as finished.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.measures import T_TEST, WALK
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters
+from hyperleg_design.robot.parameters import number, text
+from hyperleg_design.simulation.settings import Checked
+
+MEASURES = {"walk": WALK, "t_test": T_TEST}
+"""Measures of each protocol."""
+ONLY_COMPLETE = ("time", "mean_speed", "energy", "battery_energy")
+"""Measures that a run which ends early makes smaller or cannot give; of arrivals only."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Outcome(Checked):
+    """A measure that is compared between arms."""
+
+    protocol: Any = text(*MEASURES)
+    """Under which it is measured."""
+    measure: Any = text()
+    """Name, of `evaluation/measures.py`."""
+    trials: Any = text("all", "arrived")
+    """Trials that count."""
+    margin: Any = number("", 0.001, 1, default=1.0)
+    """Relative difference of the means within which arms count as equivalent [-]; of primary
+    outcomes only."""
+
+    @property
+    def name(self) -> str:
+        """Protocol and measure."""
+        return f"{self.protocol}.{self.measure}"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PlateauRule(Checked):
+    """When the reward of a training has stopped rising; see `plateau`."""
+
+    share: Any = number("", 0.05, 0.5, default=0.2)
+    """Of the steps, at the end, that is judged [-]."""
+    level: Any = number("", 1e-6, 0.5, default=0.05)
+    """Of the test of a gain, one-sided [-]."""
+    gain: Any = number("", 0.0, 1, default=0.02)
+    """Gain over the mean's magnitude up to which a certain gain is too small to matter [-]."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AnalysisPlan(Checked):
+    """What is compared and how."""
+
+    name: str
+    active: str
+    """Design whose benefit is asked about."""
+    compared: str
+    """Design that it is compared with."""
+    attribution: tuple[str, ...]
+    """Further designs, that tell joint, motor and mass apart."""
+    seeds: Mapping[str, int]
+    """Fewest trainings of each design, by protocol."""
+    level: Any = number("", 1e-6, 0.5, default=0.05)
+    """Of each primary outcome's test, two-sided, and of the family of the others [-]."""
+    power: Any = number("", 0.5, 0.999, default=0.8)
+    """At which the smallest detectable difference is stated [-]."""
+    primary: tuple[Outcome, ...]
+    secondary: tuple[Outcome, ...]
+    """Corrected together by Holm's method."""
+    plateau: PlateauRule = field(default_factory=PlateauRule)
+
+    @property
+    def designs(self) -> tuple[str, ...]:
+        """All arms."""
+        return (self.active, self.compared, *self.attribution)
+
+
+def load_plan(name: str | Path = "analysis_plan") -> AnalysisPlan:
+    """Read an analysis plan.
+
+    Args:
+        name: a shipped name, or a YAML file.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    path = resources.find("sim", name)
+    return plan_from_mapping(read_yaml(path), short_name(path))
+
+
+def plan_from_mapping(data: Mapping[str, Any], where: str) -> AnalysisPlan:
+    """A plan from nested mappings as YAML gives them.
+
+    Raises:
+        InputError: unknown or missing field, a measure that the protocol does not have, an outcome
+            named twice, or one that needs arrivals and asks for all trials.
+    """
+    known = ["name", "arms", "attribution", "seeds", "level", "power", "primary", "secondary"]
+    for key in data:
+        if key not in (*known, "plateau"):
+            raise InputError(
+                where, str(key), data[key], parameters.unknown(str(key), [*known, "plateau"])
+            )
+    for key in known:
+        if key not in data:
+            raise InputError(where, key, None, "is missing")
+    arms, seeds = data["arms"], data["seeds"]
+    if not isinstance(arms, Mapping) or set(arms) != {"active", "compared"}:
+        raise InputError(where, "arms", arms, "expects active and compared, a design each")
+    if not isinstance(data["attribution"], list):
+        raise InputError(where, "attribution", data["attribution"], "expects a list of designs")
+    if not isinstance(seeds, Mapping) or set(seeds) != set(MEASURES):
+        raise InputError(where, "seeds", seeds, f"expects a number for {', '.join(MEASURES)}")
+    primary, secondary = (
+        tuple(
+            _outcome(entry, where, f"{kind}.{i}", primary=kind == "primary")
+            for i, entry in enumerate(_list(data[kind], where, kind))
+        )
+        for kind in ("primary", "secondary")
+    )
+    names = [outcome.name for outcome in (*primary, *secondary)]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(where, "secondary", name, "is an outcome twice; name it once")
+    plan = AnalysisPlan(
+        name=str(data["name"]),
+        active=str(arms["active"]),
+        compared=str(arms["compared"]),
+        attribution=tuple(str(design) for design in data["attribution"]),
+        seeds={key: _count(value, where, f"seeds.{key}") for key, value in seeds.items()},
+        level=parameters.checked(data["level"], parameters.Rule("number"), where, "level"),
+        power=parameters.checked(data["power"], parameters.Rule("number"), where, "power"),
+        primary=primary,
+        secondary=secondary,
+        plateau=parameters.from_mapping(PlateauRule, data.get("plateau", {}), where, "plateau"),
+    )
+    if len(set(plan.designs)) < len(plan.designs):
+        raise InputError(where, "arms", list(plan.designs), "names a design twice")
+    return plan
+
+
+def _outcome(data: Any, where: str, path: str, *, primary: bool) -> Outcome:
+    if not isinstance(data, Mapping):
+        raise InputError(where, path, data, "expects a mapping")
+    if primary != ("margin" in data):
+        remedy = "is missing" if primary else "stands with primary outcomes only"
+        raise InputError(where, f"{path}.margin", data.get("margin"), remedy)
+    outcome = parameters.from_mapping(Outcome, data, where, path)
+    if outcome.measure not in MEASURES[outcome.protocol]:
+        raise InputError(
+            where,
+            f"{path}.measure",
+            outcome.measure,
+            parameters.unknown(outcome.measure, sorted(MEASURES[outcome.protocol])),
+        )
+    if outcome.measure in ONLY_COMPLETE and outcome.trials != "arrived":
+        raise InputError(
+            where,
+            f"{path}.trials",
+            outcome.trials,
+            f"{outcome.measure} of a run that ends early is not comparable; expects arrived",
+        )
+    return outcome
+
+
+def _list(value: Any, where: str, path: str) -> list[Any]:
+    if not isinstance(value, list) or not value:
+        raise InputError(where, path, value, "expects a list of outcomes")
+    return value
+
+
+def _count(value: Any, where: str, path: str) -> int:
+    number = parameters.checked(value, parameters.Rule("number", low=2, high=1000), where, path)
+    if number != int(number):
+        raise InputError(where, path, value, "expects a whole number")
+    return int(number)
