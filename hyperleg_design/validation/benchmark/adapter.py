@@ -21,6 +21,8 @@ from hyperleg_design.validation.benchmark.case import Recording
 
 READERS = ("hyperleg_design.gap.readers", "hyperleg_design.gap.logs.readers")
 """Modules that may hold `open_log`."""
+BLIND = ("hyperleg_design.validation.blind", "hyperleg_design.gap.blind")
+"""Packages that may hold the blind plants."""
 WORKER = Path(__file__).with_name("worker.py")
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 LONGEST = 900.0
@@ -44,6 +46,21 @@ def open_recordings(path: Path, metadata: Mapping[str, Any] | None = None) -> tu
     return tuple(
         Recording(log.name, log.time, dict(log.signals), log.metadata.mapping()) for log in logs
     )
+
+
+def blind_module(name: str) -> Any:
+    """A module of the blind plants, such as `plan`.
+
+    Raises:
+        InputError: no package holds it.
+    """
+    for package in BLIND:
+        try:
+            return importlib.import_module(f"{package}.{name}")
+        except ModuleNotFoundError as error:
+            if error.name is None or not f"{package}.{name}".startswith(error.name):
+                raise
+    raise InputError("benchmark", name, None, f"is in none of {', '.join(BLIND)}")
 
 
 def _first(modules: tuple[str, ...], name: str) -> Any:
