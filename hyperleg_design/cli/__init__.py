@@ -16,6 +16,7 @@ from hyperleg_design import __version__
 from hyperleg_design.cli import design, gap, policies, validate
 from hyperleg_design.cli.arguments import check_bounds
 from hyperleg_design.errors import HyperlegError, InputError
+from hyperleg_design.robot.motors import use_folder
 
 ABOUT = (
     "Design, size and compare legged robots with cooperative actuation. "
@@ -90,6 +91,8 @@ def _parse(arguments: list[str]) -> Any:
         text = re.sub(r"^(.+?) \1", r"\1", text, flags=re.IGNORECASE)
         raise InputError("arguments", "", None, text or "see hyperleg --help") from None
     check_bounds(command)
+    if folder := getattr(getattr(command, "verb", command), "motors", None):
+        use_folder(folder)
     return command
 
 

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 import tyro
 
 from hyperleg_design import __version__, resources
+from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit
 from hyperleg_design.robot.design import Design, load_design
 
@@ -37,10 +38,11 @@ class Chosen(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class List(Printing):
-    """What is shipped: designs, motors, sweeps, policies."""
+    """What is shipped: designs, motors, sweeps, tasks, protocols, presets, policies, measures."""
 
     kind: Annotated[str, tyro.conf.Positional] = "all"
-    """designs, variants, motors, sweeps, policies, parameters, or all."""
+    """designs, variants, motors, sweeps, tasks, protocols, presets, policies, measures,
+    parameters, or all (without measures and parameters)."""
 
     def run(self) -> None:
         """Print it."""
@@ -128,16 +130,27 @@ class Compare(Printing):
     """Shipped names or YAML files."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """PATH=VALUE, applied to all."""
+    set_file: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """YAML file of parameters that differ, applied to all before --set."""
     demand: bool = False
     """Add what a planned walk at 1.33 m/s asks of each (seconds a design)."""
+    evaluate: tyro.conf.UseAppendAction[tuple[Literal["walk", "t_test"], ...]] = ()
+    """Add what the shipped policies do on each under this protocol (a minute a design)."""
+    seeds: Annotated[int, AtLeast(1)] = 3
+    """Trainings of each design that are evaluated, at most."""
 
     def run(self) -> None:
         """Compare them."""
         from hyperleg_design.report import comparison
 
-        found = comparison.compare(
-            [load_design(name, overrides=self.set) for name in self.designs], demand=self.demand
-        )
+        designs = [
+            load_design(name, overrides=self.set, overlays=self.set_file) for name in self.designs
+        ]
+        found = comparison.compare(designs, demand=self.demand)
+        walks = comparison.compare_walks(designs, self.evaluate, seeds=self.seeds)
+        for protocol, entries in walks.items():
+            for entry, walked in zip(found.values(), entries, strict=True):
+                entry[f"evaluated {protocol}"] = walked
         if self.json:
             emit(found)
         else:

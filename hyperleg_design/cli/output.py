@@ -5,6 +5,7 @@ from __future__ import annotations
 import json as json_module
 import os
 from dataclasses import asdict, dataclass, is_dataclass
+from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import InputError
@@ -16,6 +17,8 @@ class Printing:
 
     json: bool = False
     """Print one JSON document instead of text."""
+    motors: Path | None = None
+    """Folder with motors of your own (NAME.yaml), beside the shipped ones."""
 
 
 def emit(content: object) -> None:

@@ -12,7 +12,8 @@ import tyro
 from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit, require
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot.design import load_design
+from hyperleg_design.evaluation.policy import load_policy
+from hyperleg_design.robot.design import Design, changed, load_design
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,9 +125,17 @@ class Evaluate(Printing):
     """
 
     policies: Annotated[tuple[str, ...], tyro.conf.Positional]
-    """ONNX files."""
+    """ONNX files, or names of shipped trainings such as walk-toe-0."""
     protocol: str = ""
     """walk, t_test, or a YAML file; what suits the policy's task by default."""
+    design: str = ""
+    """Shipped name or YAML file of the robot; that which the policy was trained on by default."""
+    variant: str = ""
+    """Ablation to make of the design."""
+    set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """PATH=VALUE to change of the robot, such as toe.mass=0.5."""
+    set_file: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """YAML file of parameters that differ, applied before --set."""
     out: Path
     """Folder to write tables to."""
     workers: Annotated[int, AtLeast(1)] = 2
@@ -157,6 +166,7 @@ class Evaluate(Printing):
         found = evaluate_many(
             self.policies,
             self.protocol or None,
+            designs=[self._design(policy) for policy in self.policies],
             workers=self.workers,
             kept=1 if self.logs is None else sys.maxsize,
             alterations=alterations,
@@ -171,12 +181,30 @@ class Evaluate(Printing):
             write_overlay(folder / "overlay.yaml", overlay)
         rows = evaluation_rows(found)
         if self.json:
-            emit({"folder": str(folder), "results": rows, "logs": [str(path) for path in written]})
+            trained = {one.policy: one.trained.text() for one in found}
+            emit({"folder": folder, "results": rows, "trained": trained, "logs": written})
         else:
             print(evaluation_text(rows))
+            for one in found:
+                print(f"{one.policy} on {one.design}: {one.trained.text()}")
             print(
                 f"tables in {folder}" + (f"; {len(written)} logs in {self.logs}" if written else "")
             )
+
+    def _design(self, policy: str) -> Design | None:
+        """The robot for a policy; None for the policy's own, unchanged."""
+        if self.design:
+            return load_design(
+                self.design,
+                overrides=self.set,
+                overlays=self.set_file,
+                variant=self.variant or None,
+            )
+        if self.variant:
+            raise InputError("evaluate", "variant", self.variant, "needs --design")
+        if not (self.set or self.set_file):
+            return None
+        return changed(load_policy(policy).design, overrides=self.set, overlays=self.set_file)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -118,6 +118,7 @@ def evaluate_many(
     workers: int = 2,
     kept: int | Sequence[int] = 1,
     overrides: Sequence[Mapping[str, Any]] | None = None,
+    designs: Sequence[Design | None] | None = None,
     alterations: Alterations | None = None,
     progress: Callable[[Evaluation], None] | None = None,
 ) -> list[Evaluation]:
@@ -129,6 +130,7 @@ def evaluate_many(
         workers: processes; one works in this process.
         kept: trials of each policy whose signals are kept, one number for all or one for each.
         overrides: parameters of the robot to change, by path, for each policy; none by default.
+        designs: the robot for each policy; its own by default.
         alterations: as in `evaluate`, of all policies; they must pickle.
         progress: called with each evaluation as it comes, in order.
 
@@ -151,6 +153,7 @@ def evaluate_many(
             [mapping] * count,
             [kept] * count if isinstance(kept, int) else kept,
             overrides or [{}] * count,
+            designs or [None] * count,
             [alterations] * count,
             strict=True,
         ),
@@ -179,10 +182,18 @@ def evaluate_many(
 
 
 def _evaluated(
-    job: tuple[str | Path, dict[str, object] | None, int, Mapping[str, Any], Alterations | None],
+    job: tuple[
+        str | Path,
+        dict[str, object] | None,
+        int,
+        Mapping[str, Any],
+        Design | None,
+        Alterations | None,
+    ],
 ) -> Evaluation:
-    name, protocol, kept, overrides, alterations = job
+    name, protocol, kept, overrides, design, alterations = job
     run = None if protocol is None else protocol_from_mapping(protocol, "protocol")
     policy = load_policy(name)
-    design = policy.design.with_values(dict(overrides), "overrides") if overrides else None
+    if overrides:
+        design = (design or policy.design).with_values(dict(overrides), "overrides")
     return evaluate(policy, run, design=design, threads=1, alterations=alterations).light(kept)

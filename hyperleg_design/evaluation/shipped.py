@@ -114,6 +114,33 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
     return sorted(found, key=lambda one: (one.group, one.design, one.seed, one.late))
 
 
+def policies_for(
+    group: str, variant: str, seeds: int, folder: str | Path | None = None
+) -> list[Shipped]:
+    """Last policies of the first trainings of a task and toe layout, one a seed.
+
+    Args:
+        group: of the campaign, such as `walk`.
+        variant: ablation of the design.
+        seeds: most trainings.
+        folder: of trainings; the shipped ones by default.
+
+    Raises:
+        InputError: there is none.
+    """
+    known = shipped_policies(folder, late=False)
+    fitting = [one for one in known if (one.group, one.design) == (group, variant)]
+    if not fitting:
+        have = ", ".join(sorted({f"{one.group}-{one.design}" for one in known})) or "none"
+        raise InputError(
+            "policies",
+            "",
+            f"{group}-{variant}",
+            f"no policy was trained for this task and toe layout; there are {have}",
+        )
+    return fitting[:seeds]
+
+
 def find_policy(name: str | Path) -> Path:
     """File of a policy: an ONNX file, or the name of a shipped training, whose last policy it is.
 

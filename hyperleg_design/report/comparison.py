@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -180,6 +181,74 @@ def compare(designs: list[Design], *, demand: bool = False) -> dict[str, Any]:
             entry["walk"] = {k: walk[k] for k in WALK_MEASURES}
         name = design.name if design.name not in found else f"{design.name} ({len(found) + 1})"
         found[name] = entry
+    return found
+
+
+MEASURED = {
+    "walk": (
+        "cost_of_transport",
+        "grf_peak_body_weights",
+        "continuous_use",
+        "limit_share",
+        "mean_speed",
+        "fell",
+    ),
+    "t_test": (
+        "time",
+        "mean_deviation",
+        "cost_of_transport",
+        "grf_peak_body_weights",
+        "continuous_use",
+        "fell",
+    ),
+}
+"""What `compare` shows of evaluated trials, by protocol."""
+
+
+def compare_walks(
+    designs: list[Design], protocols: Sequence[str], *, seeds: int = 3, workers: int = 2
+) -> dict[str, dict[str, Any]]:
+    """What shipped policies of each design's toe layout do on it.
+
+    Args:
+        designs: each a single robot.
+        protocols: `walk`, `t_test`.
+        seeds: trainings of each.
+        workers: processes side by side.
+
+    Returns:
+        By protocol, in the order of `designs`: `policy` (whether it was trained for the design) and
+        the measures of `MEASURED`, each with mean, low and high.
+    """
+    from hyperleg_design.evaluation.evaluate import evaluate_many
+    from hyperleg_design.evaluation.shipped import policies_for
+    from hyperleg_design.report.evaluation_text import evaluation_rows
+
+    found: dict[str, Any] = {}
+    for protocol in protocols:
+        jobs = [
+            (i, design, one.path)
+            for i, design in enumerate(designs)
+            for one in policies_for(protocol, design.variant, seeds)
+        ]
+        done = evaluate_many(
+            [path for _, _, path in jobs],
+            protocol,
+            designs=[design for _, design, _ in jobs],
+            workers=workers,
+            kept=0,
+        )
+        found[protocol] = []
+        for i in range(len(designs)):
+            own = [e for e, (j, _, _) in zip(done, jobs, strict=True) if j == i]
+            rows = {row["measure"]: row for row in evaluation_rows(own)}
+            found[protocol].append(
+                {"policy": own[0].trained.text()}
+                | {
+                    name: {k: rows[name][k] for k in ("mean", "low", "high")}
+                    for name in MEASURED[protocol]
+                }
+            )
     return found
 
 

@@ -27,12 +27,13 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
     """One row a variant and measure: mean with its interval over seeds and trials.
 
     Returns:
-        `variant`, `protocol`, `measure`, `unit`, `mean`, `low`, `high` (None where there is none),
-        `seeds`, `trials`, `missing`.
+        `variant`, `design`, `trained` (see `TrainingFit`), `protocol`, `measure`, `unit`, `mean`,
+        `low`, `high` (None where there is none), `seeds`, `trials`, `missing`.
     """
     trials = trial_table(evaluations)
     rows = []
-    for (protocol, variant), part in trials.groupby(["protocol", "variant"], sort=False):
+    keys = ["protocol", "variant", "design", "trained"]
+    for (protocol, variant, design, trained), part in trials.groupby(keys, sort=False):
         for measure in evaluations[0].measures[0]:
             if measure not in part:
                 continue
@@ -42,6 +43,8 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
             rows.append(
                 {
                     "variant": str(variant),
+                    "design": str(design),
+                    "trained": str(trained),
                     "protocol": str(protocol),
                     "measure": measure,
                     "unit": UNITS.get(measure, ""),
@@ -69,6 +72,7 @@ def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
         cells.append(
             [
                 row["variant"],
+                row["trained"],
                 row["measure"],
                 row["unit"],
                 *numbers,
@@ -78,5 +82,11 @@ def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
             ]
         )
     return table(
-        ["variant", "measure", "unit", "mean", "low", "high", "seeds", "trials", "missing"], cells
+        [
+            "variant",
+            "policy is",
+            *("measure", "unit", "mean", "low", "high"),
+            *("seeds", "trials", "missing"),
+        ],
+        cells,
     )

@@ -13,7 +13,20 @@ from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.motors import catalogue
 
-KINDS = ("designs", "variants", "motors", "sweeps", "policies", "parameters")
+KINDS = (
+    "designs",
+    "variants",
+    "motors",
+    "sweeps",
+    "tasks",
+    "protocols",
+    "presets",
+    "policies",
+    "measures",
+    "parameters",
+)
+_LONG = ("measures", "parameters")
+"""Kinds that are shown only where they are asked for."""
 
 
 def listing(kind: str = "all") -> dict[str, Any]:
@@ -29,10 +42,14 @@ def listing(kind: str = "all") -> dict[str, Any]:
         "variants": lambda: DESCRIPTION,
         "motors": _motors,
         "sweeps": _sweeps,
+        "tasks": lambda: _of_sim("task"),
+        "protocols": lambda: _of_sim("protocol"),
+        "presets": lambda: _of_sim("preset"),
         "policies": _policies,
+        "measures": _measures,
         "parameters": _parameters,
     }
-    chosen = KINDS[:-1] if kind == "all" else (kind,)
+    chosen = [k for k in KINDS if k not in _LONG] if kind == "all" else (kind,)
     return {k: makers[k]() for k in chosen}
 
 
@@ -71,6 +88,29 @@ def _sweeps() -> dict[str, Any]:
     return {
         n: {"description": str(read_yaml(resources.find("sweeps", n)).get("description", ""))}
         for n in resources.names("sweeps")
+    }
+
+
+def _of_sim(what: str) -> dict[str, Any]:
+    """Files `sim/WHAT_NAME.yaml`; each begins with a comment that says what it is."""
+    found = {}
+    for name in resources.sim_names(what):
+        comment = []
+        for line in resources.find_sim(what, name).read_text(encoding="utf-8").splitlines():
+            if not line.startswith("#"):
+                break
+            comment.append(line.lstrip("# "))
+        found[name] = {"description": " ".join(comment)}
+    return found
+
+
+def _measures() -> dict[str, Any]:
+    """What `analyze` and sweeps compute of a design, and what `evaluate` measures of its trials."""
+    from hyperleg_design.sweep import registry
+
+    return {
+        name: {"unit": m.unit, "better": m.better, "description": m.doc}
+        for name, m in registry.entries().items()
     }
 
 
@@ -148,6 +188,9 @@ def listing_text(found: dict[str, Any]) -> str:
                 for n, e in entries.items()
             ]
             parts.append(table(["policy", "task", "design", "seed", "late ones"], rows))
+        elif kind == "measures":
+            rows = [[n, e["unit"], e["better"], e["description"]] for n, e in entries.items()]
+            parts.append(table(["measure", "unit", "better", "what it is"], rows))
         elif kind == "parameters":
             rows = [
                 [

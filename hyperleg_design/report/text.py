@@ -44,9 +44,15 @@ def _cell(value: object) -> str:
     return str(value)
 
 
+_LIMITS = ("max_torque", "torque_alone", "speed", "reflected_inertia")
+"""Of `joint_limits` in an analysis."""
+
+
 def analysis_text(found: Mapping[str, Any]) -> str:
     """An analysis as a page for a terminal."""
     masses = ", ".join(f"{k} {v:.3g}" for k, v in found["segment_mass"].items())
+    limits = found["joint_limits"]
+    printed = ", ".join(f"{j} {v:.4g}" for j, v in found["max_joint_torque"].items())
     parts = [
         f"{found['design']} ({found['variant']}): {found['total_mass']:.2f} kg, leg "
         f"{found['leg_mass']:.2f} kg, "
@@ -61,19 +67,11 @@ def analysis_text(found: Mapping[str, Any]) -> str:
                 "speed [rad/s]",
                 "reflected inertia [kg m^2]",
             ],
-            [
-                [
-                    j,
-                    found["max_joint_torque"][j],
-                    found["torque_alone"][j],
-                    found["single_joint_speed"][j],
-                    found["reflected_inertia"][i][i],
-                ]
-                for i, j in enumerate(found["joints"])
-            ],
+            [[j, *(limits[name][j] for name in _LIMITS)] for j in found["joints"]],
         ),
-        "max torque: standing, derated, one joint at its best whatever the others do; alone: "
-        "walking, the others at zero torque",
+        f"all columns: {limits['convention']}; max torque: whatever the others do; alone: the "
+        "others at zero torque",
+        f"as the paper's Table I prints it, standing and derated [Nm]: {printed}",
         f"reachable torques below the hip fill {100 * found['zonotope_to_box_volume']:.1f} % of "
         f"the box that their maxima span",
         "",
@@ -111,7 +109,7 @@ def analysis_text(found: Mapping[str, Any]) -> str:
     if found["ablation_confound"]:
         parts += [
             "",
-            "what taking the toe away takes besides:",
+            "what taking the toe away takes besides (torques standing, derated):",
             confound_text(found["ablation_confound"]),
         ]
     return "\n".join(parts)

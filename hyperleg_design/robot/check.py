@@ -14,7 +14,7 @@ from hyperleg_design.robot.check_urdf import check_urdf, parse_xml
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.finding import Finding
 from hyperleg_design.robot.linkage import LinkageModel
-from hyperleg_design.robot.motors import load_motor
+from hyperleg_design.robot.motors import Motor, catalogue, load_motor
 
 KINDS = ("design", "motor", "urdf", "mjcf")
 XML = (".urdf", ".xml", ".mjcf")
@@ -65,8 +65,7 @@ def check_file(path: str | Path) -> list[Finding]:
     try:
         kind = kind_of(path)
         if kind == "motor":
-            load_motor(Path(path))
-            return []
+            return _unreachable(load_motor(Path(path)), Path(path))
         if kind == "design":
             return _check_design_file(path)
     except InputError as error:
@@ -81,6 +80,24 @@ def check_file(path: str | Path) -> list[Finding]:
             str(path),
             "is of no kind that can be checked",
             "expects a design or motor (YAML), a URDF, or an MJCF file",
+        )
+    ]
+
+
+def _unreachable(motor: Motor, path: Path) -> list[Finding]:
+    """A warning of a good motor file that designs cannot name as things stand."""
+    known = catalogue().get(motor.name)
+    if known == motor:
+        return []
+    folder = path.parent
+    return [
+        Finding(
+            "warning",
+            str(path),
+            f"is good, but {motor.name} "
+            + ("names another motor of the catalogue" if known else "is not in the catalogue"),
+            f"use its path as the motor, or --motors {folder}"
+            + (" under another name" if known else ""),
         )
     ]
 

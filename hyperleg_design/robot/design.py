@@ -220,12 +220,8 @@ def load_design(
     from hyperleg_design.robot.ablation import ablate
 
     design, own_variant = _read(resources.find("descriptions", name))
-    for overlay in overlays:
-        overlay_path = resources.find("descriptions", overlay)
-        design = _overlaid(design, read_yaml(overlay_path), short_name(overlay_path))
     chosen = parse_overrides(overrides)
-    if chosen:
-        design = design.with_values(chosen, "--set")
+    design = changed(design, overrides=chosen, overlays=overlays)
     if own_variant and variant and own_variant != variant:
         raise InputError(
             "variant",
@@ -243,6 +239,24 @@ def load_design(
                 f"the variant {made.variant} sets this itself; use another variant or leave it out",
             )
     return made
+
+
+def changed(
+    design: Design,
+    *,
+    overrides: Mapping[str, Any] | Iterable[str] = (),
+    overlays: Iterable[str | Path] = (),
+) -> Design:
+    """A design with other values, as `load_design` takes them.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    for overlay in overlays:
+        path = resources.find("descriptions", overlay)
+        design = _overlaid(design, read_yaml(path), short_name(path))
+    chosen = parse_overrides(overrides)
+    return design.with_values(chosen, "--set") if chosen else design
 
 
 def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:

@@ -12,6 +12,7 @@ Cp`, because `V = R i + Ke omega` and `Ke = Kt` give `R V / (R Ke) = omega_0 Kt^
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 CONFIDENCES = ("high", "medium", "low")
 RPM = 2 * math.pi / 60
+FOLDERS = "HYPERLEG_MOTORS"
+"""Environment variable with folders of motors beside the shipped ones, separated like `PATH`."""
 
 _RULES = {
     "nominal_voltage": Rule("number", "V", 1, 1000),
@@ -302,19 +305,55 @@ def _catalogue_at(folder: Path) -> dict[str, Motor]:
 
 
 def catalogue() -> dict[str, Motor]:
-    """All motors of the catalogue by name.
+    """All motors by name: those that are shipped, and those of the user's own folders
+    (`use_folder`).
 
-    Returns:
-        Motors by name, in the order of the alphabet; read from `motors/` once in a process.
+    Raises:
+        InputError: a folder of the user's that is not there, a file in it that is no motor, or one
+        with the name of another motor.
     """
-    return _catalogue_at(resources.content_folder("motors"))
+    motors = dict(_catalogue_at(resources.content_folder("motors")))
+    for text in filter(None, os.environ.get(FOLDERS, "").split(os.pathsep)):
+        folder = Path(text)
+        if not folder.is_dir():
+            raise InputError("--motors", "", text, "is no folder; expects one with motor files")
+        own = _catalogue_at(folder)
+        if not own:
+            raise InputError("--motors", "", text, "holds no motor files (NAME.yaml)")
+        for name in own:
+            if name in motors:
+                raise InputError(
+                    "--motors", "", str(folder / f"{name}.yaml"), "is the name of another motor"
+                )
+        motors |= own
+    return motors
+
+
+def use_folder(folder: str | Path) -> None:
+    """Add the motors of a folder to the catalogue of this process and of those that it starts.
+
+    Raises:
+        InputError: as `catalogue`.
+    """
+    given = [text for text in os.environ.get(FOLDERS, "").split(os.pathsep) if text]
+    before = os.environ.get(FOLDERS)
+    text = str(Path(folder).resolve())
+    os.environ[FOLDERS] = os.pathsep.join([*given, *([] if text in given else [text])])
+    try:
+        catalogue()
+    except InputError:
+        if before is None:
+            del os.environ[FOLDERS]
+        else:
+            os.environ[FOLDERS] = before
+        raise
 
 
 def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
-    """A motor by name.
+    """A motor by name, or of a file `PATH/NAME.yaml`.
 
     Args:
-        name: of the motor, such as `RI70`.
+        name: of the motor, such as `RI70`, or the path of its file.
         where: file or option that names the motor, for the error.
         field: dotted path of the field in it, for the error.
 
@@ -324,6 +363,8 @@ def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
     Raises:
         InputError: there is none; names the nearest.
     """
+    if name.endswith(".yaml"):
+        return _of_file(name, where, field)
     motors = catalogue()
     if name not in motors:
         raise InputError(
@@ -333,6 +374,18 @@ def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
             parameters.unknown(name, sorted(motors)).replace("such field", "such motor"),
         )
     return motors[name]
+
+
+def _of_file(name: str, where: str, field: str) -> Motor:
+    path = Path(name)
+    if not path.is_file():
+        raise InputError(where, field, name, "no such motor file; give a path that exists")
+    return _motor_at(path.resolve(), path.stat().st_mtime_ns)
+
+
+@cache
+def _motor_at(path: Path, written: int) -> Motor:
+    return load_motor(path)
 
 
 def check_names(design: Design, where: str) -> None:

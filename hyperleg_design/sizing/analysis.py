@@ -39,6 +39,7 @@ def analyze(design: Design) -> dict[str, Any]:
         `leg_length`, `height` [m], `segment_mass` [kg], `reduction` by posture (joints x motors),
         `max_joint_torque` [Nm] by joint (standing, derated, as Table I), `single_joint_speed`
         [rad/s] (walking), `torque_alone` [Nm] by joint (walking, the others at zero, not derated),
+        `joint_limits` (the joints under one convention, which it states),
         `reflected_inertia` [kg m^2] in the design's posture, `zonotope_to_box_volume` of the joints
         below the hip (walking, zero speed), `motors`, `ablation_confound`.
 
@@ -76,9 +77,26 @@ def analyze(design: Design) -> dict[str, Any]:
         "max_joint_torque": _named(joints, transmission.max_joint_torque(design)),
         "single_joint_speed": _named(joints, transmission.single_joint_speed(design)),
         "torque_alone": _named(joints, np.array(alone)),
+        "joint_limits": _joint_limits(design, joints, matrix["walking"], np.array(alone)),
         "reflected_inertia": leg_reflected_inertia(design).tolist(),
         "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(below, -peak, peak)),
         "ablation_confound": ablation.confound(design) if design.variant == "toe" else None,
+    }
+
+
+def _joint_limits(
+    design: Design, joints: tuple[str, ...], matrix: np.ndarray, alone: np.ndarray
+) -> dict[str, Any]:
+    """What each joint can do under one convention: walking posture, motors at their peak torque
+    and standstill, nothing derated.
+    """
+    peak = motor_envelope(design).peak_torque
+    return {
+        "convention": "walking, at standstill, motors at peak torque, not derated",
+        "max_torque": _named(joints, transmission.joint_torque(np.abs(matrix), peak)),
+        "torque_alone": _named(joints, alone),
+        "speed": _named(joints, transmission.single_joint_speed(design, "walking")),
+        "reflected_inertia": _named(joints, np.diag(leg_reflected_inertia(design, "walking"))),
     }
 
 

@@ -211,7 +211,8 @@ def _listed(
         if scaled:
             levels.append(_number(value, where, f"{place}.values"))
         elif _is_motor(paths[0]):
-            levels.append(find_motor(str(value), where, f"{place}.values").name)
+            find_motor(str(value), where, f"{place}.values")
+            levels.append(str(value))
         else:
             levels.append(_number(value, where, f"{place}.values"))
     return Axis(name, paths, tuple(levels), scaled=scaled)

@@ -14,8 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from hyperleg_design.reading import summary_line
-from hyperleg_design.robot import masses, transmission
-from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot import consistency, masses, transmission
 from hyperleg_design.robot.design import Design
 from hyperleg_design.robot.inertials import Inertial, inertials
 from hyperleg_design.robot.models import leg_reflected_inertia
@@ -182,9 +181,15 @@ def leg_mass(batch: Batch) -> np.ndarray:
 
 
 @measure("m", "high")
-def leg_length_straight(batch: Batch) -> np.ndarray:
+def leg_length(batch: Batch) -> np.ndarray:
     """From the hip-pitch axis to the sole, straight."""
-    return leg_length(batch.design)
+    return consistency.leg_length(batch.design)
+
+
+@measure("m", "low")
+def height(batch: Batch) -> np.ndarray:
+    """From the sole to the top of the pelvis, legs straight."""
+    return consistency.leg_length(batch.design) + batch.design.pelvis.height
 
 
 @measure("", "low")

@@ -33,7 +33,7 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import parameters
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import Design, load_design
-from hyperleg_design.robot.motors import catalogue
+from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.sweep import measures
 from hyperleg_design.sweep.axis import Axis, read_axis
@@ -150,7 +150,7 @@ class Sweep:
 
 
 def _motor_mapping(name: str) -> dict[str, Any]:
-    motor = catalogue()[name]
+    motor = find_motor(name)
     return {
         "constants": {k: c.value for k, c in motor.constants.items()},
         "resistance": motor.resistance_convention,

@@ -76,3 +76,33 @@ def test_every_trial_can_be_saved_as_a_log(make_onnx, tmp_path, capsys):
     assert len(log.joints) == len(log.motors) == 14
     assert log.metadata.extra["outcome"] == "fell"
     assert check_log(log).usable
+
+
+def test_a_policy_is_evaluated_on_another_design_and_says_so(make_onnx, tmp_path, capsys):
+    overlay = tmp_path / "heavier.yaml"
+    overlay.write_text("thigh: {mass: 6.0}\n")
+    protocol = tmp_path / "short.yaml"
+    protocol.write_text(
+        "kind: walk\nname: short\ntrials: 2\ndistance: 1.0\ntime_limit: 1.0\nsteady: {begin: 0.5}\n"
+    )
+    arguments = ["evaluate", str(make_onnx()), "--protocol", str(protocol), "--json"]
+    changes = ["--set", "toe.mass=0.5", "--set-file", str(overlay)]
+    for name, more, kind, words in (
+        ("own", [], "specialist", ""),
+        ("set", changes, "zero-shot", "toe.mass"),
+        ("named", ["--design", "toe", *changes], "zero-shot", "thigh.mass"),
+    ):
+        assert cli.main([*arguments, *more, "--out", str(tmp_path / name)]) == 0
+        found = json.loads(capsys.readouterr().out)
+        assert {row["trained"] for row in found["results"]} == {kind}
+        (said,) = found["trained"].values()
+        assert words in said
+    trials = pd.read_parquet(tmp_path / "set" / "trials.parquet")
+    assert set(trials["outside"]) == {"thigh.mass, toe.mass"}
+
+
+def test_a_policy_for_another_toe_layout_is_one_clear_error(make_onnx, tmp_path, capsys):
+    arguments = ["evaluate", str(make_onnx()), "--design", "toe_removed"]
+    assert cli.main([*arguments, "--out", str(tmp_path / "out")]) == 2
+    assert "another layout" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

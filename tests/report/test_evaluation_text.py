@@ -4,7 +4,13 @@ from hyperleg_design.report.evaluation_text import evaluation_text
 
 
 def test_what_could_not_be_measured_stays_empty():
-    common = {"variant": "toe", "protocol": "walk", "low": None, "high": None}
+    common = {
+        "variant": "toe",
+        "trained": "specialist",
+        "protocol": "walk",
+        "low": None,
+        "high": None,
+    }
     rows = [
         {
             **common,
@@ -28,4 +34,4 @@ def test_what_could_not_be_measured_stays_empty():
     lines = evaluation_text(rows).splitlines()
     assert "250.5" in lines[2]
     assert "None" not in "".join(lines)
-    assert lines[3].split() == ["toe", "cadence", "Hz", "0", "0", "10"]
+    assert lines[3].split() == ["toe", "specialist", "cadence", "Hz", "0", "0", "10"]

@@ -1,11 +1,17 @@
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 import yaml
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot import motors
+from hyperleg_design.robot.check import check_file
+from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.motors import (
     RPM,
     catalogue,
@@ -262,3 +268,65 @@ def test_a_broken_catalogue_names_its_file(write, tmp_path, monkeypatch):
 
 def test_rpm():
     assert pytest.approx(2 * np.pi) == 60 * RPM
+
+
+@pytest.fixture
+def own_folder(tmp_path, monkeypatch):
+    """A folder with one motor of the user's: RI70 under another name, twice as strong."""
+    monkeypatch.delenv(motors.FOLDERS, raising=False)
+    source = resources.find("motors", "RI70").read_text()
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    data = yaml.safe_load(source) | {"name": "Mine"}
+    data["constants"]["peak_torque"]["value"] *= 2
+    data.pop("presets", None)
+    (folder / "Mine.yaml").write_text(yaml.safe_dump(data))
+    yield folder
+    monkeypatch.delenv(motors.FOLDERS, raising=False)
+
+
+def test_motors_of_a_folder_are_in_the_catalogue_of_this_and_other_processes(own_folder):
+    assert "Mine" not in catalogue()
+    motors.use_folder(own_folder)
+    assert catalogue()["Mine"].peak_torque("vendor") == 2 * catalogue()["RI70"].peak_torque(
+        "vendor"
+    )
+    design = load_design("hyperleg", overrides={"actuators.knee.motor": "Mine"})
+    code = "from hyperleg_design.robot.motors import catalogue; print('Mine' in catalogue())"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.strip() == "True"
+    assert motors.motor_arrays(design).mass.shape == (7,)
+
+
+def test_a_path_is_a_motor(own_folder):
+    path = str(own_folder / "Mine.yaml")
+    named = load_design("hyperleg", overrides={"actuators.knee.motor": path})
+    peak = motors.motor_arrays(named).peak_torque
+    assert peak[3] == motors.load_motor(own_folder / "Mine.yaml").peak_torque("vendor")
+    with pytest.raises(InputError, match="no such motor file"):
+        load_design("hyperleg", overrides={"actuators.knee.motor": str(own_folder / "No.yaml")})
+
+
+def test_wrong_folders_are_one_clear_error_and_change_nothing(own_folder, tmp_path):
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    double = tmp_path / "double"
+    double.mkdir()
+    (double / "RI70.yaml").write_text(resources.find("motors", "RI70").read_text())
+    for folder, text in (
+        (tmp_path / "none", "no folder"),
+        (empty, "no motor files"),
+        (double, "name of another"),
+    ):
+        with pytest.raises(InputError, match=text):
+            motors.use_folder(folder)
+        assert "Mine" not in catalogue()
+
+
+def test_check_says_that_a_good_file_is_not_reachable(own_folder):
+    (finding,) = check_file(own_folder / "Mine.yaml")
+    assert finding.severity == "warning"
+    assert "--motors" in finding.remedy
+    motors.use_folder(own_folder)
+    assert check_file(own_folder / "Mine.yaml") == []
+    assert check_file(resources.find("motors", "RI70")) == []

@@ -1,0 +1,47 @@
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation import measures as trial_measures
+from hyperleg_design.robot.design import load_design
+from hyperleg_design.sizing.analysis import analyze
+from hyperleg_design.sweep import measures as sizing
+from hyperleg_design.sweep import registry
+
+
+def test_all_that_sweeps_compute_and_evaluate_measures_is_there_under_the_same_name():
+    known = registry.entries()
+    assert set(sizing.columns(sizing.MEASURES)) <= set(known)
+    for protocol, table in (("walk", trial_measures.WALK), ("t_test", trial_measures.T_TEST)):
+        for name in table:
+            entry = registry.resolve(f"{protocol}.{name}", [protocol])
+            assert entry is registry.resolve(name, [protocol]) or name in known
+            assert entry.of_trial == name
+    for entry in known.values():
+        assert entry.doc
+        assert entry.better in ("low", "high", "")
+
+
+def test_numbers_that_analyze_prints_have_a_measure():
+    found = analyze(load_design("toe"))
+    numbers = {k for k, v in found.items() if isinstance(v, float)}
+    joints = {f"{k}.{j}" for k in ("max_joint_torque", "torque_alone") for j in ("knee", "toe")}
+    assert (numbers | joints) - set(registry.entries()) == set()
+
+
+@pytest.mark.parametrize(
+    ("name", "protocols", "text"),
+    [
+        ("cost_of_transport", ["walk", "t_test"], "give walk.cost_of_transport or t_test"),
+        ("cost_of_transport", [], "--evaluate"),
+        ("t_test.time", ["walk"], "needs that t_test is evaluated"),
+        ("cost_of_transprt", ["walk"], "no such measure"),
+    ],
+)
+def test_a_name_that_is_not_clear_is_one_clear_error(name, protocols, text):
+    with pytest.raises(InputError, match=text):
+        registry.resolve(name, protocols)
+
+
+def test_labels_have_units():
+    assert registry.label("walk.grf_peak") == "walk, grf peak [N]"
+    assert registry.label("swing_inertia") == "swing inertia [kg m²]"
