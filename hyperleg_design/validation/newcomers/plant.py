@@ -69,7 +69,7 @@ def motion(robot: Robot, rng: np.random.Generator) -> np.ndarray:
 
 def _smooth(robot: Robot, rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:
     """Swings whose own time stands still for a while every five seconds, without a jump."""
-    pace = np.clip(np.abs((clock + 0.9) % 5 - 0.4) / 0.3 - 1, 0, 1)
+    pace = np.clip((np.abs((clock - 2) % 5 - 2.5) - 0.4) / 0.5, 0, 1)
     own = np.cumsum(pace * pace * (3 - 2 * pace)) * STEP
     rise = np.clip(clock, 0, 1)
     columns = []

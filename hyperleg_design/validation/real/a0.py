@@ -26,11 +26,11 @@ from hyperleg_design.validation.real.a0_model import (
 FOLDER = "double_pendulum_a0"
 MODEL = "model_2.0.yml"
 WINDOWS = {
-    "swing_up/pendubot_1": (0.0, 5.0),
-    "swing_up/pendubot_2": (0.0, 5.0),
+    "swing_up/pendubot_1": (0.0, 4.0),
+    "swing_up/pendubot_2": (0.0, 4.0),
 }
 """Part of a recording that is used [s]: the swing-up without the balancing after it, whose
-controller flips between its limits at every tick."""
+controller flips between its limits from tick to tick."""
 COMMAND, MEASURED, VELOCITY = "motor_torque_command", "motor_torque", "velocity"
 CHANNELS = {
     "full": (),
