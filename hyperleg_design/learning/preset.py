@@ -10,6 +10,7 @@ from typing import Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.learning.final_reward import check_final_share
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import parameters
 from hyperleg_design.robot.parameters import flag, number, text
@@ -138,6 +139,9 @@ class Preset(Checked):
     """Policies kept from the end of the training."""
     late_apart: Any = number("", 1, 1e9, default=500_000)
     """Policy steps between them."""
+    final_share: Any = number("", 0, 1, default=0.0)
+    """Share of each task's steps, at the end, that must run under the final reward and without
+    assist; a preset whose stages do not keep to it is refused."""
     algorithm: Algorithm = field(default_factory=Algorithm)
     network: Network = field(default_factory=Network)
     warm_start: WarmStart = field(default_factory=WarmStart)
@@ -226,15 +230,24 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
             f"with mirror: {algorithm.mirror} would judge mirrored samples",
         )
     sizes = ("simulations", "rollout", "checkpoint_every", "trial_every", "late", "late_apart")
+    least = _number(rest.pop("final_share", 0.0), where, "final_share", 0, 1)
+    for task, parts in stages.items():
+        check_final_share(parts, least, where, f"tasks.{task}")
     for key in rest:
         if key not in sizes:
-            known = ["name", *sizes, "algorithm", "network", "warm_start", "tasks"]
+            known = ["name", *sizes, "final_share", "algorithm", "network", "warm_start", "tasks"]
             raise InputError(where, str(key), rest[key], parameters.unknown(str(key), known))
     values = {key: _whole(rest[key], where, key) for key in rest}
     try:
         shape = dataclasses.replace(made, hidden=tuple(hidden))
         return Preset(
-            name=name, algorithm=algorithm, network=shape, warm_start=warm, tasks=stages, **values
+            name=name,
+            final_share=least,
+            algorithm=algorithm,
+            network=shape,
+            warm_start=warm,
+            tasks=stages,
+            **values,
         )
     except InputError as error:
         raise InputError(where, error.field, error.value, error.remedy) from None

@@ -178,7 +178,9 @@ class Training:
         self.meter = Meter(self.environment)
         self.latest_trial: dict[str, float] = {}
         self.seconds = 0.0
-        """Spent on training so far [s]."""
+        """Spent on training so far, trials left out [s]."""
+        self.processor_seconds = 0.0
+        """Processor time of the same [s]: the clock that other work on the machine leaves alone."""
         self._stop = False
         self._critic_only = int(preset.warm_start.critic_iterations) if start is not None else 0
         if (folder / CHECKPOINT).exists():
@@ -196,9 +198,12 @@ class Training:
         shown, began = 0.0, time.monotonic()
         with self._stoppable():
             while schedule.iteration < last and not self._stop:
-                started = time.monotonic()
+                started, worked = time.monotonic(), time.process_time()
                 measures = self._iterate()
                 self.seconds += time.monotonic() - started
+                self.processor_seconds += time.process_time() - worked
+                measures["minutes"] = self.seconds / 60.0
+                measures["processor_minutes"] = self.processor_seconds / 60.0
                 if (
                     schedule.iteration % int(preset.trial_every) == 0
                     or preset.trial_every < schedule.iteration == schedule.total
@@ -253,6 +258,7 @@ class Training:
                 "meter": self.meter.state(),
                 "trial": self.latest_trial,
                 "seconds": self.seconds,
+                "processor_seconds": self.processor_seconds,
                 "random": torch.get_rng_state().numpy(),
             },
         )
@@ -418,6 +424,7 @@ class Training:
         self.observations = as_tensors(content["observations"])
         self.meter.put(content["meter"])
         self.latest_trial, self.seconds = content["trial"], content["seconds"]
+        self.processor_seconds = content["processor_seconds"]
         torch.set_rng_state(torch.from_numpy(content["random"]))
 
     def _writer(self, first: int) -> Any:

@@ -1,0 +1,108 @@
+"""The reward that a training ends with, and from which step it learns under that reward alone.
+
+Helpers (assist, guiding reward terms, weights that are still being faded in) may shape the
+beginning of a training. A preset states with `final_share` for how much of a training's end they
+must be gone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.simulation.tasks import Reward
+
+if TYPE_CHECKING:
+    from hyperleg_design.learning.preset import Preset, Stage
+    from hyperleg_design.simulation.tasks import Task
+
+
+def settled_after(stages: Sequence[Stage]) -> float:
+    """Policy steps after which neither reward nor assist changes any more, at the latest.
+
+    A ramp that begins when the assist is gone counts from the stage's deadline for the assist.
+
+    Args:
+        stages: of one task, in order.
+
+    Returns:
+        Steps from the beginning; infinite where a ramp of a reward may be cut off by the end of its
+        stage, because the final reward then depends on how the training goes.
+    """
+    begun, settled, assisted = 0.0, 0.0, False
+    for stage in stages:
+        if stage.rewards:
+            settled = max(settled, begun)
+        assisted = assisted if stage.assist is None else stage.assist > 0.0
+        deadline = stage.assist_gone_by * stage.steps if assisted else 0.0
+        if assisted:
+            settled = max(settled, begun + deadline)
+            assisted = stage.assist_gone_by >= 1.0  # goes on into the next stage otherwise
+        for ramp in stage.ramps:
+            if ramp.target[0] != "rewards":
+                continue
+            end = ramp.steps + (deadline if ramp.begins == "assist_gone" else 0.0)
+            if end > stage.steps * (1 + 1e-9):
+                return float("inf")
+            settled = max(settled, begun + end)
+        begun += stage.steps
+    return settled
+
+
+def final_share(stages: Sequence[Stage]) -> float:
+    """Share of all steps, at the end, that is learnt under the final reward without assist [-]."""
+    total = sum(stage.steps for stage in stages)
+    return max(0.0, 1.0 - settled_after(stages) / total)
+
+
+def final_rewards(preset: Preset, task: Task) -> dict[str, Reward]:
+    """Reward terms that count at the end of a training, by name; those of weight zero are left out.
+
+    Raises:
+        InputError: the preset has no stages for the task.
+    """
+    rewards = {
+        name: (reward.weight, dict(reward.parameters)) for name, reward in task.rewards.items()
+    }
+    for stage in preset.stages(task.name):
+        changes = [
+            (name, key, value)
+            for name, given in stage.rewards.items()
+            for key, value in given.items()
+        ]
+        changes += [
+            (ramp.target[1], ramp.target[2], ramp.high)
+            for ramp in stage.ramps
+            if ramp.target[0] == "rewards"
+        ]
+        for name, key, value in changes:
+            parameters = rewards[name][1]
+            if key == "weight":
+                rewards[name] = (value, parameters)
+            else:
+                parameters[key] = value
+    return {name: Reward(weight, given) for name, (weight, given) in rewards.items() if weight}
+
+
+def check_final_share(stages: Sequence[Stage], least: float, where: str, path: str) -> None:
+    """Whether helpers are gone early enough.
+
+    Args:
+        stages: of one task.
+        least: share of all steps that must run under the final reward.
+        where: file, for the error.
+        path: field, for the error.
+
+    Raises:
+        InputError: they are not.
+    """
+    share = final_share(stages)
+    if share < least:
+        raise InputError(
+            where,
+            path,
+            round(share, 3),
+            f"is the share of steps under the final reward without assist; final_share asks for "
+            f"{least:g}: end ramps of rewards and the assist earlier, or lengthen the last stage",
+        )
