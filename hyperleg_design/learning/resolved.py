@@ -33,6 +33,7 @@ def task_mapping(task: Task) -> dict[str, Any]:
         "observations": {group: list(parts) for group, parts in task.observations.items()},
         "rewards": {term: {"weight": r.weight, **r.parameters} for term, r in task.rewards.items()},
         **{section: parameters.leaves(getattr(task, section)) for section in _SECTIONS},
+        **({"posture_deg": dict(task.posture_deg)} if task.posture_deg else {}),
     }
 
 

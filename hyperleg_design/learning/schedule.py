@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from hyperleg_design.learning.preset import Preset, Ramp, Stage
     from hyperleg_design.simulation.environment import Environment
 
-DECAY_EVERY = 5
+DECAY_EVERY = 2
 """Iterations between two decays of the assist, where the robots do well enough; assumed."""
 LONG_ENOUGH = 350.0
 """Mean episode from which the assist decays [policy steps]; assumed."""

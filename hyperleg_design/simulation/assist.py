@@ -14,12 +14,13 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.simulation.state import Motion, to_world
 
-FORCE = 250.0
-"""Forward force over speed error [N s/m]; assumed."""
+FORCE = 120.0
+"""Horizontal force over the error of the velocity [N s/m]; assumed. Twice as much throws a
+standing robot over before its legs can follow."""
 TORQUE = 400.0
 """Uprighting torque over tilt [Nm/rad]; assumed."""
 DAMPING = 40.0
-"""Uprighting torque over roll and pitch rate [Nms/rad]; assumed."""
+"""Torque over the pelvis's rate of turning [Nms/rad]; assumed."""
 DECAY = 0.93
 """Factor on the gain at each decay; assumed."""
 OFF_BELOW = 0.01
@@ -28,8 +29,8 @@ OFF_BELOW = 0.01
 
 @dataclass
 class Assist:
-    """A forward force toward the commanded speed and an uprighting torque, scaled by a gain that
-    only decays.
+    """A force toward the commanded velocity and an uprighting torque, scaled by a gain that only
+    decays.
     """
 
     gain: float = 1.0
@@ -62,8 +63,11 @@ class Assist:
         error = speed - np.einsum("ni,ni->n", ahead, motion.velocity[:, :2])
         up = motion.rotation[:, :, 2]
         turning = np.einsum("nij,nj->ni", motion.rotation, motion.angular_velocity)
+        aside = np.stack([-ahead[:, 1], ahead[:, 0]], 1)
+        drift = np.einsum("ni,ni->n", aside, motion.velocity[:, :2])
         wrench = np.zeros((len(error), 6))
-        wrench[:, :2] = FORCE * error[:, None] * ahead
+        wrench[:, :2] = FORCE * (error[:, None] * ahead - drift[:, None] * aside)
         wrench[:, 3] = TORQUE * up[:, 1] - DAMPING * turning[:, 0]
         wrench[:, 4] = -TORQUE * up[:, 0] - DAMPING * turning[:, 1]
+        wrench[:, 5] = -DAMPING * turning[:, 2]
         return self.gain * wrench

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.simulation import human_gait, terminations
 from hyperleg_design.simulation import model as models
-from hyperleg_design.simulation import terminations
 from hyperleg_design.simulation.actuation import applied, smoothed_action
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.assist import Assist
@@ -457,6 +457,7 @@ class Chunk:
             offset[:, joints : 2 * joints],
             offset[:, 2 * joints : 2 * joints + 2],
         )
+        smoothed = self._stride(ids, position, velocity, offset[:, -1])
         self._tried[ids] = position
         self._starter.forward(ids, 1)
         radius = self._pad_radius[ids] if len(self._pad_radius) > 1 else self._pad_radius
@@ -466,9 +467,33 @@ class Chunk:
         self.episode_step[ids] = 0
         self.thermal.reset(ids)
         self.drive.reset(ids, position[:, 7:], velocity[:, 6:])
-        for values in (self.action, self.previous_action, self.smoothed):
+        for values in (self.action, self.previous_action):
             values[ids] = 0.0
+        self.smoothed[ids] = smoothed
         return read_motion(position, velocity)
+
+    def _stride(
+        self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray, yaw: np.ndarray
+    ) -> np.ndarray:
+        """Put some of the starting robots in mid-stride, in place; the smoothed actions that hold
+        them there, `(n, J)`, zero for those that stand.
+        """
+        smoothed = np.zeros((len(ids), len(self.layout.joints)))
+        share = self.task.start.stride_share
+        if not share:
+            return smoothed
+        drawn = self.rng.of(ids).uniform(size=(len(ids), 3))
+        rows, layout = np.flatnonzero(drawn[:, 0] < share), self.layout.take(ids)
+        places, angle, rate, speed = human_gait.stride(layout.joints, drawn[rows, 1:])
+        lower, upper, default = (
+            np.broadcast_to(limit, smoothed.shape)[np.ix_(rows, places)]
+            for limit in (layout.lower, layout.upper, layout.default)
+        )
+        angle = np.clip(angle, lower, upper)
+        position[np.ix_(rows, 7 + places)], velocity[np.ix_(rows, 6 + places)] = angle, rate
+        velocity[rows, 0], velocity[rows, 1] = speed * np.cos(yaw[rows]), speed * np.sin(yaw[rows])
+        smoothed[np.ix_(rows, places)] = (angle - default) / self.task.control.scale
+        return smoothed
 
     def signals(self) -> Mapping[str, Any]:
         """What happened within the last policy step; see `Environment.signals`."""

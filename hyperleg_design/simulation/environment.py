@@ -89,6 +89,7 @@ class Environment:
                 simulations,
                 f"must be a multiple of the number of designs, {number}",
             )
+        design = task.posed(design)
         self.design, self.task, self.simulations, self.seed = design, task, simulations, seed
         self.designs: list[Design] = (
             [design.take(i) for i in range(number)] if design.batch_shape else [design]

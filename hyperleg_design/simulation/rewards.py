@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.reading import summary_line
+from hyperleg_design.simulation import human_gait
 from hyperleg_design.simulation.layout import Layout
 from hyperleg_design.simulation.model import foot_loads
 from hyperleg_design.simulation.settings import Clock
@@ -191,6 +192,15 @@ def joint_limits(state: State, robot: Robot, share: float = 0.95) -> np.ndarray:
     return np.einsum(
         "nj->n", np.maximum(np.abs(state.motion.joint_position - middle) - share * half, 0.0)
     )
+
+
+@term()
+def human_cycle(state: State, robot: Robot, width: float = 0.25) -> np.ndarray:
+    """exp(-d^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human walking."""
+    motion = state.motion
+    away = human_gait.distance(robot.layout.joints, motion.joint_position, motion.joint_velocity)
+    error = state.command[:, :2] - motion.walking_velocity
+    return np.exp(-(away**2) - np.einsum("ni,ni->n", error, error) / width)
 
 
 @term()

@@ -97,6 +97,9 @@ class Start(Checked):
     """Roll and pitch of the pelvis [rad]."""
     yaw: Any = number("rad", 0, 3.1416, default=3.1415)
     """Heading [rad]."""
+    stride_share: Any = number("", 0, 1, default=0.0)
+    """Fraction of episodes that start in mid-stride, at a phase of human walking and about
+    1.33 m/s (`human_gait`); the others start standing [-]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -8,7 +8,7 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
@@ -26,6 +26,9 @@ from hyperleg_design.simulation.settings import (
     Start,
     Thermal,
 )
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
 
 GROUPS = ("policy", "critic")
 """Observation groups that every task has."""
@@ -71,6 +74,9 @@ class Task:
     thermal: Thermal = field(default_factory=Thermal)
     clock: Clock = field(default_factory=Clock)
     randomisation: Randomisation = field(default_factory=Randomisation)
+    posture_deg: Mapping[str, float] = field(default_factory=dict)
+    """Default posture by joint, both sides alike, in place of the design's [deg]: robots start in
+    it and actions are added to it."""
 
     def __post_init__(self) -> None:
         goal = isinstance(self.commands, WaypointCommands)
@@ -103,6 +109,17 @@ class Task:
             found["clock"] = "gait clock in the observation"
         return found
 
+    def posed(self, design: Design) -> Design:
+        """The design with the task's default posture.
+
+        Raises:
+            InputError: a joint that the design does not have, or an angle outside its range.
+        """
+        if not self.posture_deg:
+            return design
+        values = {f"joints.{joint}.default_deg": v for joint, v in self.posture_deg.items()}
+        return design.with_values(values, f"task {self.name}")
+
     def changed(self, **sections: Any) -> Task:
         """A copy with other sections."""
         return dataclasses.replace(self, **sections)
@@ -132,7 +149,15 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
     Raises:
         InputError: unknown or missing field, or a value that makes no sense.
     """
-    known = {"name", "description", "commands", "observations", "rewards", *_SECTIONS}
+    known = {
+        "name",
+        "description",
+        "commands",
+        "observations",
+        "rewards",
+        "posture_deg",
+        *_SECTIONS,
+    }
     for key in data:
         if key not in known:
             raise InputError(
@@ -155,8 +180,14 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
         str(term): _reward(entry, where, f"rewards.{term}")
         for term, entry in _mapping(data["rewards"], where, "rewards").items()
     }
+    rule = parameters.Rule("number", unit="deg", low=-180, high=180)
+    posture = {
+        str(joint): float(parameters.checked(angle, rule, where, f"posture_deg.{joint}"))
+        for joint, angle in _mapping(data.get("posture_deg", {}), where, "posture_deg").items()
+    }
     try:
         return Task(
+            posture_deg=posture,
             name=str(data["name"]),
             commands=_commands(data["commands"], where),
             observations=observations,

@@ -16,9 +16,9 @@ def motion_of(roll=0.0, pitch=0.0, velocity=(0, 0, 0), turning=(0, 0, 0)):
 AHEAD = np.array([[1.0, 0.0]])
 
 
-def test_forward_force():
+def test_force_toward_the_commanded_velocity():
     wrench = Assist().wrench(motion_of(velocity=(0.3, 0.5, 0)), AHEAD, np.array([1.0]))
-    np.testing.assert_allclose(wrench, [[FORCE * 0.7, 0, 0, 0, 0, 0]])
+    np.testing.assert_allclose(wrench, [[FORCE * 0.7, -FORCE * 0.5, 0, 0, 0, 0]])
 
 
 @pytest.mark.parametrize(("roll", "pitch"), [(0.1, 0.0), (0.0, 0.1), (-0.1, 0.0), (0.0, -0.1)])
@@ -29,9 +29,9 @@ def test_torque_turns_back_upright(roll, pitch):
     )
 
 
-def test_torque_damps_roll_and_pitch_but_not_yaw():
+def test_torque_damps_all_turning():
     wrench = Assist().wrench(motion_of(turning=(1.0, 2.0, 3.0)), AHEAD, np.zeros(1))
-    np.testing.assert_allclose(wrench[0, 3:], [-DAMPING, -2 * DAMPING, 0])
+    np.testing.assert_allclose(wrench[0, 3:], [-DAMPING, -2 * DAMPING, -3 * DAMPING])
 
 
 def test_it_only_decays_and_then_is_gone():

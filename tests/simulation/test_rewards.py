@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.simulation import rewards
+from hyperleg_design.simulation import human_gait, rewards
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.rewards import TERMS, Robot
 from hyperleg_design.simulation.settings import Clock
@@ -122,6 +122,18 @@ def test_tilt_is_the_sine_squared_of_the_lean(state, robot):
     qpos[:, 3], qpos[:, 4] = np.cos(lean / 2), np.sin(lean / 2)
     state.motion = read_motion(qpos, np.zeros((1, 20)))
     np.testing.assert_allclose(value("tilt", state, robot), np.sin(lean) ** 2)
+
+
+def test_human_cycle_pays_for_the_cycle_at_the_commanded_velocity(state, robot):
+    places, phases = human_gait.cycle(robot.layout.joints)
+    motion = state.motion
+    motion.joint_position[:, places] = phases[7, : len(places)] * human_gait.ANGLE
+    motion.joint_velocity[:, places] = phases[7, len(places) :] * human_gait.RATE
+    np.testing.assert_allclose(
+        value("human_cycle", state, robot), [1.0, np.exp(-(0.2**2 + 0.1**2) / 0.25)]
+    )
+    motion.joint_position[:, places] += 2 * human_gait.ANGLE
+    assert np.all(value("human_cycle", state, robot) < 0.5)
 
 
 def test_goal_terms(state, robot):

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.learning.resolved import task_mapping
 from hyperleg_design.simulation.tasks import load_task, task_from_mapping, task_names
 
 PLAIN = {
@@ -93,3 +94,19 @@ def test_a_user_file_is_read(tmp_path):
     task = load_task(path)
     assert task.rewards["power"].weight == -1e-4
     assert np.isclose(task.commands.test_speed, 1.33)
+
+
+def test_a_posture_replaces_the_designs(design):
+    task = task_from_mapping({**PLAIN, "posture_deg": {"knee": 10, "hip_pitch": -5}}, "mine.yaml")
+    posed = task.posed(design)
+    assert (posed.joints.knee.default_deg, posed.joints.hip_pitch.default_deg) == (10, -5)
+    assert posed.joints.ankle_pitch.default_deg == design.joints.ankle_pitch.default_deg
+    assert task_from_mapping(PLAIN, "mine.yaml").posed(design) is design
+    again = task_from_mapping(task_mapping(task), "again")
+    assert again.posture_deg == task.posture_deg
+
+
+@pytest.mark.parametrize("posture", [{"knee": "bent"}, {"knee": 500}, {"elbow": 3}, [1]])
+def test_a_posture_that_makes_no_sense_is_refused(posture, design):
+    with pytest.raises(InputError):
+        task_from_mapping({**PLAIN, "posture_deg": posture}, "mine.yaml").posed(design)

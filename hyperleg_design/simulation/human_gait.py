@@ -1,0 +1,97 @@
+"""Joint angles of human walking over the gait cycle, from touchdown to touchdown of the same foot.
+
+They guide a training at its beginning: some episodes start in mid-stride, and a reward term draws
+the robot toward the cycle. That term has no clock, because the nearest phase counts.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+PERIOD = 0.9
+"""Of a stride [s]; of a person with legs of 0.79 m at 1.33 m/s; assumed."""
+PHASES = 50
+"""Of the cycle that are compared with."""
+ANGLE, RATE = 0.25, 2.5
+"""Scales of the distance from the cycle [rad], [rad/s]; assumed."""
+KNOTS: dict[str, tuple[tuple[float, float], ...]] = {
+    "hip_pitch": ((0, -27), (10, -24), (30, -6), (50, 11), (62, 2), (75, -22), (87, -31)),
+    "knee": ((0, 7), (13, 17), (38, 6), (52, 14), (62, 38), (73, 60), (85, 35), (95, 6)),
+    "ankle_pitch": ((0, 0), (7, 5), (30, -6), (45, -10), (55, 2), (63, 15), (75, 0), (87, -1)),
+}
+"""Share of the cycle [%] and angle [deg] in the robot's signs: hip extension, knee flexion and
+plantar flexion positive. Adult level walking, rounded (after Perry and Burnfield, Gait Analysis,
+2nd edition, 2010)."""
+SPEED = 1.33
+"""Of the pelvis in this cycle [m/s]."""
+SLOWER, FASTER = 0.8, 1.1
+"""Shares of `SPEED` between which an episode that starts in mid-stride begins; assumed."""
+
+
+@lru_cache
+def cycle(joints: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """The cycle of hip, knee and ankle pitch of both legs.
+
+    Args:
+        joints: names with the side in front, `(J,)`.
+
+    Returns:
+        Places of these joints among the given ones `(q,)`; their angles over `ANGLE` and rates
+        over `RATE`, `(PHASES, 2 q)`.
+    """
+    from scipy.interpolate import CubicSpline
+
+    share = np.arange(PHASES) / PHASES
+    places, angles, rates = [], [], []
+    for place, joint in enumerate(joints):
+        side, name = joint.split("_", 1)
+        if name not in KNOTS:
+            continue
+        at, degrees = np.array(KNOTS[name], float).T
+        closed = np.append(np.deg2rad(degrees), np.deg2rad(degrees[0]))
+        curve = CubicSpline(np.append(at / 100, 1.0), closed, bc_type="periodic")
+        phase = (share + (0.5 if side == "right" else 0.0)) % 1.0
+        places.append(place)
+        angles.append(curve(phase))
+        rates.append(curve(phase, 1) / PERIOD)
+    scaled = [np.array(angles).T / ANGLE, np.array(rates).T / RATE]
+    return np.array(places), np.concatenate(scaled, 1)
+
+
+def distance(joints: tuple[str, ...], position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Distance from the nearest phase of the cycle [-], `(n,)`.
+
+    d^2 = min over phases of the mean over joints of ((q - q_h) / ANGLE)^2 and
+    ((dq - dq_h) / RATE)^2.
+
+    Args:
+        joints: names with the side in front, `(J,)`.
+        position: of the joints [rad], `(n, J)`.
+        velocity: of the joints [rad/s], `(n, J)`.
+    """
+    places, phases = cycle(joints)
+    now = np.concatenate([position[:, places] / ANGLE, velocity[:, places] / RATE], 1)
+    squared = (now**2).sum(1)[:, None] + (phases**2).sum(1) - 2.0 * now @ phases.T
+    return np.sqrt(np.maximum(squared.min(1), 0.0) / now.shape[1])
+
+
+def stride(
+    joints: tuple[str, ...], drawn: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """States in mid-stride.
+
+    Args:
+        joints: names with the side in front, `(J,)`.
+        drawn: uniform numbers 0 .. 1, `(n, 2)`: phase and speed.
+
+    Returns:
+        Places of the joints of the cycle `(q,)`; their angles [rad] and rates [rad/s], `(n, q)`;
+        speed of the pelvis [m/s], `(n,)`.
+    """
+    places, phases = cycle(joints)
+    chosen = phases[np.minimum((drawn[:, 0] * PHASES).astype(int), PHASES - 1)]
+    count = len(places)
+    speed = SPEED * (SLOWER + (FASTER - SLOWER) * drawn[:, 1])
+    return places, chosen[:, :count] * ANGLE, chosen[:, count:] * RATE, speed
