@@ -337,10 +337,17 @@ class Training:
 
     def _start_from(self, start: StartPolicy) -> None:
         warm, columns = self.preset.warm_start, list(self.environment.observation_columns["policy"])
-        command, first = (
-            np.array([float(warm.forward), 0.0, 0.0]),
-            self.observations["policy"].numpy(),
-        )
+        if start.posture != dict(self.task.posture_deg):
+            raise InputError(
+                "start",
+                "posture_deg",
+                start.posture,
+                f"expects a policy whose task has the posture {dict(self.task.posture_deg)}: "
+                f"actions are added to it",
+            )
+        same = start.commands == task_mapping(self.task)["commands"]["kind"]
+        command = None if same else np.array([float(warm.forward), 0.0, 0.0])
+        first = self.observations["policy"].numpy()
         start_actor(
             self.algorithm.actor,
             start,

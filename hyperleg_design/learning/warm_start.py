@@ -1,8 +1,9 @@
 """Starting a training from another task's policy: the columns that both observe keep their weights.
 
-The old command becomes part of the first layer's bias, so that the new policy begins by doing what
-the old one did under that command; columns that only the new task has begin without weight. The
-critic starts anew, alone for some iterations.
+Where both tasks take the same kind of commands, these columns keep their weights, too. Where a walk
+becomes a waypoint task, the old command becomes part of the first layer's bias, so that the new
+policy begins by doing what the old one did under that command; columns that only the new task has
+begin without weight. The critic starts anew, alone for some iterations.
 """
 
 from __future__ import annotations
@@ -43,6 +44,10 @@ class StartPolicy:
     """Of each layer, `(outputs, inputs)`."""
     biases: tuple[np.ndarray, ...]
     """Of each layer, `(outputs,)`."""
+    commands: str
+    """Kind of the commands that it follows, `velocity` or `waypoints`."""
+    posture: dict[str, float]
+    """Default posture that its task states [deg]."""
     source: dict[str, Any]
     """What `run.json` says of it: task, variant, seed, steps, commit and SHA-256 of the file."""
 
@@ -89,8 +94,9 @@ def read_start(path: str | Path) -> StartPolicy:
     )
     columns = tuple(json.loads(told["columns"]))
     source = {key: told[key] for key in ("variant", "seed", "steps", "commit") if key in told}
+    task = json.loads(told["task"])
     source |= {
-        "task": json.loads(told["task"])["name"],
+        "task": task["name"],
         "sha256": hashlib.sha256(content).hexdigest(),
     }
     return StartPolicy(
@@ -100,6 +106,8 @@ def read_start(path: str | Path) -> StartPolicy:
         deviation=arrays.get("deviation", np.ones(len(columns))).reshape(-1),
         weights=tuple(arrays[f"weight_{i}"] for i in layers),
         biases=tuple(arrays[f"bias_{i}"] for i in layers),
+        commands=task["commands"]["kind"],
+        posture={str(k): float(v) for k, v in task.get("posture_deg", {}).items()},
         source=source,
     )
 
@@ -109,7 +117,7 @@ def start_actor(
     start: StartPolicy,
     columns: list[str],
     joints: list[str],
-    command: np.ndarray,
+    command: np.ndarray | None,
     observation: np.ndarray,
     deviation: float,
 ) -> None:
@@ -120,7 +128,8 @@ def start_actor(
         start: the policy.
         columns: names of the new observation's numbers.
         joints: names of the new action's numbers.
-        command: that the old policy is to follow, in its own columns `(3,)`.
+        command: that the old policy is to follow, in its own columns `(3,)`; None where both tasks
+            take the same kind of commands, which then stay what they were.
         observation: first observations of the new task `(n, size)`: scale of the columns that the
             policy did not have.
         deviation: of the actions to begin with.
@@ -140,13 +149,13 @@ def start_actor(
             "start", "layers", found, f"expects a policy with layers of {[s[0] for s in shapes]}"
         )
     old = {name: i for i, name in enumerate(start.columns)}
-    folded = [i for name, i in old.items() if name.startswith(COMMAND)]
+    folded = [i for name, i in old.items() if command is not None and name.startswith(COMMAND)]
     shared = [
         (new, old[name])
         for new, name in enumerate(columns)
-        if name in old and not name.startswith(COMMAND)
+        if name in old and old[name] not in folded
     ]
-    if len(folded) != len(command):
+    if command is not None and len(folded) != len(command):
         raise InputError(
             "start",
             "columns",
@@ -156,7 +165,7 @@ def start_actor(
     mean, scale = np.zeros(len(columns)), np.maximum(observation.std(0), 0.1)
     first, to, of = np.zeros(shapes[0]), [n for n, _ in shared], [o for _, o in shared]
     first[:, to], mean[to], scale[to] = start.weights[0][:, of], start.mean[of], start.deviation[of]
-    unseen = [o for name, o in old.items() if o not in of and not name.startswith(COMMAND)]
+    unseen = [o for o in old.values() if o not in of and o not in folded]
     if unseen:
         raise InputError(
             "start",
@@ -164,9 +173,11 @@ def start_actor(
             start.columns[unseen[0]],
             "the new task does not observe this; the policy would miss it",
         )
-    bias = start.biases[0] + start.weights[0][:, folded] @ (
-        (command - start.mean[folded]) / start.deviation[folded]
-    )
+    bias = start.biases[0]
+    if command is not None:
+        bias = bias + start.weights[0][:, folded] @ (
+            (command - start.mean[folded]) / start.deviation[folded]
+        )
     values = [(first, bias), *zip(start.weights[1:], start.biases[1:], strict=True)]
     with torch.no_grad():
         for layer, (weight, offset) in zip(linear, values, strict=True):

@@ -20,7 +20,7 @@ from hyperleg_design.learning.preset import WarmStart  # noqa: E402
 from hyperleg_design.learning.train import Training, describe, train  # noqa: E402
 from hyperleg_design.learning.warm_start import read_start  # noqa: E402
 from hyperleg_design.robot.design import load_design  # noqa: E402
-from hyperleg_design.simulation.tasks import load_task  # noqa: E402
+from hyperleg_design.simulation.tasks import Task, load_task  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +30,10 @@ def walker(tiny: Preset, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "policy.onnx"
 
 
-def begun(tiny: Preset, walker: Path, folder: Path, design: str = "toe") -> Training:
-    task, robot = load_task("goal"), load_design(design)
+def begun(
+    tiny: Preset, walker: Path, folder: Path, design: str = "toe", task: str | Task = "goal"
+) -> Training:
+    task, robot = load_task(task) if isinstance(task, str) else task, load_design(design)
     return Training(
         task, robot, 0, tiny, folder, 1, describe(task, robot, 0, tiny), read_start(walker)
     )
@@ -55,6 +57,29 @@ def test_it_begins_by_doing_what_the_walk_did(tiny: Preset, walker: Path, tmp_pa
         training.policy(observation), expected, atol=2e-4 * (1 + np.abs(expected).max())
     )
     training.environment.close()
+
+
+@pytest.mark.parametrize("task", ["walk", "goal"])
+def test_from_a_policy_of_the_same_task_it_goes_on_as_it_was(
+    tiny: Preset, tmp_path: Path, task: str
+) -> None:
+    """Commands keep their weights and are followed; nothing is folded into a bias."""
+    assert train(task, "toe", 0, tiny, tmp_path / "first")
+    policy = tmp_path / "first" / "policy.onnx"
+    training = begun(tiny, policy, tmp_path, task=task)
+    columns = training.environment.observation_columns["policy"]
+    observation = np.random.default_rng(1).normal(0.0, 1.0, (20, len(columns)))
+    observation = observation.astype(np.float32)
+    (expected,) = ort.InferenceSession(policy).run(["action"], {"observation": observation})
+    np.testing.assert_allclose(
+        training.policy(observation), expected, atol=2e-4 * (1 + np.abs(expected).max())
+    )
+    training.environment.close()
+
+
+def test_another_default_posture_is_refused(tiny: Preset, walker: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="posture"):
+        begun(tiny, walker, tmp_path, task=load_task("goal").changed(posture_deg={"knee": 10.0}))
 
 
 def test_the_critic_learns_alone_at_first(tiny: Preset, walker: Path, tmp_path: Path) -> None:
