@@ -206,8 +206,15 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
     name, tasks = rest.pop("name", None), rest.pop("tasks", None)
     if not isinstance(name, str):
         raise InputError(where, "name", name, "expects a text")
+    given = {str(t): s for t, s in _mapping(tasks, where, "tasks").items()}
+    for task, entry in given.items():
+        if isinstance(entry, str) and not isinstance(given.get(entry), list):
+            raise InputError(
+                where, f"tasks.{task}", entry, "expects stages, or a task that has them"
+            )
     stages = {
-        str(t): _stages(s, where, f"tasks.{t}") for t, s in _mapping(tasks, where, "tasks").items()
+        t: _stages(given[s] if isinstance(s, str) else s, where, f"tasks.{t}")
+        for t, s in given.items()
     }
     network = dict(_mapping(rest.pop("network", {}), where, "network"))
     hidden = network.pop("hidden", [512, 256, 128])

@@ -10,6 +10,7 @@ import pytest
 import yaml
 
 from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.evaluation.analysis_plan import load_plan
 from hyperleg_design.learning import campaign as module
 from hyperleg_design.learning.campaign import (
     campaign_status,
@@ -47,6 +48,15 @@ def test_the_shipped_campaign_holds_what_the_study_compares() -> None:
     assert len({r.name for r in runs}) == len(runs) == 36
     assert len({r.preset for r in runs}) == 1  # equal budgets and stages
     assert [r.seed for r in runs] == sorted(r.seed for r in runs)
+
+
+def test_the_campaign_of_the_fair_study_has_the_seeds_that_its_plan_asks_for() -> None:
+    runs, plan = load_campaign("campaign_study").runs, load_plan()
+    for group in ("walk_free", "walk_upright"):
+        for design in plan.designs:
+            seeds = {r.seed for r in runs if (r.group, r.design) == (group, design)}
+            assert len(seeds) >= plan.seeds["walk"]
+    assert {r.preset for r in runs} == {"study"}
 
 
 @pytest.mark.parametrize(

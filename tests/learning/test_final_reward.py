@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import copy
 
+import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.final_reward import final_rewards, final_share, settled_after
-from hyperleg_design.learning.preset import preset_from_mapping
+from hyperleg_design.learning.preset import load_preset, preset_from_mapping
 from hyperleg_design.learning.schedule import Schedule
+from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task
 
@@ -85,3 +87,64 @@ def test_the_schedule_sets_what_the_preset_ends_with(hyperleg):
                 assert environment.assist is None
             schedule.advance(episode, share)
         environment.close()
+
+
+STUDY = ("walk_free", "walk_upright", "walk_clock", "walk_power", "walk_force")
+
+
+@pytest.mark.parametrize("name", STUDY)
+def test_the_study_learns_under_its_final_reward_in_the_last_third(name):
+    study, task = load_preset("study"), load_task(name)
+    assert study.final_share >= 0.33
+    assert final_share(study.stages(name)) >= 1 / 3
+    final = final_rewards(study, task)
+    assert not {"human_cycle", "action_rate", "foot_slide", "hip_deviation"} & set(final)
+    assert (final["power"].weight, final["thermal"].weight) == (
+        task.rewards["power"].weight,
+        -10.0,
+    )
+    assert final["linear_velocity"].parameters == {"width": 0.1}
+
+
+def test_the_primary_study_ends_with_the_papers_reward_and_a_penalty_on_joint_limits():
+    study, paper = load_preset("study"), load_task("walk_paper")
+    final = final_rewards(study, load_task("walk_free"))
+    assert final.pop("joint_limits").weight < 0
+    assert final == {n: r for n, r in paper.rewards.items() if n != "joint_limits"}
+    assert load_task("walk_free").observations["policy"] == ("proprioception",)
+
+
+def test_each_variation_differs_from_the_primary_study_in_one_thing():
+    study = load_preset("study")
+    primary = final_rewards(study, load_task("walk_free"))
+    changed = {}
+    for name in STUDY[1:]:
+        final = final_rewards(study, load_task(name))
+        changed[name] = {t for t in {**primary, **final} if primary.get(t) != final.get(t)}
+    assert changed == {
+        "walk_upright": {"power", "tilt"},
+        "walk_clock": {"contact_match"},
+        "walk_power": {"power"},
+        "walk_force": {"ground_force"},
+    }
+
+
+@pytest.mark.parametrize("design", ["toe", "toe_locked", "toe_removed", "toe_removed_matched"])
+def test_every_arm_can_stand_in_the_studys_posture(design):
+    task = load_task("walk_free")
+    environment = Environment(load_design(design), task, simulations=2, threads=1)
+    environment.reset()
+    knee = [i for i, name in enumerate(environment.layout.joints) if name.endswith("knee")]
+    assert np.rad2deg(environment.layout.default[knee]) == pytest.approx([10.0, 10.0])
+    environment.close()
+
+
+def test_a_task_may_have_the_stages_of_another():
+    data = tiny_mapping()
+    data["tasks"]["walk_paper"] = "walk"
+    preset = preset_from_mapping(data, "p.yaml")
+    assert [s.name for s in preset.stages("walk_paper")] == ["first", "second"]
+    data["tasks"]["walk_paper"] = "run"
+    with pytest.raises(InputError) as caught:
+        preset_from_mapping(data, "p.yaml")
+    assert caught.value.field == "tasks.walk_paper"
