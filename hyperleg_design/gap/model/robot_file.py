@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.gap.model.tendons import Tendon, fixed_tendons
 
 ANGLE_TRANSMISSIONS = ("mjTRN_JOINT", "mjTRN_JOINTINPARENT", "mjTRN_TENDON")
 """Kinds of transmission whose torque per unit of force does not change with posture, as long as the
@@ -47,6 +48,8 @@ class Drives:
     """At the motor `(m,)` [kg m^2]."""
     armature: np.ndarray
     """Further inertia about each joint that is no rotor of a coupled motor `(n,)` [kg m^2]."""
+    couplings: tuple[Tendon, ...]
+    """Tendons whose armature couples joints and belongs to no motor's rotor."""
     passive: np.ndarray
     """Joints without a drive, in a file that drives others `(n,)`."""
     notes: tuple[str, ...]
@@ -216,13 +219,7 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
     """Drives of a compiled file over the joints that are kept, in the model's order."""
     import mujoco
 
-    kinds = mujoco.mjtJoint
-    single = [
-        j
-        for j in range(model.njnt)
-        if int(model.jnt_type[j]) in (int(kinds.mjJNT_HINGE), int(kinds.mjJNT_SLIDE))
-        and _name(model, j) in kept
-    ]
+    single = [j for j in single_joints(model) if _name(model, j) in kept]
     joints, dofs = (
         tuple(_name(model, j) for j in single),
         np.array([model.jnt_dofadr[j] for j in single]),
@@ -230,6 +227,7 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
     count = len(joints)
     notes: list[str] = []
     moment = _moment(model)
+    tendons = fixed_tendons(model, single)
     found = []
     for index in range(model.nu):
         kind = mujoco.mjtTrn(model.actuator_trntype[index]).name
@@ -269,6 +267,8 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
             else np.full(count, np.inf)
         )
         rotor = armature + matrix**2 @ model.actuator_armature[usable]
+        for tendon in tendons:
+            rotor = rotor + (np.diag(tendon.inertia) if tendon.single else 0.0)
         alias = [next((names[a] for a in np.flatnonzero(own[j])), joints[j]) for j in range(count)]
         gear = np.array(
             [float(matrix[j, own[j]][0]) if own[j].sum() == 1 else 1.0 for j in range(count)]
@@ -282,10 +282,26 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
             np.minimum(total, effort),
             rotor,
             np.zeros(count),
+            tuple(t for t in tendons if t.armature and not t.single),
             ~driven,
             tuple(notes),
         )
-    rotor = np.array([_tendon_armature(model, i) for i in usable]) + model.actuator_armature[usable]
+    rotor = np.array(model.actuator_armature[usable])
+    couplings = []
+    for tendon in tendons:
+        pulling = [
+            place
+            for place, i in enumerate(usable)
+            if model.actuator_trntype[i] == mujoco.mjtTrn.mjTRN_TENDON
+            and model.actuator_trnid[i, 0] == tendon.index
+        ]
+        if len(pulling) == 1:  # the motor turns gear times as fast as the tendon lengthens
+            ratio = float(model.actuator_gear[usable[pulling[0]], 0])
+            rotor[pulling[0]] += tendon.armature / ratio**2
+        elif tendon.single:
+            armature = armature + np.diag(tendon.inertia)
+        elif tendon.armature:
+            couplings.append(tendon)
     return Drives(
         tuple(names),
         tuple(names),
@@ -295,9 +311,15 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
         limit,
         rotor,
         armature,
+        tuple(couplings),
         np.zeros(count, bool),
         tuple(notes),
     )
+
+
+def single_joints(model: Any) -> list[int]:
+    """Indices of the joints that are hinges or slides."""
+    return [int(joint) for joint in _single(model)[0]]
 
 
 def strip_drives(spec: Any) -> None:
@@ -340,14 +362,6 @@ def _is_fixed_tendon(model: Any, tendon: int) -> bool:
     import mujoco
 
     return bool(model.wrap_type[model.tendon_adr[tendon]] == mujoco.mjtWrap.mjWRAP_JOINT)
-
-
-def _tendon_armature(model: Any, actuator: int) -> float:
-    import mujoco
-
-    if model.actuator_trntype[actuator] != mujoco.mjtTrn.mjTRN_TENDON:
-        return 0.0
-    return float(model.tendon_armature[model.actuator_trnid[actuator, 0]])
 
 
 def _force_limit(model: Any, actuator: int) -> float:

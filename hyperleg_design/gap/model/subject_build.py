@@ -13,11 +13,15 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.model import robot_file
 from hyperleg_design.gap.model.mechanism import BASE, Mechanism, mechanism_of
+from hyperleg_design.gap.model.oracle import disagreements
 from hyperleg_design.gap.model.subject import Pad, Subject
+from hyperleg_design.gap.model.tendons import Tendon, fixed_tendons, fold_into_joints
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
 
+COUPLING = "coupling {}"
+"""Name of a tendon that couples joints and belongs to no motor."""
 FRICTION_SPEED = 0.02
 """Width of the tanh that stands for MuJoCo's `frictionloss` [rad/s]: assumed; a sign, softened
 below the speeds that logs resolve."""
@@ -130,8 +134,12 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
             sorted(known)[:8],
             f"are joints of another robot; its own are {', '.join(every)}",
         )
-    drives = robot_file.read_drives(
-        robot_file.compiled(spec, path), every if known is None else known
+    kept = every if known is None else known
+    whole = robot_file.compiled(spec, path)
+    drives = robot_file.read_drives(whole, kept)
+    indices = [j for j in robot_file.single_joints(whole) if whole.joint(j).name in kept]
+    notes += fold_into_joints(
+        spec, fixed_tendons(whole, indices), [whole.joint(j).name for j in indices]
     )
     robot_file.strip_drives(spec)
     held = robot_file.lock(spec, every if known is None else known)
@@ -149,6 +157,12 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
             drives.matrix[:, used],
             drives.rotor_inertia[used],
         )
+    inertia = drives.armature if coupled else drives.rotor_inertia
+    for joint in spec.joints:
+        if joint.name in tree.joints:
+            joint.armature = float(inertia[tree.joints.index(joint.name)])
+    for tendon in drives.couplings:
+        _add_tendon(spec, COUPLING.format(tendon.name), tree.joints, tendon)
     model = robot_file.compiled(spec, path)
     coulomb, viscous = robot_file.friction(model)
     spring, rest = robot_file.springs(model)
@@ -156,7 +170,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     aliases = tuple(n for n, u in zip(drives.aliases, used, strict=True) if u)
     unlimited = np.full(len(names), np.inf)
     feet, pads = _feet_of_file(model, tree) if base == "floating" else ((), ())
-    return _assembled(
+    subject = _assembled(
         name=path.stem,
         path=path,
         design=None,
@@ -168,6 +182,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
         aliases=aliases,
         rotor=drives.rotor_inertia[used],
         armature=drives.armature,
+        couplings=drives.couplings,
         gains=drives.gains,
         limit=drives.limit[used],
         stall=unlimited,
@@ -187,6 +202,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
         rest=rest,
         gear=drives.gear[used],
     )
+    return dataclasses.replace(subject, notes=(*subject.notes, *disagreements(subject, whole)))
 
 
 def _assembled(
@@ -197,6 +213,7 @@ def _assembled(
     matrix: np.ndarray,
     rotor: np.ndarray,
     armature: np.ndarray,
+    couplings: Sequence[Tendon] = (),
     **v: Any,
 ) -> Subject:
     count = tree.count
@@ -225,7 +242,9 @@ def _assembled(
         stall_torque=v["stall"],
         no_load_speed=v["free"],
         rotor_inertia=rotor,
-        armature=(matrix * rotor) @ matrix.T + np.diag(armature),
+        armature=(matrix * rotor) @ matrix.T
+        + np.diag(armature)
+        + sum((tendon.inertia for tendon in couplings), np.zeros((count, count))),
         coulomb=v["coulomb"],
         viscous=v["viscous"],
         friction_speed=np.full(count, float(v["width"])),
@@ -260,6 +279,13 @@ def _add_rotors(
         tendon = spec.add_tendon(name=motor, armature=rotor[column])
         for row in np.flatnonzero(matrix[:, column]).tolist():
             tendon.wrap_joint(joints[row], matrix[row, column])
+
+
+def _add_tendon(spec: Any, name: str, joints: Sequence[str], tendon: Tendon) -> None:
+    """Put a tendon with its armature alone into a model."""
+    added = spec.add_tendon(name=name, armature=tendon.armature)
+    for row in np.flatnonzero(tendon.coefficients).tolist():
+        added.wrap_joint(joints[row], float(tendon.coefficients[row]))
 
 
 def _pads(model: Any, tree: Mechanism, feet: Mapping[str, int] | None = None) -> tuple[Pad, ...]:

@@ -210,6 +210,12 @@ def _inputs(signals: Signals, follow: str) -> np.ndarray:
     return np.where(np.isfinite(held), held, at_rest)
 
 
+def motor_tendons(subject: Subject) -> int:
+    """How many tendons of a subject's model are rotors of its motors; these come first."""
+    model = subject.model
+    return sum(model.tendon(index).name in subject.motors for index in range(model.ntendon))
+
+
 def replay_model(
     subject: Subject,
     chain: Chain,
@@ -234,10 +240,11 @@ def replay_model(
         alteration.edit(model)
     machine, matrix = chain.machine, np.asarray(chain.machine.joint_from_motor)
     first = model.nv - len(subject.joints)
-    if model.ntendon:
-        model.tendon_armature[:] = machine.rigid_inertia
+    pulled = motor_tendons(subject)
+    if pulled:
+        model.tendon_armature[:pulled] = machine.rigid_inertia
         adr, place = model.tendon_adr, model.wrap_objid - (model.njnt - len(subject.joints))
-        for tendon in range(model.ntendon):
+        for tendon in range(pulled):
             wraps = slice(adr[tendon], adr[tendon] + model.tendon_num[tendon])
             model.wrap_prm[wraps] = matrix[place[wraps], tendon]
     else:
@@ -280,7 +287,7 @@ class Plant:
         self._own_damping = self._damping.copy()
         self._tendon_damping = (
             self.batch.expand("tendon_damping")
-            if self.model.ntendon and damps_motors(alterations)
+            if motor_tendons(subject) and damps_motors(alterations)
             else None
         )
         self.alive = np.arange(count)
@@ -338,7 +345,7 @@ class Plant:
             damping = damping + driven.joint_damping
         if driven.motor_damping is not None:
             if self._tendon_damping is not None:
-                self._tendon_damping[:] = driven.motor_damping
+                self._tendon_damping[:, : driven.motor_damping.shape[-1]] = driven.motor_damping
             else:
                 damping = damping + actuation.applied(np.asarray(matrix) ** 2, driven.motor_damping)
         implicit = np.maximum(0.5, self._implicit(damping))
