@@ -308,6 +308,9 @@ def catalogue() -> dict[str, Motor]:
     """All motors by name: those that are shipped, and those of the user's own folders
     (`use_folder`).
 
+    Returns:
+        Motors by name, in the order of the alphabet.
+
     Raises:
         InputError: a folder of the user's that is not there, a file in it that is no motor, or one
         with the name of another motor.
