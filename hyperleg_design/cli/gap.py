@@ -11,7 +11,6 @@ import tyro
 
 from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit
-from hyperleg_design.errors import InputError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -320,36 +319,18 @@ class Blind(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class Score(Printing):
-    """Open a trial's key, once, and compare its diagnoses with the truth; or score the real logs
-    with withheld truth.
-    """
+    """Open a trial's key, once, and compare its diagnoses with the truth."""
 
-    folder: Annotated[str, tyro.conf.Positional] = ""
+    folder: Annotated[str, tyro.conf.Positional]
     """Of the trial."""
-    real: str = ""
-    """Instead: folder of the real logs."""
     reread: bool = False
     """Read the table of a trial that was scored before."""
 
     def run(self) -> None:
         """Score."""
-        from hyperleg_design.validation.blind.real import score_real
         from hyperleg_design.validation.blind.score import score
 
-        if bool(self.folder) == bool(self.real):
-            raise InputError(
-                "gap score",
-                "",
-                None,
-                "expects the folder of a trial, or --real with the folder of the real logs",
-            )
-        if self.real and not Path(self.real).is_dir():
-            raise InputError("gap score", "--real", self.real, "no such folder")
-        found = (
-            score_real(self.real, progress=not self.json)
-            if self.real
-            else score(self.folder, reread=self.reread)
-        )
+        found = score(self.folder, reread=self.reread)
         if self.json:
             emit(found)
         else:

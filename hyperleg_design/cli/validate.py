@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from hyperleg_design.cli.output import emit
+from hyperleg_design.cli.arguments import AtLeast
+from hyperleg_design.cli.output import Printing, emit
+from hyperleg_design.errors import InputError
 
 
 @dataclass(frozen=True, kw_only=True)
-class Validate:
+class Validate(Printing):
     """Run the frozen benchmark of the diagnosis: real logs, newcomers' robots, blind plants; goes
     on where it was stopped.
     """
@@ -27,12 +30,10 @@ class Validate:
     checkout."""
     checkout: Path | None = None
     """Folder of another checkout whose diagnosis is to be scored."""
-    workers: int = 1
+    workers: Annotated[int, AtLeast(1)] = 1
     """Processes side by side, each on one thread."""
     list_cases: bool = False
     """List the cases instead."""
-    json: bool = False
-    """Print JSON."""
 
     def run(self) -> None:
         """Run it."""
@@ -44,6 +45,8 @@ class Validate:
             for case in cases:
                 print(f"{case.name} ({case.split}): {case.about}")
             return
+        if self.data is not None and not self.data.is_dir():
+            raise InputError("validate", "--data", str(self.data), "no such folder")
         outcome = run_benchmark(
             self.out,
             cases,

@@ -36,6 +36,18 @@ def own_checkout() -> Path:
     return Path(hyperleg_design.__file__).resolve().parent.parent
 
 
+def checked_checkout(checkout: Path | None) -> Path:
+    """The folder of a checkout, by default of this one.
+
+    Raises:
+        InputError: it holds no package.
+    """
+    folder = own_checkout() if checkout is None else Path(checkout).resolve()
+    if not (folder / "hyperleg_design" / "__init__.py").is_file():
+        raise InputError("benchmark", "checkout", str(checkout), "holds no hyperleg_design")
+    return folder
+
+
 def open_recordings(path: Path, metadata: Mapping[str, Any] | None = None) -> tuple[Recording, ...]:
     """Logs of any format that the package reads.
 
@@ -92,9 +104,7 @@ def diagnose_folder(
     Raises:
         InputError: the checkout holds no package.
     """
-    checkout = own_checkout() if checkout is None else Path(checkout).resolve()
-    if not (checkout / "hyperleg_design" / "__init__.py").is_file():
-        raise InputError("benchmark", "checkout", str(checkout), "holds no hyperleg_design")
+    checkout = checked_checkout(checkout)
     out = case / "answer.json"
     environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": str(checkout)}
     command = [sys.executable, "-P", str(WORKER), str(case), str(out)]

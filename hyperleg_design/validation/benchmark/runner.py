@@ -20,7 +20,7 @@ from typing import Any
 
 from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.reading import read_json
-from hyperleg_design.validation.benchmark.adapter import FAILED, diagnose_folder
+from hyperleg_design.validation.benchmark.adapter import FAILED, checked_checkout, diagnose_folder
 from hyperleg_design.validation.benchmark.case import (
     SPLITS,
     SUITES,
@@ -116,6 +116,7 @@ def run_benchmark(
     """
     if workers < 1:
         raise InputError("validate", "workers", workers, "expects at least one")
+    place = str(checked_checkout(checkout))
     folder = check_output_folder(out)
     (folder / "cases").mkdir(parents=True, exist_ok=True)
     (folder / MARKER).touch()
@@ -123,12 +124,12 @@ def run_benchmark(
     runnable = [case for case in cases if not (case.needs and not (data / case.needs).is_dir())]
     remarks = [r for case in runnable if (r := _unusable(_file(folder, case))) is not None]
     waiting = [case for case in runnable if not _done(_file(folder, case))]
-    arguments = [
-        (case.name, str(folder), str(data), checkout and str(checkout)) for case in waiting
-    ]
+    arguments = [(case.name, str(folder), str(data), place) for case in waiting]
     _run(arguments, workers, len(runnable), progress)
-    rows = [_row(read_json(_file(folder, case))) for case in runnable]
-    results = {"version": VERSION, "skipped": skipped, "cases": rows}
+    entries = [read_json(_file(folder, case)) for case in runnable]
+    rows = [_row(entry) for entry in entries]
+    made_by = next((e["diagnosis"].get("provenance") for e in entries), None)
+    results = {"version": VERSION, "provenance": made_by, "skipped": skipped, "cases": rows}
     write_json(folder / "results.json", results)
     outcome = Outcome(tuple(rows), tuple(skipped), tuple(remarks))
     text = outcome.markdown() + ("\n" + case_table(rows) if rows else "")
@@ -163,12 +164,12 @@ def _spread(
             raise
 
 
-def run_case(name: str, folder: str, data: str, checkout: str | None) -> None:
+def run_case(name: str, folder: str, data: str, checkout: str) -> None:
     """Make, diagnose and store one case of this version, by its name; nothing but the result is
     left behind.
     """
     case = next(case for case in all_cases() if case.name == name)
-    store(case, Path(folder), Path(data), Path(checkout) if checkout else None)
+    store(case, Path(folder), Path(data), Path(checkout))
 
 
 def store(case: Case, folder: Path, data: Path, checkout: Path | None = None) -> None:
