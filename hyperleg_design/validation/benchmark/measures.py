@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
+from hyperleg_design.validation.benchmark.scoring import CONFIDENT
+
 Row = Mapping[str, Any]
 """One scored case: `name`, `suite`, `split`, `kind`, `truth`, `score`, `seconds`."""
 Z = 1.959964
@@ -80,6 +82,12 @@ def _known(name: str, rows: Iterable[Row]) -> list[Row]:
 GOOD = _outcome("right", "equivalent")
 
 
+def _sure(row: Row) -> bool:
+    """Whether an untrue cause stands first with confidence, `ambiguous` answers included."""
+    wrong = row["score"]["outcome"] in ("behind", "wrong", "false cause")
+    return wrong and (row["score"]["probability"] or 0.0) >= CONFIDENT
+
+
 def _real(rows: Sequence[Row]) -> list[Measure]:
     real = [row for row in rows if row["suite"] == "real"]
     faults = [row for row in real if row["kind"] in FAULTS]
@@ -116,12 +124,14 @@ def _real(rows: Sequence[Row]) -> list[Measure]:
         _share("... a false cause", healthy, _outcome("false cause")),
         _share("... `unknown`", healthy, _outcome("unknown")),
         _share("real, faults: confident wrong cause", faults, _flag("confident_wrong"), "<= 5 %"),
+        _share("... as probable, `ambiguous` answers included", faults, _sure),
         _share(
             "real, nothing wrong: confident wrong cause",
             healthy,
             _flag("confident_wrong"),
             "<= 5 %",
         ),
+        _share("... as probable, `ambiguous` answers included there, too", healthy, _sure),
         _share(
             "real, right: the value inside its 95 % interval",
             _known("inside", faults),

@@ -127,7 +127,7 @@ def run_benchmark(
     arguments = [(case.name, str(folder), str(data), place) for case in waiting]
     _run(arguments, workers, len(runnable), progress)
     entries = [read_json(_file(folder, case)) for case in runnable]
-    rows = [_row(entry) for entry in entries]
+    rows = [scored(entry) for entry in entries]
     made_by = next((e["diagnosis"].get("provenance") for e in entries), None)
     results = {"version": VERSION, "provenance": made_by, "skipped": skipped, "cases": rows}
     write_json(folder / "results.json", results)
@@ -208,7 +208,7 @@ def _unusable(path: Path) -> str | None:
         if not isinstance(entry, dict) or entry.get("version") != VERSION:
             version = entry.get("version") if isinstance(entry, dict) else None
             return f"{path.name} is of version {version}, not {VERSION}: made anew"
-        _row(entry)
+        scored(entry)
     except (HyperlegError, KeyError, TypeError, ValueError, AttributeError) as error:
         return f"{path.name} is unreadable and was made anew ({type(error).__name__}: {error})"
     return None
@@ -218,7 +218,7 @@ def _done(path: Path) -> bool:
     return path.is_file() and _unusable(path) is None
 
 
-def _row(entry: dict[str, Any]) -> dict[str, Any]:
+def scored(entry: dict[str, Any]) -> dict[str, Any]:
     """A scored case, from what its file holds; rules are applied anew at every reading."""
     known = entry["truth"]
     truth = Truth(

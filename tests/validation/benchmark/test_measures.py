@@ -51,7 +51,7 @@ def row(name, outcome, kind="single", split="development", suite="real", **more)
 ROWS = [
     row("a", "right", inside=True, untrue_beside=False),
     row("b", "equivalent", untrue_beside=True),
-    row("c", "wrong", confident_wrong=True, split="held out"),
+    row("c", "wrong", probability=0.95, split="held out", confident_wrong=True),
     row("d", "unknown, led", split="held out"),
     row("e", "right", "nothing"),
     row("f", "false cause", "nothing", confident_wrong=True),
@@ -71,6 +71,7 @@ def test_each_measure_counts_its_own_cases():
     assert found[bare] == (1, 1)
     assert found["real, faults: confident wrong cause"] == (1, 4)
     assert found["real, nothing wrong: confident wrong cause"] == (1, 4)
+    assert found["... as probable, `ambiguous` answers included"] == (1, 4)
     assert found["real, right: the value inside its 95 % interval"] == (1, 1)
     assert found["newcomers, one effect at several joints: all named"] == (0, 1)
     assert "blind, one effect at 2 x floor or more: right, first" not in found
