@@ -53,6 +53,38 @@ def stop_share(joint_position: Any, lower: Any, upper: Any) -> np.ndarray:
     )
 
 
+def stop_measures(
+    joint_position: Any, joint_velocity: Any, stop_torque: Any, lower: Any, upper: Any
+) -> dict[str, float]:
+    """How far joints go past their stops, and the power of the stops, which no motor pays.
+
+    A stop takes energy from a joint that moves into it, returns what its spring stored, and
+    dissipates the difference.
+
+    Args:
+        joint_position: [rad], `(t, J)`.
+        joint_velocity: [rad/s], `(t, J)`.
+        stop_torque: of the stops on the joints [Nm], `(t, J)`; None where nobody recorded it.
+        lower: lower ends of the ranges of motion [rad], `(J,)`.
+        upper: upper ends [rad], `(J,)`.
+
+    Returns:
+        `stop_overshoot` [rad], the largest, `stop_absorbed_power` and `stop_returned_power` [W],
+        summed over the joints, mean over time and not negative.
+    """
+    position = np.asarray(joint_position, float)
+    past = np.maximum(np.asarray(lower) - position, position - np.asarray(upper))
+    found = {"stop_overshoot": float(max(past.max(), 0.0))}
+    power = (
+        np.full((1, 1), np.nan)
+        if stop_torque is None
+        else np.asarray(stop_torque, float) * np.asarray(joint_velocity, float)
+    )
+    found["stop_absorbed_power"] = float(np.maximum(-power, 0.0).sum(-1).mean())
+    found["stop_returned_power"] = float(np.maximum(power, 0.0).sum(-1).mean())
+    return found
+
+
 def vibration(joint_velocity: Any, time_step: float, above: float = VIBRATION) -> np.ndarray:
     """Root mean square of the joints' velocities above a frequency [rad/s], `(t, J)` -> `(J,)`."""
     from scipy.signal import butter, sosfiltfilt

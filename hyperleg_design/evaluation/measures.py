@@ -91,6 +91,15 @@ STEPS = _table(
 BEARING = _table(
     Measure("largest_tilt", "rad", "largest lean of the pelvis over the whole trial", LESS),
     Measure("stop_share", "", "share of time on a stop of the joint that is there most", LESS),
+    Measure("stop_overshoot", "rad", "farthest that a joint goes past its stop", LESS),
+    Measure("stop_absorbed_power", "W", "taken from the joints by their stops", LESS),
+    Measure(
+        "stop_returned_power",
+        "W",
+        "given back to the joints by the springs of their stops, which no motor pays; the rest of "
+        "what they absorb is lost",
+        LESS,
+    ),
     Measure("vibration", "rad/s", "RMS velocity above 15 Hz of the joint that has most", LESS),
     Measure(
         "limit_share",

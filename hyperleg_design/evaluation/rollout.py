@@ -81,6 +81,9 @@ class Trial:
     """Of the floor on each pad, in the world [N], `(t, P, 3)`."""
     pad_slip: np.ndarray
     """Sliding speed of each touching pad [m/s], `(t, P)`."""
+    stop_torque: np.ndarray | None = None
+    """Of the stops at the ends of the range of motion on the joints [Nm], `(t, J)`; None where
+    nobody recorded it."""
     divergence: Divergence | None = None
     """State from which it diverged, where it did."""
     joint_target: np.ndarray | None = None
@@ -124,6 +127,7 @@ SIGNALS = (
     "joint_position",
     "joint_velocity",
     "driven_joint_torque",
+    "stop_torque",
     "motor_torque",
     "motor_velocity",
     "pad_force",

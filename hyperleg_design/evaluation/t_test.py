@@ -199,6 +199,13 @@ def measure_t_test(
         "stop_share": float(
             bearing.stop_share(trial.joint_position, trial.layout.lower, trial.layout.upper).max()
         ),
+        **bearing.stop_measures(
+            trial.joint_position,
+            trial.joint_velocity,
+            trial.stop_torque,
+            trial.layout.lower,
+            trial.layout.upper,
+        ),
         "vibration": float(bearing.vibration(trial.joint_velocity, trial.time_step).max()),
         "limit_share": float(use.limit_share.max()),
         "continuous_use": float(use.continuous_use.max()),
@@ -264,6 +271,9 @@ _MEASURES = (
     *_OF_STEPS,
     "largest_tilt",
     "stop_share",
+    "stop_overshoot",
+    "stop_absorbed_power",
+    "stop_returned_power",
     "vibration",
     "limit_share",
     "continuous_use",

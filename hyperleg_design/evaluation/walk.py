@@ -295,6 +295,9 @@ _STEADY = (
     *LANDMARKS,
     "mean_tilt",
     "stop_share",
+    "stop_overshoot",
+    "stop_absorbed_power",
+    "stop_returned_power",
     "vibration",
     "limit_share",
     "continuous_use",
@@ -378,6 +381,13 @@ def _steady_measures(
         "mean_tilt": float(bearing.tilt(trial.base_orientation[part]).mean()),
         "stop_share": float(
             bearing.stop_share(trial.joint_position[part], layout.lower, layout.upper).max()
+        ),
+        **bearing.stop_measures(
+            trial.joint_position[part],
+            trial.joint_velocity[part],
+            None if trial.stop_torque is None else trial.stop_torque[part],
+            layout.lower,
+            layout.upper,
         ),
         "vibration": float(bearing.vibration(trial.joint_velocity[part], trial.time_step).max()),
         "limit_share": float(use.limit_share.max()),

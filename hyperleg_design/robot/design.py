@@ -37,6 +37,7 @@ from hyperleg_design.robot.sections import (
     Pelvis,
     ReferenceBuild,
     Segment,
+    StopModel,
     Toe,
     Transmission,
 )
@@ -62,6 +63,7 @@ class Design:
     contact: Contact
     friction: FrictionModel = field(default_factory=FrictionModel)
     gears: GearModel = field(default_factory=GearModel)
+    stops: StopModel = field(default_factory=StopModel)
     variant: str = "toe"
     """Ablation that made it; informative."""
     origins: Mapping[str, Origin] = field(default_factory=dict, repr=False)

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 TIME_STEP = 0.005
 """Simulation step [s]: 200 Hz (paper, Table II)."""
+STOP_IMPEDANCE_SHAPE = (0.001, 0.5, 2.0)
+"""Width [rad], midpoint and power of the impedance of stops over penetration; MuJoCo's defaults."""
 FLOOR = "floor"
 BASE_JOINT = "floating_base"
 STAND = "stand"
@@ -73,6 +75,12 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
         )
         made.frictionloss = joint.coulomb if friction else 0.0
         made.armature = 0.0
+        made.solref_limit = [design.stops.time_constant, design.stops.damping_ratio]
+        made.solimp_limit = [
+            min(0.9, design.stops.impedance),
+            design.stops.impedance,
+            *STOP_IMPEDANCE_SHAPE,
+        ]
     _add_drives(spec, design)
     _add_sensors(spec, design, tree)
     if floor:

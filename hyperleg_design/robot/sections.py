@@ -373,6 +373,21 @@ class GearModel(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class StopModel(_Checked):
+    """Stops at the ends of the joints' ranges of motion; MuJoCo's `solreflimit` and
+    `solimplimit`.
+    """
+
+    time_constant: Any = number("s", 0.0005, 0.2, default=0.02)
+    """Of the stop's spring and damper [s]; MuJoCo holds it at two simulation steps or more."""
+    damping_ratio: Any = number("", 0.05, 5, default=1.0)
+    """Of the stop's spring and damper [-]."""
+    impedance: Any = number("", 0.5, 0.9999, default=0.95)
+    """MuJoCo's impedance d of a stop under load [-]: the spring's rest penetration under a steady
+    load falls in proportion to 1 - d."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Contact(_Checked):
     """Sole pads and ground."""
 

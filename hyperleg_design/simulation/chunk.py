@@ -24,6 +24,7 @@ from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.commands import commander
 from hyperleg_design.simulation.drive import LEGS, Drive
 from hyperleg_design.simulation.layout import GRAVITY, Layout
+from hyperleg_design.simulation.model import PAD_SENSOR_SIZE
 from hyperleg_design.simulation.observations import observe
 from hyperleg_design.simulation.rewards import TERMS, Robot
 from hyperleg_design.simulation.state import Goal, Motion, Sensed, State, read_motion
@@ -128,7 +129,10 @@ class Chunk:
             self.drive.flat(self.drive.model.rated_torque),
             self.drive.flat(self.drive.model.envelope.power_constant),
         )
-        self._sensors, self._push = self.batch.bind("sensordata"), self.batch.bind("xfrc_applied")
+        sensors = self.batch.bind("sensordata")
+        pads = PAD_SENSOR_SIZE * len(layout.pads)
+        self._sensors, self._stops = sensors[:, :pads], sensors[:, pads:]
+        self._push = self.batch.bind("xfrc_applied")
         self._places, self._tried = self._starter.bind("geom_xpos"), self._starter.bind("qpos")
         self.batch.reset(None, 0, 0)
         self._standing = self.batch.state.copy()
@@ -158,6 +162,8 @@ class Chunk:
         self.sensors = np.zeros((substeps, count, self._sensors.shape[-1]))
         self.states = np.zeros((substeps, count, 13 + 2 * joints))
         """MuJoCo's position and velocity before each substep, kept while `recording`."""
+        self.stops = np.zeros((substeps, count, joints))
+        """Size of the stops' torque at each joint in each substep [Nm], kept while `recording`."""
         self.altered = None if self.drive.chain is None else np.zeros((substeps, 2, count, joints))
         """Torque through the transmission and friction that alterations make of them, kept while
         `recording`."""
@@ -261,6 +267,8 @@ class Chunk:
                 self._help()
             self._advance()
             self.sensors[substep] = self._sensors
+            if self.recording:
+                self.stops[substep] = self._stops
         if assisted:
             self._push[:, self._pelvis] = 0.0
 
@@ -425,7 +433,13 @@ class Chunk:
             )
         if len(ids):
             self._start(ids)
-            for values in (self.motor_torque, self.motor_velocity, self.sensors, self.states):
+            for values in (
+                self.motor_torque,
+                self.motor_velocity,
+                self.sensors,
+                self.states,
+                self.stops,
+            ):
                 values[:, ids] = 0.0
             if self.told is not None:
                 self.told.forget(ids)
@@ -495,6 +509,13 @@ class Chunk:
         smoothed[np.ix_(rows, places)] = (angle - default) / self.task.control.scale
         return smoothed
 
+    def _stop_torque(self, position: np.ndarray) -> np.ndarray:
+        """Torque of the stops on the joints, toward the middle of the range of motion [Nm],
+        `(substeps, n, J)`.
+        """
+        middle = (self.layout.lower + self.layout.upper) / 2
+        return np.where(position < middle, self.stops, -self.stops)
+
     def signals(self) -> Mapping[str, Any]:
         """What happened within the last policy step; see `Environment.signals`."""
         joints, substeps = len(self.layout.joints), len(self.sensors)
@@ -518,6 +539,7 @@ class Chunk:
             "joint_target": np.broadcast_to(self.target, (substeps, *self.target.shape)),
             "joint_position": position[..., 7:],
             "joint_velocity": velocity[..., _ROTORS_BEFORE:],
+            "stop_torque": self._stop_torque(position[..., 7:]),
             "motor_torque": self.motor_torque,
             "motor_velocity": self.motor_velocity,
             "pad_force": models.pad_forces(self.sensors),

@@ -343,9 +343,10 @@ class Environment:
             `(n, substeps, ...)` each: `base_position`, `base_velocity` (world), `base_orientation`
             (w x y z), `base_angular_velocity` (pelvis frame), `joint_target`, `joint_position`,
             `joint_velocity`, `driven_joint_torque` (M times the motor torque, before friction),
-            `joint_friction`, `motor_torque`, `motor_velocity`, `pad_force` (of the floor on each
-            pad, world), `pad_slip`; with alterations also those of `told.Told`. Zero for a
-            simulation that diverged; for others that ended, of the episode that did.
+            `joint_friction`, `stop_torque` (of the stops on the joints), `motor_torque`,
+            `motor_velocity`, `pad_force` (of the floor on each pad, world), `pad_slip`; with
+            alterations also those of `told.Told`. Zero for a simulation that diverged; for others
+            that ended, of the episode that did.
         """
         if not self.recording:
             raise InputError(

@@ -1,5 +1,5 @@
 """The MuJoCo model that is simulated: the robot's, without drawing shapes, with one contact sensor
-a sole pad.
+a sole pad and one sensor of the stops' torque a joint, in this order.
 """
 
 from __future__ import annotations
@@ -75,6 +75,13 @@ def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.Mj
             reftype=geom_kind,
             refname=pad,
             intprm=[data, strongest, slots],
+        )
+    for joint in layout.joints:
+        spec.add_sensor(
+            name=f"{joint}_stop",
+            type=mujoco.mjtSensor.mjSENS_JOINTLIMITFRC,
+            objtype=mujoco.mjtObj.mjOBJ_JOINT,
+            objname=joint,
         )
     return spec
 

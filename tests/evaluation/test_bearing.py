@@ -41,3 +41,26 @@ def test_vibration_hears_fast_motion_only():
     found = bearing.vibration(velocity, 0.005)
     assert found[0] < 0.02
     assert found[1] == pytest.approx(3 / np.sqrt(2), rel=0.02)
+
+
+def test_a_stop_absorbs_and_returns() -> None:
+    """A spring stop of 100 Nm/rad with a damper: a half swing into it and out again."""
+    step = 1e-4
+    time = np.arange(0, np.pi / 10, step)
+    past = 0.05 * np.sin(10 * time)
+    position, velocity = 1.0 + past, 0.5 * np.cos(10 * time)
+    torque = -100 * past - 2 * velocity
+    measures = bearing.stop_measures(
+        np.c_[position, 0 * time],
+        np.c_[velocity, 0 * time],
+        np.c_[torque, 0 * time],
+        [-1, -1],
+        [1, 1],
+    )
+    assert measures["stop_overshoot"] == pytest.approx(0.05, rel=1e-6)
+    lost = measures["stop_absorbed_power"] - measures["stop_returned_power"]
+    assert lost == pytest.approx(2 * 0.5**2 / 2, rel=1e-3)  # damper: mean of d v^2
+    assert measures["stop_returned_power"] > 0
+    unknown = bearing.stop_measures(np.c_[position], np.c_[velocity], None, [-1], [2])
+    assert unknown["stop_overshoot"] == 0
+    assert np.isnan(unknown["stop_absorbed_power"])

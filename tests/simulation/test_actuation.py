@@ -67,6 +67,48 @@ def test_drive_is_the_envelope_clip(seed):
     np.testing.assert_allclose(torque, expected, atol=1e-9)
 
 
+def four_quadrant(wanted, speed, constant, resistance, voltage, current):
+    """One winding on a bus, its driver's voltage and current both limited, by Ohm's law."""
+    asked = resistance * wanted / constant + constant * speed
+    given = (max(-voltage, min(voltage, asked)) - constant * speed) / resistance
+    return constant * max(-current, min(current, given))
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    torque=st.lists(st.floats(-20, 20), min_size=7, max_size=7).map(np.array),
+    over=st.lists(st.floats(-3, 3), min_size=7, max_size=7).map(np.array),
+)
+def test_drive_is_the_four_quadrant_motor(torque, over):
+    """Far past no-load speed as well, where the voltage's bounds leave the torque's limits: up to
+    1.06 times no-load speed at the hip, where the peak torque is 1 / 17 of the stall torque.
+    """
+    model = actuation.actuation_model(DESIGNS["toe"])
+    limits = model.envelope
+    speed = over * limits.no_load_speed
+    given_torque = actuation.driven_torque(
+        model,
+        np.tile(model.joint_from_motor @ torque, (1, 2, 1)),
+        np.tile(speed, (1, 2, 1)),
+    )
+    constant = 0.1  # of any winding; the limits fix the rest
+    expected = [
+        four_quadrant(t, w, constant, constant**2 * heat, constant * free, peak / constant)
+        for t, w, heat, free, peak in zip(
+            torque,
+            speed,
+            limits.power_constant,
+            limits.no_load_speed,
+            limits.peak_torque,
+            strict=True,
+        )
+    ]
+    np.testing.assert_allclose(given_torque[0, 0], expected, rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(given_torque[0, 0], given_torque[0, 1])
+    past = np.abs(over) > 1
+    assert np.all((given_torque[0, 0] * speed)[past] < 0)  # it brakes, and never drives
+
+
 def test_drive_gives_what_is_wanted_inside_the_envelope():
     model = actuation.actuation_model(DESIGNS["toe"])
     wanted = np.full((1, 2, 7), 5.0)

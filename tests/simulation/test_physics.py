@@ -41,7 +41,7 @@ def _check_dynamics(robot, environment, simulation):
     a[:3] = rotation.T @ a[:3] - np.cross(v[3:6], v[:3])
     # `J^T f` of the pads, from the sensors and where MuJoCo says that they touch
     force = np.zeros(len(v))
-    loads = pad_forces(data.sensordata)
+    loads = pad_forces(data.sensordata[: PAD_SENSOR_SIZE * len(environment.layout.pads)])
     for index in range(data.ncon):
         pad = model.geom(data.contact[index].geom[1]).name
         link = pad.rsplit("_pad_", 1)[0]

@@ -28,18 +28,24 @@ def test_paper_presets_are_table_ii():
         "thermal": -10,
         "linear_velocity": 2.5,
         "angular_velocity": 0.5,
+        "joint_limits": -20,
     }
     assert walk.rewards["linear_velocity"].parameters == {"width": 0.1}
     assert walk.rewards["angular_velocity"].parameters == {"width": 0.2}
     assert goal.rewards["goal_arrival"].weight == 150
     assert goal.rewards["position_progress"].weight == 10
     for task in (walk, goal):
-        assert not task.deviations
+        assert set(task.deviations) == {"joint_limits"}
         assert task.control.smoothing == 0.2
         assert task.physics.policy_step == pytest.approx(0.02)
         assert task.physics.time_step == 0.005
         assert task.limits.duration == 20.0
         assert task.thermal.time_constant == 3.0
+
+
+@pytest.mark.parametrize("name", task_names())
+def test_every_task_keeps_joints_off_their_stops(name):
+    assert load_task(name).rewards["joint_limits"].weight < 0
 
 
 def test_deviations_are_declared():
