@@ -9,11 +9,11 @@ SHELL := /bin/bash
 $(VENV)/.ready: pyproject.toml constraints.txt
 	@command -v $(PYTHON) >/dev/null || { echo "Python 3.11 not found; set PYTHON=/path/to/python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,docs]'
 	@touch $@
 
 $(VENV)/.learning: $(VENV)/.ready  # torch and what goes with it, for training; other tools' fits, for baselines; and the tests of both
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[baselines,dev,learning]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[baselines,dev,docs,learning]'
 	@touch $@
 
 study: $(VENV)/.ready  ## Analyse the paper's biped and its ablations, sweep, and write results/study/index.html
@@ -23,6 +23,7 @@ test: $(VENV)/.learning  ## All tests but the slow ones, style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 	$(BIN)/python -m pytest -m "not slow" -n 2
 
 test-all: $(VENV)/.learning  ## The slow ones too
@@ -32,6 +33,9 @@ lint: $(VENV)/.ready  ## Style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: $(VENV)/.ready  ## The documentation as a site, in site/; a warning is an error
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 coverage: $(VENV)/.learning  ## The tests, and which lines none of them runs
 	$(BIN)/python -m pytest -m "not slow" -n 2 --cov=hyperleg_design --cov-report=term:skip-covered --cov-report=html:results/coverage

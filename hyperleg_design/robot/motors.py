@@ -313,7 +313,7 @@ def catalogue() -> dict[str, Motor]:
 
     Raises:
         InputError: a folder of the user's that is not there, a file in it that is no motor, or one
-        with the name of another motor.
+            with the name of another motor.
     """
     motors = dict(_catalogue_at(resources.content_folder("motors")))
     for text in filter(None, os.environ.get(FOLDERS, "").split(os.pathsep)):

@@ -191,7 +191,7 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
     Raises:
         InputError: a batch, a motion planned for another design, or no such motion.
         InfeasibleError: the legs cannot do the motion, or `allow_excess` is off and the motors
-        cannot.
+            cannot.
     """
     if isinstance(motion, str):
         motion = reference_motion(design, motion)

@@ -181,7 +181,7 @@ def energy_ledger(
 
     Raises:
         InputError: shapes that do not fit, values that are not finite, a step that is not positive,
-        an efficiency that is none.
+            an efficiency that is none.
     """
     torque, velocity = (
         _samples(motor_torque, "motor_torque"),

@@ -89,7 +89,7 @@ def run_sweep(
     Raises:
         InputError: the definition is wrong.
         OutputError: the folder is not ours, holds something else (another sweep, another version),
-        or cannot be written.
+            or cannot be written.
     """
     sweep = definition if isinstance(definition, Sweep) else load_sweep(definition)
     if isinstance(chunk, bool) or not isinstance(chunk, int) or chunk < 1:
