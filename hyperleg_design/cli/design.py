@@ -169,21 +169,46 @@ class Sweep(Printing):
     """Folder to write."""
     restart: bool = False
     """Throw away what an earlier run left there."""
+    evaluate: tuple[str, ...] = ()
+    """Protocols to run on every design: walk, t_test, or YAML files; those that the sweep names by
+    default."""
+    seeds: Annotated[int, AtLeast(1)] = 3
+    """Trainings of each toe layout whose policies are evaluated, at most."""
+    policies: Path | None = None
+    """Folder of trainings; the shipped policies by default."""
+    batch: Annotated[int, AtLeast(1)] = 16
+    """Designs evaluated side by side; a killed run loses at most those."""
+    scheduler: str = ""
+    """Address of a Dask scheduler, such as tcp://host:8786; this process by default."""
 
     def run(self) -> None:
         """Run it."""
         from hyperleg_design.report.sweep_page import sweep_report
+        from hyperleg_design.report.sweep_trials import evaluated_report
+        from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.run import run_sweep
+        from hyperleg_design.sweep.space import load_sweep
+        from hyperleg_design.sweep.trial_runs import plan, run_trials
 
-        result = run_sweep(self.file, self.out, resume=not self.restart, progress=not self.json)
-        summary = sweep_report(result)
+        sweep, show = load_sweep(self.file), not self.json
+        protocols = self.evaluate or sweep.evaluated
+        wanted = plan(sweep, protocols, seeds=self.seeds, policies=self.policies)
+        with cluster(self.scheduler) as executor:
+            result = run_sweep(
+                sweep, self.out, resume=not self.restart, progress=show, executor=executor
+            )
+            if protocols:
+                run_trials(result, wanted, batch=self.batch, executor=executor, progress=show)
+        summary = evaluated_report(result) if protocols else sweep_report(result)
         if self.json:
             emit(summary)
         else:
             print(
                 f"{summary['designs']} designs ({summary['rejected']} rejected) -> "
-                f"{', '.join(summary['files'])}"
+                f"{', '.join(map(str, summary['files']))}"
             )
+            if protocols:
+                print(summary["text"])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -67,6 +67,8 @@ class Evaluation:
     """Of each trial; None where it gives none."""
     cycles: list[CyclePower | None] = field(default_factory=list)
     """Right-leg power over the steady strides of each walk; None where there is none."""
+    robot: Design | None = None
+    """The design that was simulated."""
     trained: TrainingFit = field(default_factory=lambda: TrainingFit(UNKNOWN))
     """Whether the policy was trained for this design."""
     trials: list[Trial] = field(default_factory=list)
@@ -121,6 +123,7 @@ def evaluation_of(
         measures=measures,
         motors=motors,
         cycles=list(cycles),
+        robot=design,
         trained=training_fit(policy, design),
     )
 

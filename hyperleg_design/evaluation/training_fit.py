@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy
+from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.parameters import leaves
+from hyperleg_design.simulation.actuation import actuation_model
 from hyperleg_design.simulation.design_observation import design_ranges
+from hyperleg_design.simulation.machine import rotor_inertia
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
@@ -20,6 +23,8 @@ RANGES = "design_ranges"
 """Metadata of a policy that is conditioned on its design; see `design_observation`."""
 _NO_ROBOT = ("masses.expected_",)
 """Leaves that are printed sums, not parts of a robot."""
+_LAWS = ("reference.", "friction.", "gears.", "masses.")
+"""Sections that say how masses and friction follow from the other parts."""
 _SHOWN = 3
 
 
@@ -58,12 +63,28 @@ def training_fit(policy: Policy, design: Design) -> TrainingFit:
         for path, value in own.items()
         if not path.startswith(_NO_ROBOT) and not _equal(trained[path], value)
     }
+    parts = {path: pair for path, pair in changed.items() if not path.startswith(_LAWS)}
+    if parts or _same_actuation(policy.design, design):
+        changed = parts  # laws only say how a robot follows from its parts
     if RANGES in policy.metadata:
         ranges = design_ranges(policy.metadata[RANGES], f"{policy.name}: {RANGES}")
         beyond = set(ranges.outside(design))
         outside = tuple(p for p in changed if p in beyond or p not in ranges.ranges)
         return TrainingFit(ZERO_SHOT if outside else CONDITIONED, changed, outside)
     return TrainingFit(ZERO_SHOT if changed else SPECIALIST, changed, tuple(changed))
+
+
+def _same_actuation(a: Design, b: Design) -> bool:
+    """Whether laws give the same masses, motors and friction to two robots of the same parts."""
+    one, other = actuation_model(a), actuation_model(b)
+    pairs = [
+        *((getattr(one, n), getattr(other, n)) for n in ("coulomb", "viscous", "rated_torque")),
+        (one.joint_from_motor, other.joint_from_motor),
+        (rotor_inertia(a), rotor_inertia(b)),
+        (one.envelope.peak_torque, other.envelope.peak_torque),
+        *((getattr(mass_table(a), n), getattr(mass_table(b), n)) for n in ("total", "leg")),
+    ]
+    return all(np.allclose(x, y, rtol=1e-6) for x, y in pairs)
 
 
 def _equal(a: Any, b: Any) -> bool:

@@ -12,7 +12,8 @@ axes:
   actuators.knee.motor: {values: [RI60, RI70]}
   leg length: {paths: [thigh.length, shank.length], scale: {low: 0.8, high: 1.2, steps: 5}}
 measures: [swing_inertia]            # all by default
-objectives: [total_mass, push_off_power]
+objectives: [total_mass, push_off_power]   # any of `hyperleg list measures`
+evaluate: [walk]                     # protocols, where objectives or maps need trials
 maps: [{x: toe.mass, y: leg length, measure: swing_inertia}]
 """
 
@@ -35,7 +36,7 @@ from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.names import VARIANTS
-from hyperleg_design.sweep import measures
+from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.axis import Axis, read_axis
 
 SAMPLINGS = ("grid", "random", "sobol", "latin_hypercube")
@@ -55,6 +56,7 @@ _KEYS = (
     "measures",
     "objectives",
     "maps",
+    "evaluate",
 )
 
 
@@ -89,6 +91,12 @@ class Sweep:
     """Columns that span Pareto fronts."""
     maps: tuple[Map, ...]
     source: str
+    evaluated: tuple[str, ...] = ()
+    """Protocols that the designs are meant to be evaluated under: `walk`, `t_test`."""
+    trial_objectives: tuple[str, ...] = ()
+    """Further objectives, measured on trials, by their full names."""
+    trial_maps: tuple[Map, ...] = ()
+    """Further maps, of measures of trials."""
 
     @property
     def size(self) -> int:
@@ -142,6 +150,7 @@ class Sweep:
             "measures": list(self.measures),
             "objectives": list(self.objectives),
             "maps": [{"x": m.x, "y": m.y, "measure": m.measure} for m in self.maps],
+            **({"evaluate": list(self.evaluated)} if self.evaluated else {}),
         }
 
     def digest(self) -> str:
@@ -221,7 +230,9 @@ def sweep_from_mapping(
     variants = _variants(data.get("variants", ["toe"]), where)
     axes = _axes(data["axes"], base, where, grid=sampling == "grid")
     chosen = _measures(data.get("measures"), where)
-    columns = measures.columns(chosen)
+    evaluated = _evaluated(data.get("evaluate", []), where)
+    objectives = _columns(data.get("objectives", []), chosen, evaluated, where, "objectives")
+    maps = _maps(data.get("maps", []), axes, chosen, evaluated, where)
     return Sweep(
         name=str(data.get("name", name)),
         description=str(data.get("description", "")).strip(),
@@ -232,9 +243,12 @@ def sweep_from_mapping(
         seed=_whole(data.get("seed", 0), 0, 2**63 - 1, where, "seed"),
         axes=axes,
         measures=chosen,
-        objectives=_columns(data.get("objectives", []), columns, where, "objectives"),
-        maps=_maps(data.get("maps", []), axes, columns, where),
+        objectives=tuple(name for name in objectives if not _of_trials(name)),
+        maps=tuple(m for m in maps if not _of_trials(m.measure)),
         source=where,
+        evaluated=evaluated,
+        trial_objectives=tuple(name for name in objectives if _of_trials(name)),
+        trial_maps=tuple(m for m in maps if _of_trials(m.measure)),
     )
 
 
@@ -361,22 +375,38 @@ def _measures(found: Any, where: str) -> tuple[str, ...]:
     return tuple(name for name in known if name in chosen)
 
 
-def _columns(found: Any, columns: tuple[str, ...], where: str, field: str) -> tuple[str, ...]:
+def _evaluated(found: Any, where: str) -> tuple[str, ...]:
+    known = list(registry.PROTOCOLS)
+    if not isinstance(found, list) or any(name not in known for name in found):
+        raise InputError(where, "evaluate", found, f"expects a list of {', '.join(known)}")
+    return tuple(dict.fromkeys(found))
+
+
+def _of_trials(name: str) -> bool:
+    return bool(registry.entries()[name].protocol)
+
+
+def _columns(
+    found: Any, chosen: tuple[str, ...], evaluated: tuple[str, ...], where: str, field: str
+) -> tuple[str, ...]:
+    """Full names of measures that the sweep computes, or that its trials give."""
     if not isinstance(found, list):
         raise InputError(where, field, found, "expects a list of measures")
+    names, columns = [], measures.columns(chosen)
     for name in found:
-        if name not in columns:
-            raise InputError(
-                where,
-                field,
-                name,
-                parameters.unknown(str(name), list(columns)).replace("such field", "such measure"),
-            )
-    return tuple(found)
+        entry = registry.resolve(str(name), evaluated, f"{where}: {field}")
+        if not entry.protocol and entry.name not in columns:
+            raise InputError(where, field, name, "is not among the sweep's measures; add it there")
+        names.append(entry.name)
+    return tuple(names)
 
 
 def _maps(
-    found: Any, axes: tuple[Axis, ...], columns: tuple[str, ...], where: str
+    found: Any,
+    axes: tuple[Axis, ...],
+    chosen: tuple[str, ...],
+    evaluated: tuple[str, ...],
+    where: str,
 ) -> tuple[Map, ...]:
     if not isinstance(found, list):
         raise InputError(
@@ -397,6 +427,6 @@ def _maps(
                     entry[key],
                     f"expects different ones of the numeric axes {', '.join(known)}",
                 )
-        _columns([entry["measure"]], columns, where, "maps.measure")
-        made.append(Map(entry["x"], entry.get("y", ""), entry["measure"]))
+        (measure,) = _columns([entry["measure"]], chosen, evaluated, where, "maps.measure")
+        made.append(Map(entry["x"], entry.get("y", ""), measure))
     return tuple(made)

@@ -1,0 +1,321 @@
+"""Evaluation of a sweep's designs: shipped policies run the protocols on every design, many designs
+side by side.
+
+    OUT/trials.parquet      one row a trial: sample, variant, protocol, policy, outcome, measures
+    OUT/trial_chunks/       while it runs, or after it was killed: finished batches
+
+A batch is the trials of one policy under one protocol on some designs of one variant. A killed run
+loses the batches in flight; what was finished is not run again, and a batch that cannot be read is.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import shutil
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.evaluation.evaluate import evaluate_designs
+from hyperleg_design.evaluation.policy import OnnxPolicy, load_policy
+from hyperleg_design.evaluation.protocol import (
+    Protocol,
+    load_protocol,
+    protocol_from_mapping,
+    protocol_mapping,
+)
+from hyperleg_design.evaluation.shipped import Shipped, policies_for
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.sweep.jobs import completed
+from hyperleg_design.sweep.space import Sweep
+from hyperleg_design.writing import write_bytes, write_json
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.robot.design import Design
+    from hyperleg_design.sweep.run import SweepResult
+
+TRIALS, CHUNKS, STATE = "trials.parquet", "trial_chunks", "state.json"
+BATCH = 16
+"""Designs side by side: with ten trials each some 1 GB of signals."""
+SEEDS = 3
+"""Trainings that are evaluated on each design."""
+REJECTED = "rejected"
+"""Outcome of a design that no trial could be run on; `reason` says why."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is run on the designs of a sweep."""
+
+    protocols: tuple[Protocol, ...]
+    policies: dict[tuple[str, str], list[Shipped]]
+    """By protocol and variant."""
+    digest: str
+    """Of protocols and policies' contents."""
+
+
+def plan(
+    sweep: Sweep,
+    protocols: Sequence[str | Path | Protocol],
+    *,
+    seeds: int = SEEDS,
+    policies: str | Path | None = None,
+) -> Plan:
+    """Protocols and policies of an evaluated sweep.
+
+    Args:
+        sweep: the definition.
+        protocols: shipped names, files, or protocols; the kind decides which policies run them.
+        seeds: trainings of each toe layout, at most.
+        policies: folder of trainings; the shipped ones by default.
+
+    Raises:
+        InputError: no such protocol, or no policy for a variant's toe layout.
+    """
+    run = tuple(p if isinstance(p, Protocol) else load_protocol(p) for p in protocols)
+    if len({kind_of(p) for p in run}) < len(run):
+        raise InputError("evaluate", "", list(map(str, protocols)), "expects one of each kind")
+    chosen = {
+        (kind_of(protocol), variant): policies_for(kind_of(protocol), variant, seeds, policies)
+        for protocol in run
+        for variant in sweep.variants
+    }
+    digest = hashlib.sha256(json.dumps([protocol_mapping(p) for p in run], sort_keys=True).encode())
+    for (kind, variant), files in chosen.items():
+        for one in files:
+            load_policy(one.path)  # a broken file is told before hours of work
+            digest.update(f"{kind} {variant} {one.name}".encode() + one.path.read_bytes())
+    return Plan(run, chosen, digest.hexdigest())
+
+
+def kind_of(protocol: Protocol) -> str:
+    """`walk` or `t_test`."""
+    return str(protocol_mapping(protocol)["kind"])
+
+
+def run_trials(
+    result: SweepResult,
+    wanted: Plan,
+    *,
+    batch: int = BATCH,
+    executor: Executor | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Path:
+    """Run a plan on every design of a finished sweep that makes a robot.
+
+    Args:
+        result: the sweep.
+        wanted: the plan.
+        batch: designs side by side.
+        executor: runs batches on other processes or machines; in this process by default.
+        threads: of each simulation.
+        progress: show a bar.
+
+    Returns:
+        The table of all trials.
+
+    Raises:
+        InputError: a policy that does not fit, or whose output is not finite.
+        OutputError: the folder holds trials of another plan.
+    """
+    from tqdm import tqdm
+
+    sweep, folder = result.sweep, result.folder
+    state = {"sweep": sweep.digest(), "plan": wanted.digest, "batch": batch}
+    chunks, target = folder / CHUNKS, folder / TRIALS
+    if _state(target) == state:
+        return target
+    if (chunks / STATE).exists() and _read_state(chunks / STATE) not in (state, None):
+        raise OutputError(
+            f"{folder}: holds trials of other protocols or policies; choose another folder, or "
+            f"restart (--restart) to replace them"
+        )
+    chunks.mkdir(exist_ok=True)
+    write_json(chunks / STATE, state)
+    head = result.columns(["sample", "variant", "rejected"])
+    jobs: list[tuple[Path, tuple[Any, ...]]] = []
+    every: list[Path] = []
+    for protocol in wanted.protocols:
+        kind, mapping = kind_of(protocol), protocol_mapping(protocol)
+        for variant in sweep.variants:
+            good = head["sample"][(head["variant"] == variant) & (head["rejected"] == "")]
+            for one in wanted.policies[kind, variant]:
+                for start in range(0, len(good), batch):
+                    samples = good[start : start + batch]
+                    path = chunks / f"{kind}-{variant}-{one.seed}-{start:08d}.parquet"
+                    every.append(path)
+                    if not _readable(path):
+                        job = (sweep, variant, samples, mapping, one.path, threads)
+                        jobs.append((path, job))
+    with tqdm(
+        total=len(every),
+        initial=len(every) - len(jobs),
+        disable=not progress,
+        desc=f"{sweep.name}: trials",
+        unit="batch",
+    ) as bar:
+        for path, content in completed(evaluate_batch, jobs, executor):
+            write_bytes(path, content)
+            bar.update()
+    write_bytes(target, _joined(every, state))
+    shutil.rmtree(chunks)
+    return target
+
+
+def evaluate_batch(
+    sweep: Sweep,
+    variant: str,
+    samples: np.ndarray,
+    protocol: dict[str, Any],
+    policy: Path,
+    threads: int | None = None,
+) -> bytes:
+    """Trials of one policy on some designs of a sweep, as a Parquet file."""
+    values = {name: column[samples] for name, column in sweep.samples().items()}
+    designs = sweep.design(values, variant).rows(np.arange(len(samples)))
+    run = protocol_from_mapping(protocol, "protocol")
+    found, rejected = evaluate_all(load_policy(policy), designs, run, threads)
+    return _parquet(trial_rows(found, rejected, samples, variant, run, policy))
+
+
+def evaluate_all(
+    policy: OnnxPolicy, designs: Design, protocol: Protocol, threads: int | None = None
+) -> tuple[dict[int, Evaluation], dict[int, str]]:
+    """Evaluate those designs of a batch that can be simulated.
+
+    Returns:
+        Evaluations, without signals, and reasons of rejection, by the design's number.
+    """
+    rows = np.arange((designs.batch_shape or (1,))[0])
+    rejected: dict[int, str] = {}
+    while len(rows):
+        try:
+            done = evaluate_designs(policy, designs.rows(rows), protocol, threads=threads)
+        except InputError as error:
+            bad = error.bad
+            if bad is None or np.shape(bad) != (len(rows),) or not np.any(bad):
+                raise
+            rejected |= {int(i): f"{error.field} {error.remedy}".strip() for i in rows[bad]}
+            rows = rows[~np.asarray(bad)]
+            continue
+        return {int(i): one.light(0) for i, one in zip(rows, done, strict=True)}, rejected
+    return {}, rejected
+
+
+def trial_rows(
+    found: dict[int, Evaluation],
+    rejected: dict[int, str],
+    samples: np.ndarray,
+    variant: str,
+    protocol: Protocol,
+    policy: Path,
+) -> pd.DataFrame:
+    """One row a trial, and one a design that was rejected.
+
+    Besides the measures: `speed_use`, the largest motor speed over the no-load speed, and
+    `hardest_motor`, the motor with the largest continuous use.
+    """
+    import pandas as pd
+
+    rows: list[dict[str, Any]] = []
+    head = {"variant": variant, "protocol": kind_of(protocol), "policy": policy.parent.name}
+    for i, one in found.items():
+        for k, measures in enumerate(one.measures):
+            rows.append(
+                {
+                    "sample": int(samples[i]),
+                    **head,
+                    "seed": one.seed,
+                    "trained": one.trained.kind,
+                    "outside": ", ".join(one.trained.outside),
+                    "trial": k,
+                    "outcome": one.outcomes[k],
+                    "reason": "",
+                    "hardest_motor": "",
+                    "speed_use": np.nan,
+                    **measures,
+                }
+            )
+            use = one.motors[k]
+            if use is not None:
+                rows[-1] |= {
+                    "hardest_motor": use.motors[int(np.argmax(use.continuous_use))],
+                    "speed_use": _speed_use(one.robot, use.peak_speed),
+                }
+    for i, reason in rejected.items():
+        rows.append(
+            {
+                "sample": int(samples[i]),
+                **head,
+                "trial": -1,
+                "outcome": REJECTED,
+                "reason": reason,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _speed_use(design: Design | None, peak_speed: np.ndarray) -> float:
+    if design is None:
+        return float("nan")
+    free = motor_arrays(design).no_load_speed[: len(peak_speed) // 2]
+    return float(np.max(peak_speed / np.tile(free, 2)))
+
+
+def _parquet(rows: pd.DataFrame) -> bytes:
+    stream = io.BytesIO()
+    rows.to_parquet(stream, index=False)
+    return stream.getvalue()
+
+
+def _joined(paths: Sequence[Path], state: dict[str, Any]) -> bytes:
+    import pandas as pd
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    parts = [pd.read_parquet(path) for path in paths]
+    rows = pd.concat([p for p in parts if len(p)], ignore_index=True) if parts else pd.DataFrame()
+    made = pa.Table.from_pandas(rows, preserve_index=False)
+    metadata = {**(made.schema.metadata or {}), b"hyperleg_trials": json.dumps(state).encode()}
+    stream = io.BytesIO()
+    pq.write_table(made.replace_schema_metadata(metadata), stream, compression="zstd")
+    return stream.getvalue()
+
+
+def _state(path: Path) -> Any:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        return json.loads((pq.read_schema(path).metadata or {})[b"hyperleg_trials"])
+    except (OSError, pa.ArrowException, KeyError, ValueError):
+        return None
+
+
+def _read_state(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def _readable(path: Path) -> bool:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        pq.read_table(path, columns=["sample"])
+    except (OSError, pa.ArrowException):
+        return False
+    return True

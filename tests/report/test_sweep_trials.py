@@ -1,0 +1,71 @@
+from __future__ import annotations
+
+import json
+
+import pandas as pd
+import pytest
+
+from hyperleg_design import cli
+
+SWEEP = """
+design: hyperleg
+sampling: grid
+measures: [total_mass]
+evaluate: [walk]
+axes:
+  toe.mass: {values: [0.2, 0.5]}
+  leg length: {paths: [thigh.length, shank.length], scale: [0.3, 1.0]}
+objectives: [total_mass, cost_of_transport]
+"""
+PROTOCOL = """
+kind: walk
+name: short
+trials: 2
+distance: 0.6
+time_limit: 0.8
+steady: {begin: 0.3}
+"""
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    """Folder of an evaluated sweep, from the command line."""
+    folder = tmp_path_factory.mktemp("ran")
+    (folder / "mine.yaml").write_text(SWEEP)
+    (folder / "short.yaml").write_text(PROTOCOL)
+    arguments = ["sweep", "run", str(folder / "mine.yaml"), "--seeds", "1", "--json"]
+    out = ["--out", str(folder / "out")]
+    assert cli.main([*arguments, "--evaluate", str(folder / "short.yaml"), *out]) == 0
+    return folder / "out"
+
+
+def test_the_page_shows_policies_limits_sensitivities_front_and_best(ran):
+    page = (ran / "index.html").read_text()
+    for words in (
+        "zero-shot",
+        "lower than a fall",
+        "Limits that act",
+        "Which parameter each measure follows",
+        "Pareto front",
+        "hyperleg build --design hyperleg",
+        "Bars are intervals",
+    ):
+        assert words in page
+    assert list((ran / "figures").glob("mine-trials-*.png"))
+
+
+def test_tables_hold_every_design(ran):
+    designs = pd.read_parquet(ran / "evaluated.parquet").set_index("sample")
+    assert len(designs) == 4
+    assert (designs["walk.trials"] == [0, 2, 0, 2]).all()
+    assert designs.loc[3, "total_mass"] > designs.loc[1, "total_mass"]
+    found = json.loads((ran / "evaluated.json").read_text())
+    assert found["objectives"] == ["total_mass", "walk.cost_of_transport"]
+    assert found["policies"][0]["designs"] == 2
+
+
+def test_an_objective_that_no_protocol_gives_is_one_clear_error(ran, tmp_path, capsys):
+    (tmp_path / "bad.yaml").write_text(SWEEP.replace("evaluate: [walk]\n", ""))
+    assert cli.main(["sweep", "run", str(tmp_path / "bad.yaml"), "--out", str(tmp_path / "o")]) == 2
+    assert "--evaluate" in capsys.readouterr().err
+    assert not (tmp_path / "o").exists()
