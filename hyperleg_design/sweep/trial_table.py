@@ -81,6 +81,8 @@ def design_table(sweep: Sweep, trials: pd.DataFrame, columns: Mapping[str, Any])
         for protocol, part in own.groupby("protocol", sort=False):
             row |= {f"{protocol}.{k}": v for k, v in _of_protocol(str(protocol), part).items()}
         rows.append(row)
+    order = {name: i for i, name in enumerate(sweep.variants)}
+    rows.sort(key=lambda row: (row["sample"], order[row["variant"]]))
     return pd.DataFrame(rows)
 
 
