@@ -16,8 +16,8 @@ from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.validation.baselines.drive_set import DriveSet, Fitted, drive_set
 from hyperleg_design.validation.baselines.own import fit_own

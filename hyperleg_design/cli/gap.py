@@ -134,7 +134,7 @@ class Apply(Printing):
         )
         logs, walk = [], []
         if self.robot:
-            from hyperleg_design.gap.model.subject import load_subject
+            from hyperleg_design.gap.signals.loading import load_subject
 
             overlay.alterations(load_subject(self.robot))
         if self.logs:

@@ -47,9 +47,9 @@ def diagnose_to_folder(
         OutputError: the folder cannot be written.
     """
     from hyperleg_design.gap.checks.intake import open_logs
-    from hyperleg_design.gap.model.subject import load_subject
     from hyperleg_design.gap.pipeline.diagnose import diagnose
     from hyperleg_design.gap.signals.conditioning import condition
+    from hyperleg_design.gap.signals.loading import load_subject
     from hyperleg_design.report.gap_page import write_gap_page
 
     check_output_folder(out)

@@ -9,8 +9,8 @@ import robots
 
 from hyperleg_design.gap.inference.preparation import prepare
 from hyperleg_design.gap.inference.thresholds import load_thresholds
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 CHANGES = {
     "healthy": [],

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.experiments.excite import design_experiment
-from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.report.gap_excite import (
     motions_figure,
     plan_text,

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.playback.evidence import Evidence
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.report import gap_figures
 
 ARM = """

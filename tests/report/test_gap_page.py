@@ -7,8 +7,8 @@ import pytest
 
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.report import gap_figures
 from hyperleg_design.report.gap_page import cause_text, write_gap_page
 from hyperleg_design.report.gap_text import diagnosis_text

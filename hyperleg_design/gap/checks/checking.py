@@ -64,7 +64,7 @@ def _subject(log: Log, robot: str, known: dict[str, Subject]) -> Subject | None:
     """The robot as it is described, whatever the log says of it, so that a log of another robot is
     told and not refused.
     """
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     name = robot or log.metadata.robot
     if not name:

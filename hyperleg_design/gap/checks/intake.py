@@ -12,8 +12,9 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.check import Check, check_log
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers import open_log
-from hyperleg_design.gap.model.subject import Subject, load_subject
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.signals import Signals
 
 REFERENCE = "reference"

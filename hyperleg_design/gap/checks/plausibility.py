@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.logs.frozen import frozen
 from hyperleg_design.gap.results.finding import ERROR, NOTE, WARNING, Finding
 from hyperleg_design.gap.signals.channels import applied, of_motors
 from hyperleg_design.gap.signals.smoothing import bridged
@@ -37,10 +38,6 @@ LARGEST_RATE = 40.0
 """Beyond the full scale of usual gyroscopes, 2000 deg/s [rad/s]."""
 LARGEST_CURRENT, LARGEST_VOLTAGE, LARGEST_TEMPERATURE = 500.0, 1000.0, 200.0
 """Of motors of legs and arms [A, V, degC]; beyond, another unit."""
-JUMP = 0.03
-"""By which a position may come back from being frozen [rad]."""
-STUCK = 0.5
-"""Time without any change that is noteworthy while the joint is driven [s]."""
 
 
 def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
@@ -411,41 +408,6 @@ def _stuck(log: Log) -> list[Finding]:
     return found
 
 
-def frozen(log: Log, joint: str) -> slice | None:
-    """Rows of the longest stretch in which a position does not change though its joint turns or is
-    driven; None where there is none.
-
-    A joint that sticks moves on gently; a sensor that was stuck comes back with a jump.
-    """
-    values, target, speed = (
-        log.column(f"{kind}/{joint}") for kind in ("position", "position_target", "velocity")
-    )
-    known = np.isfinite(values)
-    if known.sum() < 2 or np.nanmax(values) == np.nanmin(values):
-        return None
-    start, stop = _longest_run(values)
-    length = float(log.time[stop - 1] - log.time[start])
-    if length < STUCK or not known[start]:
-        return None
-    turned = (
-        float(np.nanmedian(np.abs(speed[start:stop]))) * length
-        if np.isfinite(speed[start:stop]).any()
-        else 0.0
-    )
-    driven, during = (
-        float(np.nanmax(x) - np.nanmin(x)) if np.isfinite(x).any() else 0.0
-        for x in (target, target[start:stop])
-    )
-    jump = abs(float(values[stop] - values[stop - 1])) if stop < len(values) else 0.0
-    steps = np.abs(np.diff(values[known]))
-    usual = max(JUMP, 5 * float(np.percentile(steps, 99)))
-    return (
-        slice(start, stop)
-        if turned > 0.2 or jump > usual or (driven > 0.2 and during > 0.6 * driven)
-        else None
-    )
-
-
 def _robot(log: Log, subject: Subject) -> list[Finding]:
     known, own = set(subject.joints), log.joints
     strangers = [joint for joint in own if joint not in known]
@@ -567,10 +529,3 @@ def _correlations(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Of each column of x `(t, n)` with y `(t,)`."""
     found = _slopes(x, np.broadcast_to(y[:, None], x.shape))[1]
     return np.where(np.isfinite(found), found, -1.0)
-
-
-def _longest_run(values: np.ndarray) -> tuple[int, int]:
-    """Rows of the longest stretch without any change, `[start, stop)`."""
-    edges = np.flatnonzero(np.concatenate([[True], np.diff(values) != 0, [True]]))
-    longest = int(np.argmax(np.diff(edges)))
-    return int(edges[longest]), int(edges[longest + 1])

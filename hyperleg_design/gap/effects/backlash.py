@@ -9,6 +9,7 @@ import numpy as np
 from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.placing import SIDES, driven_motors
+from hyperleg_design.gap.model import machine
 from hyperleg_design.simulation.two_mass import STIFFEST, Belt
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class Backlash(Effect):
             2
             * abs(bounce)
             / np.hypot(np.pi, bounce)
-            * belt.rotor(subject, motor)
+            * machine.rotor(subject, motor)
             * 2
             * np.pi
             * STIFFEST

@@ -40,10 +40,10 @@ from hyperleg_design.gap.effects.series import (
     lagged,
     second_derivative,
 )
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model import friction, rigid
+from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.transmission import turned
-from hyperleg_design.simulation.two_mass import LIGHTEST
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
@@ -80,12 +80,6 @@ _INERTIAS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary
 _OWN: WeakKeyDictionary[Signals, dict[tuple[int, bool], np.ndarray]] = WeakKeyDictionary()
 
 
-def rotor(subject: Subject, motor: int) -> float:
-    """Inertia of a rotor on its belt [kg m^2]."""
-    own = float(subject.rotor_inertia[motor])
-    return own if own > 0 else LIGHTEST
-
-
 def load(signals: Signals, motor: int) -> np.ndarray:
     """Torque that the joints need through one motor's belt, on its side of M `(t,)` [Nm]."""
     kept = _LOADS.setdefault(signals, {})
@@ -113,7 +107,7 @@ def _friction(signals: Signals, motor: int) -> np.ndarray:
     swing = None if signals.chatter is None else signals.chatter.speed
     return applied(
         subject.motor_from_joint[motor : motor + 1],
-        rigid.rubbing_torque(subject, signals.velocity, swing),
+        friction.rubbing_torque(subject, signals.velocity, swing),
     )[:, 0]
 
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import (
     at_motor,
     driven_motors,
@@ -17,6 +16,7 @@ from hyperleg_design.gap.effects.placing import (
     motor_velocity,
 )
 from hyperleg_design.gap.signals.filtering import HIGHEST
+from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.friction import WIDTH, JointFriction, sliding
+from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+from hyperleg_design.gap.signals.sliding import WIDTH, sliding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject

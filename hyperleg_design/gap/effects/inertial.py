@@ -12,13 +12,13 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.mechanism import (
     BASE,
     inertial_parameters,
     mass_properties,
     quaternion_rotation,
 )
+from hyperleg_design.gap.signals import regressor
 from hyperleg_design.simulation.alteration import Alteration
 
 if TYPE_CHECKING:
@@ -74,12 +74,12 @@ class InertialEffect(Effect):
         found = {}
         if tree.link_joint[link] != BASE:
             found["motion"] = np.einsum(
-                "tnp,kp->ktn", rigid.link_regressor(signals, tree.links[link]), added
+                "tnp,kp->ktn", regressor.link_regressor(signals, tree.links[link]), added
             )
         if "base" in signals.residual:
             # what the ground must give more, it shows
             found["base"] = np.einsum(
-                "trp,kp->ktr", rigid.base_regressor(signals, tree.links[link]), added
+                "trp,kp->ktr", regressor.base_regressor(signals, tree.links[link]), added
             )
         return found
 
@@ -141,7 +141,10 @@ def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
     """
     residual = signals.residual["motion"]
     known = np.isfinite(residual) & signals.valid[:, None]
-    columns, values = rigid.link_regressor(signals, link)[..., :4][known][:, part], residual[known]
+    columns, values = (
+        regressor.link_regressor(signals, link)[..., :4][known][:, part],
+        residual[known],
+    )
     square = columns.T @ columns
     if not len(values) or np.trace(square) <= 0:
         return None

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.friction import JointFriction, sliding
+from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.sliding import sliding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject

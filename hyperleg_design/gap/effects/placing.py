@@ -21,8 +21,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.machine import machine_of
-from hyperleg_design.gap.signals.signals import BaseMotion, Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject

@@ -9,6 +9,7 @@ import numpy as np
 from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.placing import SIDES, driven_motors
+from hyperleg_design.gap.model import machine
 from hyperleg_design.simulation.two_mass import DAMPING_RATIO, Belt
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ class TransmissionElasticity(Effect):
         """See `Effect.alteration`."""
         values = np.asarray(values, float)
         compliance, ratio = values[..., 0], values[..., 1]
-        inertia = belt.rotor(subject, subject.motors.index(location))
+        inertia = machine.rotor(subject, subject.motors.index(location))
         damping = 2 * ratio * np.sqrt(inertia / np.where(compliance > 0, compliance, np.inf))
         bend = values[..., 4] / belt.moved_most(subject, subject.motors.index(location))
         return Belt(
@@ -148,12 +149,12 @@ class TransmissionElasticity(Effect):
     ) -> dict[str, tuple[float, str]]:
         """Stiffness on the motor's side, and the frequency of the rotor on its belt."""
         stiffness = 1 / values[0] if values[0] > 0 else np.inf
-        inertia = belt.rotor(subject, subject.motors.index(location))
+        inertia = machine.rotor(subject, subject.motors.index(location))
         return {
             "stiffness": (float(stiffness), "Nm/rad"),
             "resonance": (float(np.sqrt(stiffness / inertia) / (2 * np.pi)), "Hz"),
         }
 
     def _compliance(self, frequency: float, location: str, subject: Subject) -> float:
-        inertia = belt.rotor(subject, subject.motors.index(location))
+        inertia = machine.rotor(subject, subject.motors.index(location))
         return float(1 / (inertia * (2 * np.pi * frequency) ** 2))

@@ -18,7 +18,7 @@ from hyperleg_design.gap.effects.placing import (
     given,
     motor_velocity,
 )
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model import friction
 from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
@@ -100,8 +100,8 @@ def _other_friction(signals: Signals, motor: int, farther: np.ndarray) -> np.nda
     swing = None if signals.chatter is None else signals.chatter.speed
     moved = velocity + farther[..., None] * (velocity @ own)
     return np.asarray(
-        rigid.friction_torque(subject, signals.position, moved, swing)
-        - rigid.friction_torque(subject, signals.position, velocity, swing)
+        friction.friction_torque(subject, signals.position, moved, swing)
+        - friction.friction_torque(subject, signals.position, velocity, swing)
     )
 
 

@@ -21,7 +21,7 @@ from hyperleg_design.gap.effects.placing import (
     motor_strength,
     motor_velocity,
 )
-from hyperleg_design.gap.model.subject import FULL
+from hyperleg_design.gap.signals.loading import FULL
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Machine, Tick
 
 if TYPE_CHECKING:

@@ -25,8 +25,8 @@ from hyperleg_design.gap.experiments.rehearsal import knows_gains, rehearsed
 from hyperleg_design.gap.experiments.rig_room import Room, room_of
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.writing import write_json, write_text
 
 if TYPE_CHECKING:

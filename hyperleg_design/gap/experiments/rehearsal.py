@@ -13,7 +13,7 @@ import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.rig_spec import rig_spec
 from hyperleg_design.gap.playback.replay import LONGEST_STEP
 from hyperleg_design.gap.signals.conditioning import limited_torque
@@ -56,7 +56,7 @@ def rehearsed(
         acceleration = np.gradient(velocity, step, axis=0)
         needed = rigid.inverse_dynamics(
             subject, position, velocity, acceleration
-        ) + rigid.friction_torque(subject, position, velocity)
+        ) + friction.friction_torque(subject, position, velocity)
         command = np.asarray(needed @ subject.motor_from_joint.T)
         command[off] = 0.0
     signals: dict[str, np.ndarray] = {}

@@ -16,7 +16,7 @@ import numpy as np
 
 from hyperleg_design.errors import InfeasibleError
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength, motor_strength
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import machine_of
 
 if TYPE_CHECKING:
@@ -155,7 +155,7 @@ def needed_torque(
     """Motor torque that a motion needs, friction included `(t, m)` [Nm]."""
     torque = rigid.inverse_dynamics(
         subject, position, velocity, acceleration
-    ) + rigid.friction_torque(subject, position, velocity)
+    ) + friction.friction_torque(subject, position, velocity)
     torque = np.where(subject.passive, 0.0, torque)
     return np.asarray(torque @ subject.motor_from_joint.T)
 
@@ -171,7 +171,7 @@ def targets_for(subject: Subject, position: np.ndarray, step: float) -> np.ndarr
     acceleration = np.gradient(velocity, step, axis=0)
     torque = rigid.inverse_dynamics(
         subject, position, velocity, acceleration
-    ) + rigid.friction_torque(subject, position, velocity)
+    ) + friction.friction_torque(subject, position, velocity)
     stiffness, damping = subject.gains.T
     known = np.isfinite(stiffness) & np.isfinite(damping) & (stiffness > 0) & ~subject.passive
     lead = (torque + np.where(known, damping, 0.0) * velocity) / np.where(known, stiffness, 1.0)

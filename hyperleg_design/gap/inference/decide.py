@@ -23,10 +23,12 @@ from hyperleg_design.gap.inference.base import Base
 from hyperleg_design.gap.inference.detectors.heard import KNOCKING, Heard
 from hyperleg_design.gap.inference.detectors.knocking import knocking
 from hyperleg_design.gap.inference.detectors.loose import BELTS, loose
+from hyperleg_design.gap.inference.detectors.unsettled import UNSETTLING, unsettled
 from hyperleg_design.gap.inference.detectors.unstable import unstable
 from hyperleg_design.gap.inference.episodes import of_time, together
 from hyperleg_design.gap.inference.fit import Cause, Design, Fit
-from hyperleg_design.gap.inference.judge import ROUNDS, Judge, Model, rank
+from hyperleg_design.gap.inference.judge import ROUNDS, Judge, rank
+from hyperleg_design.gap.inference.model import Model
 from hyperleg_design.gap.inference.naming import (
     HELD,
     SAG,
@@ -35,8 +37,7 @@ from hyperleg_design.gap.inference.naming import (
     worth_adding,
     worth_naming,
 )
-from hyperleg_design.gap.model.subject import FULL
-from hyperleg_design.gap.signals.chatter import UNSETTLING, unsettled
+from hyperleg_design.gap.signals.loading import FULL
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.samples import Samples

@@ -22,11 +22,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import belt
-from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import is_measured
 from hyperleg_design.gap.effects.thermal_derating import rise
 from hyperleg_design.gap.inference import floor
+from hyperleg_design.gap.model import machine
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.sliding import sliding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.samples import Samples
@@ -152,7 +153,7 @@ def _shrinking(
                 part[places[place]] = feigned
                 slope[places[place]] = rate * _carried(one.signals, motor, joint)
     part = np.minimum(part / samples.floor**2, 1.0)
-    slope *= belt.rotor(subject, motor) * (1 - values[SIDE]) * usual[0]
+    slope *= machine.rotor(subject, motor) * (1 - values[SIDE]) * usual[0]
     return Shrinking(0, slope[own], part[own], samples.share[own], rows[0])
 
 

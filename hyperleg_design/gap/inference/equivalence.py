@@ -10,7 +10,8 @@ import numpy as np
 from hyperleg_design.gap.inference.judge import rank
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.judge import Judge, Model
+    from hyperleg_design.gap.inference.judge import Judge
+    from hyperleg_design.gap.inference.model import Model
 
 
 def alike(judge: Judge, slot: Sequence[Model], chosen: Model, rows: np.ndarray) -> list[Model]:

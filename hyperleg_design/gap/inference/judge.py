@@ -13,9 +13,11 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from hyperleg_design.gap.inference.base import Base
-from hyperleg_design.gap.inference.detectors.holding import SURE, share
-from hyperleg_design.gap.inference.fit import Cause, Design, Fit, parts
+from hyperleg_design.gap.inference.detectors.holding import share
+from hyperleg_design.gap.inference.fit import Cause, Design, Fit
 from hyperleg_design.gap.inference.held_out import Held, doubt, predict
+from hyperleg_design.gap.inference.model import Model
+from hyperleg_design.gap.inference.screen import SURE
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.thresholds import Thresholds
@@ -61,46 +63,6 @@ OWN_ROWS = 0.3
 EXPLAINED = 0.5
 """Share of the squares in episodes that a model leaves at most, also of what calibration errors
 alone leave, if they are to count."""
-
-
-@dataclass(frozen=True, eq=False)
-class Model:
-    """Some causes together, and how they predict held-out blocks."""
-
-    causes: tuple[Cause, ...]
-    fit: Fit
-    held: Held
-    gain: float
-    """Log-likelihood of held-out blocks over that of no cause, and how much more plausible the
-    calibration errors are."""
-    below: float = 0.0
-    """Part of `gain` that is noise less than its floor."""
-
-    @property
-    def names(self) -> tuple[tuple[str, str], ...]:
-        """Effects and locations."""
-        return tuple(c.name for c in self.causes)
-
-    @property
-    def over(self) -> float:
-        """As `gain`, were no noise less than its floor: what a model makes better of less than that
-        is no evidence of a gap.
-        """
-        return self.gain - self.below
-
-    def values(self, place: int) -> np.ndarray:
-        """Fitted parameters of one cause."""
-        cause = self.causes[place]
-        return np.clip(
-            cause.nulls + self.fit.phi[parts(self.causes)[place]] * cause.usual,
-            cause.low,
-            cause.high,
-        )
-
-    def deviation(self, place: int) -> np.ndarray:
-        """Standard deviation of one cause's fitted parameters."""
-        variance = np.diag(self.fit.covariance)[parts(self.causes)[place]]
-        return np.asarray(np.sqrt(np.maximum(variance, 0.0)) * self.causes[place].usual)
 
 
 @dataclass(frozen=True, eq=False)

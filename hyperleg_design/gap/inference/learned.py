@@ -20,7 +20,7 @@ from hyperleg_design.gap.inference.nuisance import Usual
 from hyperleg_design.gap.inference.screen import linearise
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.judge import Model
+    from hyperleg_design.gap.inference.model import Model
     from hyperleg_design.gap.inference.samples import Samples
     from hyperleg_design.gap.model.subject import Subject
 

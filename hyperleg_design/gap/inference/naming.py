@@ -13,7 +13,8 @@ import numpy as np
 from hyperleg_design.gap.inference.detectors.loose import BELTS
 from hyperleg_design.gap.inference.episodes import of_time
 from hyperleg_design.gap.inference.fit import parts
-from hyperleg_design.gap.inference.judge import OWN_ROWS, Judge, Model, rank
+from hyperleg_design.gap.inference.judge import OWN_ROWS, Judge, rank
+from hyperleg_design.gap.inference.model import Model
 
 SAG = "voltage_sag"
 """Effect of a weak battery."""

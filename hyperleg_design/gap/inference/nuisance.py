@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS, belt
-from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import (
     ROBOT,
     before_measurement,
@@ -28,8 +27,9 @@ from hyperleg_design.gap.effects.placing import (
     motor_velocity,
 )
 from hyperleg_design.gap.effects.series import first_derivative
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.actuation import friction_damping
 
@@ -387,7 +387,7 @@ def _stepped(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
         signals.velocity - half,
         subject.friction_speed,
     )
-    smooth = subject.coulomb * rigid.turned(signals.velocity, subject.friction_speed)
+    smooth = subject.coulomb * friction.turned(signals.velocity, subject.friction_speed)
     return {"motion": one.spread * (damping * (signals.velocity + half) - smooth)}
 
 
@@ -463,7 +463,7 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
     j = subject.joints.index(joint)
     at_once = sliding(signals)[:, j]
     swing = None if signals.chatter is None else signals.chatter.speed[:, j]
-    turned = rigid.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
+    turned = friction.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
     shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
     rows[:, j] = turning(subject)[j] * shape
     return {"motion": rows}
@@ -491,7 +491,7 @@ def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
     )
     swing = signals.chatter.speed[:, j]
     rows[:, j] = subject.coulomb[j] * (
-        rigid.turned(speed, width, SWINGS[place] * swing) - rigid.turned(speed, width, swing)
+        friction.turned(speed, width, SWINGS[place] * swing) - friction.turned(speed, width, swing)
     )
     return {"motion": rows}
 

@@ -13,7 +13,8 @@ from hyperleg_design.gap.results.diagnosis import Value
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.judge import Judge, Model
+    from hyperleg_design.gap.inference.judge import Judge
+    from hyperleg_design.gap.inference.model import Model
 
 NORMAL = 1.96
 """Standard deviations of a normal distribution's 95 % interval."""

@@ -22,6 +22,7 @@ from hyperleg_design.gap.inference.base import Base, Prior
 from hyperleg_design.gap.inference.decide import shown_already
 from hyperleg_design.gap.inference.detectors.holding import noticed
 from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, felt_upright
+from hyperleg_design.gap.inference.detectors.unsettled import newly
 from hyperleg_design.gap.inference.episodes import episodes
 from hyperleg_design.gap.inference.fit import Design, Fit
 from hyperleg_design.gap.inference.held_out import predict
@@ -30,10 +31,9 @@ from hyperleg_design.gap.inference.naming import AT_LIMITS
 from hyperleg_design.gap.inference.samples import LOGS, Samples, gather
 from hyperleg_design.gap.inference.screen import reach
 from hyperleg_design.gap.signals import filtering
-from hyperleg_design.gap.signals.chatter import newly
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.judge import Model
+    from hyperleg_design.gap.inference.model import Model
     from hyperleg_design.gap.inference.thresholds import Thresholds
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.filtering import Sieve

@@ -19,16 +19,21 @@ import numpy as np
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.base import Base
 from hyperleg_design.gap.inference.detectors import telling
-from hyperleg_design.gap.inference.detectors.holding import SURE, SURELY
+from hyperleg_design.gap.inference.detectors.unsettled import UNSETTLING, shaking
 from hyperleg_design.gap.inference.endogenous import factor
 from hyperleg_design.gap.inference.fit import Cause, Design, Fit
-from hyperleg_design.gap.signals.chatter import UNSETTLING, shaking
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Effect
     from hyperleg_design.gap.inference.samples import Samples
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
+
+
+SURE = 20.0
+"""Log-likelihood of friction that explains what a joint holds."""
+SURELY = 0.9
+"""Share of what a joint holds that its breakaway friction has at least, where that is the cause."""
 
 SHOWN = 0.02
 """Root mean square of a trace over the floor, at its usual size in the group where it shows most,

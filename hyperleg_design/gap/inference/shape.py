@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.effects.placing import motor_velocity
 from hyperleg_design.gap.inference.nuisance import stop
 from hyperleg_design.gap.signals.signals import OF_MOTORS
+from hyperleg_design.gap.signals.sliding import sliding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.base import Base

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from hyperleg_design.gap.effects.friction import sliding
 from hyperleg_design.gap.inference import nuisance, screen, shape
+from hyperleg_design.gap.inference.detectors.unsettled import unsettled
 from hyperleg_design.gap.inference.fit import Design
 from hyperleg_design.gap.inference.held_out import Held, predict
-from hyperleg_design.gap.inference.judge import ROUNDS, Judge, Model
-from hyperleg_design.gap.signals.chatter import unsettled
+from hyperleg_design.gap.inference.judge import ROUNDS, Judge
+from hyperleg_design.gap.inference.model import Model
+from hyperleg_design.gap.signals.sliding import sliding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.thresholds import Thresholds

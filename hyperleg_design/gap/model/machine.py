@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.simulation.alteration import Machine
+from hyperleg_design.simulation.two_mass import LIGHTEST
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
@@ -42,3 +43,9 @@ def machine_of(subject: Subject) -> Machine:
         rated_torque=rated,
         voltage=voltage,
     )
+
+
+def rotor(subject: Subject, motor: int) -> float:
+    """Inertia of a rotor on its belt [kg m^2]."""
+    own = float(subject.rotor_inertia[motor])
+    return own if own > 0 else LIGHTEST

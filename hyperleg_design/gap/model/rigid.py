@@ -11,21 +11,18 @@ not depend on posture here.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.model.mechanism import BASE
-from hyperleg_design.gap.signals.chatter import sliding_share
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.model.base import BaseMotion
     from hyperleg_design.gap.model.mechanism import Mechanism
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import BaseMotion, Signals
 
 BLOCK = 4096
 """Ticks worked on together, so that they stay in the processor's cache."""
@@ -264,49 +261,6 @@ def _cross(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return out
 
 
-_REGRESSORS: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
-_LOCK = threading.Lock()
-KEPT = 512 * 2**20
-"""Memory that kept regressors may take in all [bytes]; beyond it the oldest are forgotten."""
-
-
-def link_regressor(signals: Signals, link: str) -> np.ndarray:
-    """Joint torque over the inertial parameters of one link, at the logged motion `(t, n, 10)`,
-    read-only.
-
-    Columns: mass, mass times centre of mass (3), inertia about the link's origin (xx, xy, yy, xz,
-    yz, zz), in the link's frame. Torque is linear in them: what hangs on a link adds
-    `link_regressor @ parameters`. Kept while `signals` live and memory lasts.
-
-    Raises:
-        InputError: no such link or joint.
-    """
-    with _LOCK:
-        found = _REGRESSORS.setdefault(signals, {}).get(link)
-    if found is None:
-        found = regressor(
-            signals.subject,
-            signals.position,
-            signals.velocity,
-            signals.acceleration,
-            signals.base,
-            link,
-        )
-        found.setflags(write=False)
-        with _LOCK:
-            _forget(KEPT - found.nbytes)
-            _REGRESSORS.setdefault(signals, {})[link] = found
-    return found
-
-
-def _forget(room: int) -> None:
-    """Drop the oldest kept regressors until the others take no more than some room [bytes]."""
-    total = sum(r.nbytes for each in _REGRESSORS.values() for r in each.values())
-    for each in list(_REGRESSORS.values()):
-        while each and total > room:
-            total -= each.pop(next(iter(each))).nbytes
-
-
 def regressor(
     subject: Subject,
     position: np.ndarray,
@@ -316,25 +270,10 @@ def regressor(
     link: str,
 ) -> np.ndarray:
     """`link_regressor` of any motion, `(t, n)` each; `(t, n, 10)`."""
-    return _regressor(subject, position, velocity, acceleration, base, link)[0]
+    return regressors(subject, position, velocity, acceleration, base, link)[0]
 
 
-def base_regressor(signals: Signals, link: str) -> np.ndarray:
-    """Wrench that the floating base needs over the inertial parameters of one link `(t, 6, 10)`; as
-    `link_regressor`.
-    """
-    assert signals.base is not None
-    return _regressor(
-        signals.subject,
-        signals.position,
-        signals.velocity,
-        signals.acceleration,
-        signals.base,
-        link,
-    )[1]
-
-
-def _regressor(
+def regressors(
     subject: Subject,
     position: np.ndarray,
     velocity: np.ndarray,
@@ -342,6 +281,9 @@ def _regressor(
     base: BaseMotion | None,
     link: str,
 ) -> tuple[np.ndarray, np.ndarray]:
+    """Joint torques `(t, n, 10)` and the base's wrench `(t, 6, 10)` over the ten inertial
+    parameters of one link, at any motion; arguments as of `regressor`.
+    """
     tree = subject.tree
     place = tree.link(link)
     chain = tree.chain(int(tree.link_joint[place]))
@@ -519,34 +461,3 @@ def pad_rolling(
     )
     down = np.array([0.0, 0.0, -1.0]) * np.array([p.radius for p in subject.pads])[:, None]
     return np.einsum("tpij,tpkj,pk->tpi", np.gradient(axes, step, axis=0), axes, down)
-
-
-def friction_torque(
-    subject: Subject, position: np.ndarray, velocity: np.ndarray, swing: np.ndarray | None = None
-) -> np.ndarray:
-    """Nominal friction and springs that a drive has to overcome `(..., n)` [Nm]; `swing` of
-    `chatter.Chatter.speed`.
-    """
-    return np.asarray(
-        rubbing_torque(subject, velocity, swing) + subject.spring * (position - subject.spring_rest)
-    )
-
-
-def rubbing_torque(
-    subject: Subject, velocity: np.ndarray, swing: np.ndarray | None = None
-) -> np.ndarray:
-    """Nominal friction alone `(..., n)` [Nm]; arguments as of `friction_torque`."""
-    return np.asarray(
-        subject.coulomb * turned(velocity, subject.friction_speed, swing)
-        + subject.viscous * velocity
-    )
-
-
-def turned(
-    velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray | None = None
-) -> np.ndarray:
-    """Share of the nominal Coulomb friction at some velocities, from -1 to 1, chatter averaged."""
-    share = np.tanh(velocity / width)
-    if swing is not None and swing.any():
-        share = np.where(swing > 0, sliding_share(velocity, width, swing), share)
-    return np.asarray(share)

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.belt import rotor
 from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.machine import rotor
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject

@@ -354,3 +354,13 @@ def _feet_of_file(model: Any, tree: Mechanism) -> tuple[tuple[str, ...], tuple[P
             above = int(model.body_parentid[above])
         feet.append(names[body])
     return tuple(feet), _pads(model, tree, foot_of)
+
+
+def subject_of(design: Design, base: str = "floating") -> Subject:
+    """Subject of a design of ours, all joints free to move.
+
+    Raises:
+        InputError: a batch of designs.
+    """
+    bare = of_design(design, Path(design.source or f"{design.name}.yaml"), base, None)
+    return dataclasses.replace(bare, bare=bare)

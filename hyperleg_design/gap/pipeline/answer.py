@@ -16,10 +16,12 @@ from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.decide import Decision
 from hyperleg_design.gap.inference.detectors.holding import sticks, ungiven
+from hyperleg_design.gap.inference.detectors.unsettled import swings
 from hyperleg_design.gap.inference.equivalence import alike
 from hyperleg_design.gap.inference.fit import Cause, Design
 from hyperleg_design.gap.inference.held_out import Held, predict, untold
-from hyperleg_design.gap.inference.judge import CHATTERS, Judge, Model, rank
+from hyperleg_design.gap.inference.judge import CHATTERS, Judge, rank
+from hyperleg_design.gap.inference.model import Model
 from hyperleg_design.gap.inference.naming import HELD, sticks_alone
 from hyperleg_design.gap.inference.parameters import parameters
 from hyperleg_design.gap.inference.preparation import Prepared
@@ -37,7 +39,6 @@ from hyperleg_design.gap.results.diagnosis import (
     Shrinkage,
 )
 from hyperleg_design.gap.results.finding import NOTE, WARNING
-from hyperleg_design.gap.signals.chatter import swings
 from hyperleg_design.gap.signals.signals import BALANCES
 
 if TYPE_CHECKING:

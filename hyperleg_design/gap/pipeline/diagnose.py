@@ -21,11 +21,11 @@ from hyperleg_design.gap.inference.detectors.slipping import slips
 from hyperleg_design.gap.inference.preparation import prepare
 from hyperleg_design.gap.inference.sensitivity import smallest
 from hyperleg_design.gap.inference.thresholds import Thresholds, load_thresholds
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.pipeline.answer import Answer
 from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_imu
 from hyperleg_design.gap.results.diagnosis import Diagnosis
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

@@ -22,9 +22,9 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import EFFECTS, effect
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.playback.replay import Plant
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.signals import BALANCES
 
 if TYPE_CHECKING:

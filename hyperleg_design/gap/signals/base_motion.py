@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
-from hyperleg_design.gap.signals.signals import BaseMotion
 from hyperleg_design.gap.signals.smoothing import Smooth, bridged, smooth
 
 if TYPE_CHECKING:

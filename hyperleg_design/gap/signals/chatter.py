@@ -10,8 +10,7 @@ damped.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,8 +18,6 @@ import numpy as np
 from hyperleg_design.gap.signals.smoothing import bridged
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.samples import Samples
-    from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.gap.signals.smoothing import Smooth
 
 PRESLIDING = 3e-4
@@ -38,20 +35,8 @@ ABOVE = 1.3
 """Lowest frequency of a line over that of the smoother."""
 WINDOW = 0.2
 """Time over which the chatter's size is averaged [s]."""
-PHASES = 48
-"""Of a swing over which friction is averaged."""
 UNSETTLED = 0.2
 """Share of a log in which a joint must chatter to count as unsettled."""
-MOVED = 0.3
-"""Share of the largest joint's swing from which a joint's own loop and motors may be to blame."""
-UNSETTLING = (
-    "command_delay",
-    "actuator_bandwidth",
-    "controller_gain",
-    "transmission_elasticity",
-    "backlash",
-)
-"""Effects that can bring a control loop to the edge of its stability."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,81 +87,6 @@ def chatter(
         found.frequency[joint], found.share[joint] = frequency, _line(apart, step, lowest)[1]
         found.joints[joint] = bool((found.speed[:, joint] > 0).mean() >= UNSETTLED)
     return found if found.speed.any() else None
-
-
-def sliding_share(velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray) -> np.ndarray:
-    """Mean of tanh((v + a sin(phi)) / width) over a swing; arguments of one shape, or broadcast
-    [rad/s].
-    """
-    phases = (np.arange(PHASES) + 0.5) * 2 * np.pi / PHASES
-    return np.asarray(
-        sum(np.tanh((velocity + swing * np.sin(phase)) / width) for phase in phases) / PHASES
-    )
-
-
-def chattering(signals: Sequence[Signals]) -> np.ndarray:
-    """Which joints are unsettled in any of some logs `(n,)` of bool; `()`, False, where none is in
-    any.
-    """
-    return np.asarray(np.any([s.chatter.joints for s in signals if s.chatter is not None], 0))
-
-
-def newly(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Signals]:
-    """Logs in which only those joints count as unsettled that were settled in all reference
-    logs.
-    """
-    known = chattering(references)
-    return [
-        s
-        if s.chatter is None
-        else replace(s, chatter=replace(s.chatter, joints=s.chatter.joints & ~known))
-        for s in signals
-    ]
-
-
-def unsettled(samples: Samples) -> tuple[str, ...]:
-    """Joints that chatter in any log, and did not in reference logs."""
-    signals = [s.signals for s in samples.sieves]
-    joints = signals[0].subject.joints
-    return tuple(
-        joints[j] for j in np.flatnonzero(np.broadcast_to(chattering(signals), len(joints)))
-    )
-
-
-def shaking(samples: Samples) -> tuple[str, ...]:
-    """Those of the unsettled joints whose own loops or belts may be to blame, in any log: the
-    others are shaken along.
-    """
-    names = unsettled(samples)
-    signals = [
-        s.signals
-        for s in samples.sieves
-        if s.signals.chatter is not None and s.signals.chatter.joints.any()
-    ]
-    found: set[str] = set()
-    for one in signals:
-        assert one.chatter is not None
-        size = np.sqrt(np.mean(one.chatter.speed**2, 0)) * one.chatter.joints
-        found |= {one.subject.joints[j] for j in np.flatnonzero(size >= MOVED * size.max())}
-    return tuple(name for name in names if name in found)
-
-
-def swings(signals: Sequence[Signals], joint: str) -> str:
-    """How a joint chatters, in the log where it does most; for people."""
-    place = signals[0].subject.joints.index(joint)
-    shaken = [
-        s.chatter
-        for s in signals
-        if s.chatter is not None and np.isfinite(s.chatter.frequency[place])
-    ]
-    size, frequency = max(
-        (float(np.sqrt(np.mean(c.speed[:, place] ** 2))), float(c.frequency[place])) for c in shaken
-    )
-    return (
-        f"swings to and fro by {size:.2g} rad/s at {frequency:.0f} Hz (or a frequency that this "
-        f"log's rate folds there), which nothing commands: "
-        f"its control loop is on the edge of stability, as of {', '.join(UNSETTLING)}"
-    )
 
 
 def _filled(values: np.ndarray) -> np.ndarray | None:

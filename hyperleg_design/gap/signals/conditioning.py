@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.checks.plausibility import frozen
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.logs.frozen import frozen
+from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.supply import over_nominal
 from hyperleg_design.gap.signals import contact, transmission
 from hyperleg_design.gap.signals.base_motion import base_motion
@@ -116,7 +116,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     shaken = chatter(
         resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
     )
-    needed = needed + rigid.friction_torque(
+    needed = needed + friction.friction_torque(
         subject, motion.value, motion.first, None if shaken is None else shaken.speed
     )
     residual: dict[str, np.ndarray] = {}

@@ -14,8 +14,8 @@ from hyperleg_design.gap.model import rigid
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.model.base import BaseMotion
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import BaseMotion
 
 TOUCHING_FORCE = 2.0
 """Force from which a foot touches [N]; assumed, above the noise of foot sensors."""

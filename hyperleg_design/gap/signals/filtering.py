@@ -335,7 +335,7 @@ def sticking(signals: Signals, underway: float = UNDERWAY) -> np.ndarray:
     """
     from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
-    from hyperleg_design.gap.effects.friction import presliding, shaken
+    from hyperleg_design.gap.signals.sliding import presliding, shaken
 
     span = max(round(STILL / signals.step), 2)
     moved = maximum_filter1d(signals.position, span, axis=0) - minimum_filter1d(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.supply import over_nominal
 
 if TYPE_CHECKING:
@@ -29,24 +30,6 @@ BALANCES = {
 """Kind of place and unit of the rows of each of `Signals.residual`."""
 OF_MOTORS = tuple(balance for balance, (kind, _) in BALANCES.items() if kind == "motor")
 """Balances with a row for each motor."""
-
-
-@dataclass(frozen=True, eq=False)
-class BaseMotion:
-    """How the base moves; of a fixed base, there is none."""
-
-    position: np.ndarray
-    """In the world `(t, 3)` [m]; NaN where nobody measured it."""
-    rotation: np.ndarray
-    """World from base `(t, 3, 3)`."""
-    linear_velocity: np.ndarray
-    """In the base's frame `(t, 3)` [m/s]; NaN where nobody measured it."""
-    angular_velocity: np.ndarray
-    """In the base's frame `(t, 3)` [rad/s]."""
-    specific_force: np.ndarray
-    """Acceleration minus gravity at the base's origin, in the base's frame `(t, 3)` [m/s^2]."""
-    angular_acceleration: np.ndarray
-    """In the base's frame `(t, 3)` [rad/s^2]."""
 
 
 @dataclass(frozen=True, eq=False)

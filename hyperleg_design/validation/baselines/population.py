@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.gap.effects.friction import WIDTH
 from hyperleg_design.gap.playback.replay import LONGEST_STEP, Plant, whole_log
+from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
 
 if TYPE_CHECKING:

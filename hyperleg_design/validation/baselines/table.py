@@ -22,8 +22,8 @@ import numpy as np
 
 from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.gap.logs.log import read_log
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.validation.baselines.drive_set import DriveSet, Fitted, check_logs, drive_set
 from hyperleg_design.validation.baselines.own import fit_own
 from hyperleg_design.validation.baselines.pace import fit_pace

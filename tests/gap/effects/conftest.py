@@ -57,7 +57,7 @@ def leg(tmp_path_factory):
 
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.logs.metadata import Metadata
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     path = tmp_path_factory.mktemp("leg") / "leg.xml"
     path.write_text(robots.COUPLED)

@@ -58,7 +58,7 @@ def test_of_logged_commands_it_shows_in_the_control(pendulum):
 
 
 def test_joints_without_gains_cannot_have_it():
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     subject = load_subject("hyperleg")
     assert GAIN.locations(subject) == subject.joints

@@ -28,7 +28,7 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 
 
 def test_no_joint_has_less_friction_than_none():
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     subject = load_subject("hyperleg")
     low, _ = COULOMB.bounds("left_knee", subject)

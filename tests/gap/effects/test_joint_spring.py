@@ -19,7 +19,7 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 def test_preload_is_the_torque_at_the_posture_of_rest():
     from types import SimpleNamespace
 
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     subject = load_subject("hyperleg")
     knee = subject.joints.index("left_knee")

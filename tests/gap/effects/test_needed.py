@@ -1,7 +1,7 @@
 import numpy as np
 
 from hyperleg_design.gap.effects.needed import needed
-from hyperleg_design.gap.model.rigid import friction_torque
+from hyperleg_design.gap.model.friction import friction_torque
 
 
 def test_the_logged_motion_needs_what_the_balance_says_but_for_friction(leg):

@@ -25,7 +25,7 @@ def test_a_coupled_motor_reaches_its_joints_by_its_column(leg):
 def test_limits_are_those_of_conditioning():
     from types import SimpleNamespace
 
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     subject = load_subject("hyperleg")
     rng = np.random.default_rng(1)
@@ -42,7 +42,7 @@ def test_limits_are_those_of_conditioning():
 def test_strength_is_the_torque_of_the_motors_or_what_gravity_needs(pendulum):
     from pendulum import INERTIA, LENGTH, MASS, ROTOR
 
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     subject = load_subject("hyperleg")
     expected = np.abs(subject.joint_from_motor) @ subject.torque_limit

@@ -26,7 +26,7 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 def test_limits_follow_the_voltage_of_a_design_whose_line_is_known():
     from types import SimpleNamespace
 
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     subject = load_subject("hyperleg")
     ticks = 400

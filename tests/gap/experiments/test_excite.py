@@ -17,7 +17,7 @@ from hyperleg_design.gap.experiments.excite import (
     fixed_subject,
     inseparable,
 )
-from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,8 @@ import pytest
 from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.experiments import information as info
 from hyperleg_design.gap.experiments.rehearsal import rehearsed
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.fixture(scope="module")

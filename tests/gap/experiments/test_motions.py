@@ -10,7 +10,7 @@ from hyperleg_design.gap.experiments.motions import (
     recommended,
 )
 from hyperleg_design.gap.experiments.rig_room import room_of, use_of
-from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.loading import load_subject
 
 NAMES = ["chirp", "sweeps", "ramps", "holds", "reversals", "postures", "swing"]
 

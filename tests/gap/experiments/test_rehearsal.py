@@ -4,8 +4,8 @@ import pytest
 from hyperleg_design.gap.experiments.rehearsal import knows_gains, rehearsed, swung
 from hyperleg_design.gap.experiments.rig_room import targets_for
 from hyperleg_design.gap.experiments.trajectories import window
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.fixture(scope="module")

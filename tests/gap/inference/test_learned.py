@@ -7,7 +7,7 @@ from hyperleg_design.gap.inference.decide import decide, shown_already
 from hyperleg_design.gap.inference.learned import ANOTHER_DAY, learned, unsaid
 from hyperleg_design.gap.inference.screen import linearise, places
 from hyperleg_design.gap.inference.thresholds import load_thresholds
-from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.loading import load_subject
 
 FRICTION = (("viscous_friction", "knee"), ("coulomb_friction", "knee"))
 

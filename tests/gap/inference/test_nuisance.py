@@ -25,10 +25,10 @@ from hyperleg_design.gap.inference.nuisance import (
     traces,
     usual_errors,
 )
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.filtering import sieve
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.fit import Cause
-from hyperleg_design.gap.inference.judge import Model
+from hyperleg_design.gap.inference.model import Model
 from hyperleg_design.gap.inference.parameters import parameters
 
 SUBJECT = SimpleNamespace(joints=("swing",), default=np.zeros(1))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.model.machine import machine_of
-from hyperleg_design.gap.model.subject import load_subject, subject_of
+from hyperleg_design.gap.model.subject_build import subject_of
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.machine import machine_of as machine_of_design
 

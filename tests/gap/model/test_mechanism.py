@@ -10,7 +10,7 @@ from hyperleg_design.gap.model.mechanism import (
     moved_inertial,
     quaternion_rotation,
 )
-from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 def test_mass_of_the_tree_is_mass_of_the_model():

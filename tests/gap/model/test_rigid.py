@@ -3,9 +3,9 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
-from hyperleg_design.gap.model.subject import load_subject
-from hyperleg_design.gap.signals.signals import BaseMotion
+from hyperleg_design.gap.signals.loading import load_subject
 
 TICKS = 6
 
@@ -100,7 +100,7 @@ def test_regressors_of_all_links_give_the_torque(subject):
     q, v, a, base = random_motion(subject, 1)
     torque, wrench = np.zeros(q.shape), np.zeros((TICKS, 6))
     for link, parameters in zip(subject.links, subject.tree.link_inertial, strict=True):
-        rows, of_base = rigid._regressor(subject, q, v, a, base, link)
+        rows, of_base = rigid.regressors(subject, q, v, a, base, link)
         torque += rows @ parameters
         wrench += of_base @ parameters
     np.testing.assert_allclose(
@@ -133,21 +133,6 @@ def test_contact_forces_act_as_in_mujoco():
         np.testing.assert_allclose(
             wrench[i], np.r_[base.rotation[i].T @ expected[:3], expected[3:6]], atol=1e-9
         )
-
-
-def test_kept_regressors_are_bounded(robot_files, runs, monkeypatch):
-    from hyperleg_design.gap.signals.conditioning import condition
-
-    signals = condition(runs["arm"], load_subject(robot_files["arm"]))
-    first = rigid.link_regressor(signals, "flange")
-    assert rigid.link_regressor(signals, "flange") is first
-    monkeypatch.setattr(rigid, "KEPT", int(2.5 * first.nbytes))
-    for link in signals.subject.links:
-        rigid.link_regressor(signals, link)
-    assert sum(r.nbytes for r in rigid._REGRESSORS[signals].values()) <= 2.5 * first.nbytes
-    again = rigid.link_regressor(signals, "flange")
-    assert again is not first
-    np.testing.assert_array_equal(again, first)
 
 
 def test_a_pad_that_rolls_does_not_slide():

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import eigh
 
 from hyperleg_design.gap.model.stability import Loops, inertia, modes
-from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.loading import load_subject
 
 ARM = """<mujoco><worldbody><body name="upper"><joint name="shoulder" type="hinge" axis="0 1 0" armature="0.02"/>
 <inertial pos="0 0 -0.15" mass="1.2" diaginertia="0.02 0.02 0.001"/>

@@ -5,7 +5,8 @@ import robots
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject, subject_of
+from hyperleg_design.gap.model.subject_build import subject_of
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.build import build
 from hyperleg_design.robot.design import load_design
 

@@ -5,11 +5,11 @@ import robots
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.model.supply import over_nominal
 from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
 from hyperleg_design.gap.playback.replay import replay, short_windows
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 NOMINAL, CONSTANT, RESISTANCE, GAIN = 7.4, 0.3, 3.4, 3.0
 """Supply [V], kt [Nm/A], R [ohm], duty a radian of error."""

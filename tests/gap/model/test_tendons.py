@@ -9,8 +9,8 @@ import pytest
 
 from hyperleg_design.gap.model.oracle import disagreements, mujoco_torques
 from hyperleg_design.gap.model.rigid import inverse_dynamics
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.playback.replay import motor_tendons
+from hyperleg_design.gap.signals.loading import load_subject
 
 ARM = """<mujoco><compiler angle="radian"/><option gravity="0 0 -9.81"/><worldbody>
 <body name="a"><joint name="j" axis="0 1 0" range="-1 1" {j}/><geom size="0.05" pos="0.1 0 0" mass="1"/>

@@ -11,10 +11,10 @@ from hyperleg_design.gap.inference.preparation import prepare
 from hyperleg_design.gap.inference.thresholds import load_thresholds
 from hyperleg_design.gap.logs.log import read_log
 from hyperleg_design.gap.logs.recording import write_logs
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.playback.overlay import Overlay
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from robots import PENDULUM, servo_run, waves
 
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.playback.evidence import Evidence, evidence, rms
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.signals import Signals
 
 LOAD = (

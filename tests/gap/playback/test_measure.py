@@ -3,9 +3,9 @@ import pytest
 import robots
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.playback.measure import measure
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 def noisy(log, seed, torque=0.02):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.model.subject import load_subject, subject_of
+from hyperleg_design.gap.model.subject_build import subject_of
 from hyperleg_design.gap.playback.overlay import (
     Overlay,
     overlay_from_mapping,
@@ -19,6 +19,7 @@ from hyperleg_design.gap.playback.overlay import (
     read_overlay,
     write_overlay,
 )
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task

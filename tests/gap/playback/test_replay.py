@@ -3,7 +3,6 @@ import pytest
 import robots
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.playback.replay import (
     Windows,
     best_input,
@@ -12,6 +11,7 @@ from hyperleg_design.gap.playback.replay import (
     whole_log,
 )
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.fixture(scope="module")

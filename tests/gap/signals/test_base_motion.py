@@ -4,8 +4,8 @@ import robots
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.base_motion import base_motion
+from hyperleg_design.gap.signals.loading import load_subject
 
 INNER = slice(20, -20)
 

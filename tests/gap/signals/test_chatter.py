@@ -1,10 +1,7 @@
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.model.rigid import turned
-from hyperleg_design.gap.signals.chatter import chatter, sliding_share
+from hyperleg_design.gap.signals.chatter import chatter
 from hyperleg_design.gap.signals.smoothing import smooth
 
 STEP = 0.005
@@ -53,78 +50,6 @@ def test_size_and_frequency_of_a_swing_are_found(frequency, logged):
 def test_neither_noise_nor_a_swing_within_the_bristles_is_chatter(noise):
     assert found(0.0, 50.0, noise=noise) is None
     assert found(1e-4, 50.0, noise=1e-5) is None
-
-
-def test_friction_over_a_swing_is_that_of_dither():
-    speed = np.linspace(-2, 2, 41)
-    share = sliding_share(speed, 1e-3, np.ones(41))
-    assert np.allclose(share, 2 / np.pi * np.arcsin(np.clip(speed, -1, 1)), atol=0.07)
-    assert np.allclose(sliding_share(speed, 0.1, np.zeros(41)), np.tanh(speed / 0.1))
-
-
-def test_friction_of_the_model_is_averaged_only_where_a_joint_swings():
-    speed, swing = np.array([0.2, 0.2]), np.array([0.0, 1.0])
-    assert turned(speed, 0.01, swing) == pytest.approx([1.0, 2 / np.pi * np.arcsin(0.2)], abs=0.05)
-    assert np.array_equal(turned(speed, 0.01), turned(speed, 0.01, np.zeros(2)))
-
-
-def test_what_chattered_before_is_no_news():
-    from dataclasses import dataclass
-
-    from hyperleg_design.gap.signals.chatter import Chatter, newly
-
-    @dataclass(frozen=True, eq=False)
-    class Shown:
-        chatter: Chatter | None
-
-    def log(*joints):
-        return Shown(
-            Chatter(np.ones((4, 2)), np.full(2, 50.0), np.full(2, 0.9), np.array(joints, bool))
-        )
-
-    tests, references = [log(1, 1), Shown(None)], [log(1, 0), Shown(None)]
-    assert newly(tests, references)[0].chatter.joints.tolist() == [False, True]
-    assert newly(tests, [Shown(None)])[0].chatter.joints.tolist() == [True, True]
-
-
-def test_joints_of_all_logs_are_told():
-    from hyperleg_design.gap.signals.chatter import unsettled
-
-    def sieve(*joints):
-        shaken = SimpleNamespace(joints=np.array(joints, bool)) if joints else None
-        return SimpleNamespace(
-            signals=SimpleNamespace(chatter=shaken, subject=SimpleNamespace(joints=("hip", "knee")))
-        )
-
-    assert unsettled(SimpleNamespace(sieves=[sieve(), sieve(0, 1)])) == ("knee",)
-    assert unsettled(SimpleNamespace(sieves=[sieve()])) == ()
-
-
-def test_joints_that_are_shaken_along_are_not_to_blame():
-    from hyperleg_design.gap.signals.chatter import MOVED, shaking, unsettled
-
-    def sieve(speed, *joints):
-        swing = (
-            None
-            if speed is None
-            else SimpleNamespace(
-                joints=np.array(joints, bool), speed=np.broadcast_to(np.array(speed, float), (5, 3))
-            )
-        )
-        return SimpleNamespace(
-            signals=SimpleNamespace(
-                chatter=swing, subject=SimpleNamespace(joints=("hip", "knee", "toe"))
-            )
-        )
-
-    logs = SimpleNamespace(sieves=[sieve(None), sieve([0.9 * MOVED, 1.1 * MOVED, 1.0], 1, 1, 1)])
-    assert unsettled(logs) == ("hip", "knee", "toe")
-    assert shaking(logs) == ("knee", "toe")
-    logs.sieves.append(sieve([0.1, 9.0, 0.0], 1, 0, 0))
-    assert shaking(logs) == ("hip", "knee", "toe"), (
-        "it is loudest in one log; what does not chatter there is not"
-    )
-    assert shaking(SimpleNamespace(sieves=[sieve(None)])) == ()
 
 
 def test_a_joint_that_chatters_makes_the_answer_unknown_and_is_told(robot_files):

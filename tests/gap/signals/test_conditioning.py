@@ -5,8 +5,8 @@ import robots
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 QUANTUM = 1.5e-3
 """Of position sensors that came to hand [rad]."""

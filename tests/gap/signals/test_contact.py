@@ -3,9 +3,9 @@ import pytest
 import robots
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.playback.replay import replay, short_windows
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 def conditioned(log):

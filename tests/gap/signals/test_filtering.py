@@ -4,7 +4,6 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.effects.friction import presliding
 from hyperleg_design.gap.signals.filtering import (
     UNDERWAY,
     moving,
@@ -14,6 +13,7 @@ from hyperleg_design.gap.signals.filtering import (
     traced,
     travelled,
 )
+from hyperleg_design.gap.signals.sliding import presliding
 
 
 @pytest.fixture(scope="module")

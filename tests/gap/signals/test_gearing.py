@@ -7,9 +7,9 @@ import pytest
 import robots
 
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.fixture

@@ -11,7 +11,6 @@ import pytest
 
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.ground_friction import ChangedGround
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.playback import show
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.ground import (
@@ -23,6 +22,7 @@ from hyperleg_design.gap.signals.ground import (
     nominal_ground,
     pair_settings,
 )
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.simulation.alteration import edited
 
 

@@ -11,8 +11,8 @@ from two_links import GAINS, JOINTS, LOSS, MJCF, RATE, ROTOR, mass_and_bias
 from hyperleg_design.gap.inference.detectors import knocking
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.stamps import of_acceleration, off_stamps
 
 OFF = 6e-4

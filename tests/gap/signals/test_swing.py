@@ -32,7 +32,7 @@ def test_a_band_is_the_amplitude_and_phase_of_its_line_and_leaves_others_out():
 
 
 def test_play_is_told_from_a_spring_by_the_third_harmonic_of_the_motor(robot_files):
-    from hyperleg_design.gap.model.subject import load_subject
+    from hyperleg_design.gap.signals.loading import load_subject
 
     subject = load_subject(robot_files["coupled"])
     count = len(subject.joints)

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from diagnosed import run
 
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.playback.measure import measure
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.transmission import balance, turned
 
 MOTORS = ("m_front", "m_back")

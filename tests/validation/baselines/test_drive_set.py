@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.validation.baselines.drive_set import drive_set
 from hyperleg_design.validation.baselines.own import fit_own
 from hyperleg_design.validation.baselines.pace import fit_pace

@@ -19,16 +19,16 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.series import band_limited
+from hyperleg_design.gap.inference.detectors.unsettled import chattering
 from hyperleg_design.gap.logs.sampling import noise
-from hyperleg_design.gap.model.rigid import turned
+from hyperleg_design.gap.model.friction import turned
 from hyperleg_design.gap.signals.channels import applied
-from hyperleg_design.gap.signals.chatter import chattering
 from hyperleg_design.gap.signals.filtering import CREEP, sticking, stretches
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.base import Prior
-    from hyperleg_design.gap.inference.judge import Model
     from hyperleg_design.gap.inference.learned import Learned
+    from hyperleg_design.gap.inference.model import Model
     from hyperleg_design.gap.inference.nuisance import Usual
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -56,10 +56,6 @@ BEYOND, LEAST = 0.25, 0.01
 belts and drives hold some, too."""
 OPEN = 2.0
 """Standard deviations of calibrated friction up to which it is known friction."""
-SURE = 20.0
-"""Log-likelihood of friction that explains what a joint holds."""
-SURELY = 0.9
-"""Share of what a joint holds that its breakaway friction has at least, where that is the cause."""
 
 _STUCK: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 

@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.effects.belt import rotor
 from hyperleg_design.gap.inference.detectors.heard import RINGING, Heard
 from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.results.diagnosis import Named, Value
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.smoothing import filled

@@ -19,13 +19,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.effects.belt import rotor
 from hyperleg_design.gap.effects.placing import ROBOT
 from hyperleg_design.gap.inference.detectors.heard import UNSTABLE, Heard
 from hyperleg_design.gap.inference.detectors.loose import PLAY, SPRING, WIDTH, play_and_spring
+from hyperleg_design.gap.inference.detectors.unsettled import MOVED
+from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.model.stability import Loops, Modes, inertia, modes
 from hyperleg_design.gap.results.diagnosis import Named, Value
-from hyperleg_design.gap.signals.chatter import MOVED
 from hyperleg_design.gap.signals.swing import Swing, loudest, rms, swing
 
 if TYPE_CHECKING:

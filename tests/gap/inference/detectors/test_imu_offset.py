@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.detectors.imu_offset import SURE, felt_upright, imu_offset
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 GYRO_OFF, FELT_OFF = np.array([0.03, -0.05, 0.0]), np.array([0.3, 0.0, -0.4])
 

@@ -11,9 +11,9 @@ from two_links import DAMPING, GAINS, JOINTS, LOSS, MJCF, RATE, ROTOR, STEP, STI
 from hyperleg_design.gap.inference.detectors.knocking import knocking, struck
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.report.gap_page import write_gap_page
 
 

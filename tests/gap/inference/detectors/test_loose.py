@@ -11,9 +11,9 @@ import pytest
 from hyperleg_design.gap.inference.detectors.loose import loose
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.report.gap_page import write_gap_page
 
 MJCF = """<mujoco><worldbody><body name="arm">

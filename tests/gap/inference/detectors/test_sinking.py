@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.detectors.sinking import bearings, sinks
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.ground import footings
+from hyperleg_design.gap.signals.loading import load_subject
 
 MEAN, CHANGE = 60.0, 25.0
 """Load of a pad and its amplitude [N]."""

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.detectors.slipping import slips
-from hyperleg_design.gap.model.subject import load_subject
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 LOAD = 60.0
 """On each pad [N]."""

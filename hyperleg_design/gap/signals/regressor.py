@@ -1,0 +1,71 @@
+"""Joint torques and base wrenches over the inertial parameters of a link, at a log's motion."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.gap.model.rigid import regressor, regressors
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals.signals import Signals
+
+_REGRESSORS: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
+_LOCK = threading.Lock()
+KEPT = 512 * 2**20
+"""Memory that kept regressors may take in all [bytes]; beyond it the oldest are forgotten."""
+
+
+def link_regressor(signals: Signals, link: str) -> np.ndarray:
+    """Joint torque over the inertial parameters of one link, at the logged motion `(t, n, 10)`,
+    read-only.
+
+    Columns: mass, mass times centre of mass (3), inertia about the link's origin (xx, xy, yy, xz,
+    yz, zz), in the link's frame. Torque is linear in them: what hangs on a link adds
+    `link_regressor @ parameters`. Kept while `signals` live and memory lasts.
+
+    Raises:
+        InputError: no such link or joint.
+    """
+    with _LOCK:
+        found = _REGRESSORS.setdefault(signals, {}).get(link)
+    if found is None:
+        found = regressor(
+            signals.subject,
+            signals.position,
+            signals.velocity,
+            signals.acceleration,
+            signals.base,
+            link,
+        )
+        found.setflags(write=False)
+        with _LOCK:
+            _forget(KEPT - found.nbytes)
+            _REGRESSORS.setdefault(signals, {})[link] = found
+    return found
+
+
+def _forget(room: int) -> None:
+    """Drop the oldest kept regressors until the others take no more than some room [bytes]."""
+    total = sum(r.nbytes for each in _REGRESSORS.values() for r in each.values())
+    for each in list(_REGRESSORS.values()):
+        while each and total > room:
+            total -= each.pop(next(iter(each))).nbytes
+
+
+def base_regressor(signals: Signals, link: str) -> np.ndarray:
+    """Wrench that the floating base needs over the inertial parameters of one link `(t, 6, 10)`; as
+    `link_regressor`.
+    """
+    assert signals.base is not None
+    return regressors(
+        signals.subject,
+        signals.position,
+        signals.velocity,
+        signals.acceleration,
+        signals.base,
+        link,
+    )[1]

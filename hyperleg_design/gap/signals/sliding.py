@@ -1,0 +1,85 @@
+"""Which way joints slide.
+
+Near rest the sign of a velocity is noise, and friction at rest is whatever balances the torques, up
+to its size. So the way of sliding is taken from the position: it turns over while the joint moves
+`2 z`, as bristles bend (Prandtl's stop operator, the elastic-plastic limit of the Dahl and LuGre
+models),
+
+    s_i = clip(s_(i-1) + (q_i - q_(i-1)) / z, -1, 1),    way = clip(2 s, -1, 1),
+
+where twice s, as noise alone never lets it stay at its ends. A joint that comes to rest keeps it:
+right on ramps slower than the noise of the velocity, and in holds that a damped controller creeps
+into; where a joint sticks while its controller pulls it the other way, nothing but the torque
+itself tells the friction: such rest is in no balance, `holding` speaks of it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.gap.model.friction import sliding_share
+from hyperleg_design.gap.signals.chatter import PRESLIDING
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals.signals import Signals
+
+NOISES = 8.0
+"""Least z over the noise of the smoothed position."""
+WIDTH = 0.01
+"""Velocity at which friction in a simulation has three quarters of its size [rad/s]; a sign,
+softened below what logs resolve."""
+_SLIDING: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
+
+
+def sliding(signals: Signals) -> np.ndarray:
+    """Which way each joint slides, from -1 to 1 `(t, n)`; kept while `signals` live."""
+    if signals not in _SLIDING:
+        position = signals.position
+        moved = np.diff(position, axis=0) / presliding(signals)
+        out = np.empty_like(position)
+        first = np.sign(
+            np.where(
+                np.abs(position - position[0]) > presliding(signals), position - position[0], 0.0
+            )
+        )
+        start = np.argmax(first != 0, 0)
+        state = first[start, np.arange(position.shape[1])]
+        out[0] = state
+        for tick, step in enumerate(moved, 1):
+            state = out[tick]
+            np.add(out[tick - 1], step, out=state)
+            np.minimum(state, 1.0, out=state)
+            np.maximum(state, -1.0, out=state)
+        np.clip(2 * out, -1.0, 1.0, out=out)
+        if signals.chatter is not None:
+            swings = shaken(signals)
+            out[swings] = sliding_share(
+                signals.velocity[swings], WIDTH, signals.chatter.speed[swings]
+            )
+        out.setflags(write=False)
+        _SLIDING[signals] = out
+    return _SLIDING[signals]
+
+
+def presliding(signals: Signals) -> np.ndarray:
+    """Half the way of turning over, z, of each joint `(n,)` [rad]."""
+    count = len(signals.subject.joints)
+    if signals.noise is None or signals.bandwidth is None:
+        return np.full(count, PRESLIDING)
+    passed = np.sqrt(np.clip(2 * np.nan_to_num(signals.bandwidth) * signals.step, 0.0, 1.0))
+    plain = 1.0 if signals.chatter is None else np.sqrt(1 - signals.chatter.share)
+    return np.asarray(
+        np.maximum(PRESLIDING, NOISES * np.nan_to_num(signals.noise) * plain * passed)
+    )
+
+
+def shaken(signals: Signals) -> np.ndarray:
+    """Where chatter keeps a joint from sticking `(t, n)` of bool."""
+    return (
+        np.zeros(signals.position.shape, bool)
+        if signals.chatter is None
+        else np.asarray(signals.chatter.speed > 0)
+    )

@@ -1,0 +1,54 @@
+"""Which way joints slide."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from hyperleg_design.gap.signals.chatter import PRESLIDING
+from hyperleg_design.gap.signals.sliding import presliding, sliding
+
+
+class Shown:
+    """Stands for `Signals`, and may be a key as these."""
+
+    def __init__(self, **values):
+        vars(self).update(values)
+
+
+def shown(position, noise=0.0, bandwidth=100.0):
+    position = np.asarray(position, float)[:, None]
+    return Shown(
+        position=position,
+        chatter=None,
+        step=0.005,
+        noise=np.array([noise]),
+        bandwidth=np.array([bandwidth]),
+        subject=SimpleNamespace(joints=("swing",)),
+    )
+
+
+def test_sliding_is_the_sign_of_the_velocity_once_a_joint_has_moved():
+    time = np.arange(2000) * 0.005
+    found = sliding(shown(0.3 * np.sin(2 * time)))[:, 0]
+    moving = np.abs(np.cos(2 * time)) > 0.1
+    assert np.all(found[moving] == np.sign(np.cos(2 * time))[moving])
+
+
+def test_sliding_sees_ramps_slower_than_the_noise_of_the_velocity():
+    rng = np.random.default_rng(0)
+    time = np.arange(4000) * 0.005
+    ramp = np.where(time < 10, 2e-3 * time, 0.04 - 2e-3 * time)
+    found = sliding(shown(ramp + rng.normal(0, 2e-4, time.size), noise=2e-4))[:, 0]
+    late = (time > 2) & (np.abs(time - 10) > 2)
+    assert np.mean(found[late] * np.where(time < 10, 1, -1)[late]) > 0.9
+
+
+def test_sliding_is_kept_at_rest():
+    time = np.arange(2000) * 0.005
+    signals = shown(np.minimum(0.1 * time, 0.5))
+    assert np.all(sliding(signals)[20:] == 1)
+
+
+def test_presliding_grows_with_the_noise():
+    assert presliding(shown(np.zeros(10)))[0] == PRESLIDING
+    assert presliding(shown(np.zeros(10), noise=0.01))[0] > 5 * PRESLIDING

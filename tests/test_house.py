@@ -1,0 +1,170 @@
+"""Imports go one way between the rooms of the package and of `gap`, and in no circle."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import hyperleg_design
+
+PACKAGE = Path(hyperleg_design.__file__).parent
+NAME = PACKAGE.name
+ROOMS = (
+    "robot",
+    "sizing",
+    "simulation",
+    "learning",
+    "evaluation",
+    "gap",
+    "validation",
+    "sweep",
+    "report",
+    "cli",
+)
+"""Each room imports only rooms before it."""
+WITHOUT_LEARNING = ("evaluation", "gap", "validation", "sweep")
+GAP = (
+    "results",
+    "logs",
+    "model",
+    "signals",
+    "effects",
+    "checks",
+    "inference",
+    "playback",
+    "experiments",
+    "pipeline",
+)
+"""Rooms of `gap`, each of which imports only rooms before it."""
+
+
+def module_name(path: Path) -> str:
+    parts = (NAME, *path.relative_to(PACKAGE).with_suffix("").parts)
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {module_name(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+@cache
+def syntax(module: str) -> ast.Module:
+    return ast.parse(MODULES[module].read_text())
+
+
+def is_for_types(node: ast.AST) -> bool:
+    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+
+
+def imports(module: str, *, types: bool) -> Iterator[str]:
+    """Modules of the package that a module imports anywhere, functions included.
+
+    Args:
+        module: its dotted name.
+        types: whether imports for annotations alone count.
+    """
+    package = module if MODULES[module].name == "__init__.py" else module.rpartition(".")[0]
+    pending: list[ast.AST] = [syntax(module)]
+    while pending:
+        node = pending.pop()
+        if is_for_types(node) and not types:
+            pending.extend(node.orelse)
+            continue
+        if isinstance(node, ast.Import):
+            yield from (a.name for a in node.names if a.name in MODULES)
+        elif isinstance(node, ast.ImportFrom):
+            above = package.rsplit(".", node.level - 1)[0] if node.level else ""
+            source = ".".join(part for part in (above, node.module) if part)
+            for alias in node.names:
+                target = f"{source}.{alias.name}"
+                if target in MODULES or source in MODULES:
+                    yield target if target in MODULES else source
+        pending.extend(ast.iter_child_nodes(node))
+
+
+def room_of(module: str, depth: int) -> str | None:
+    """Name of the package that a module lies in, `depth` levels below the top."""
+    parts = module.split(".")
+    return parts[depth] if len(parts) > depth else None
+
+
+def circles(graph: dict[str, set[str]]) -> list[set[str]]:
+    """Groups of more than one module that reach each other (Tarjan's algorithm)."""
+    index: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    groups: list[set[str]] = []
+
+    def visit(module: str) -> None:
+        index[module] = low[module] = len(index)
+        stack.append(module)
+        for target in sorted(graph[module]):
+            if target not in index:
+                visit(target)
+                low[module] = min(low[module], low[target])
+            elif target in stack:
+                low[module] = min(low[module], index[target])
+        if low[module] == index[module]:
+            group = set()
+            while module not in group:
+                group.add(stack.pop())
+            if len(group) > 1:
+                groups.append(group)
+
+    for module in graph:
+        if module not in index:
+            visit(module)
+    return groups
+
+
+def test_rooms_of_the_package_import_only_rooms_before_them():
+    wrong = [
+        f"{module} imports {target}"
+        for module in MODULES
+        for target in imports(module, types=True)
+        if (room := room_of(module, 1)) in ROOMS
+        and (other := room_of(target, 1)) in ROOMS
+        and (
+            ROOMS.index(other) > ROOMS.index(room)
+            or (room in WITHOUT_LEARNING and other == "learning")
+        )
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_rooms_of_gap_import_only_rooms_before_them():
+    assert {p.name for p in (PACKAGE / "gap").iterdir() if (p / "__init__.py").exists()} == set(GAP)
+    wrong = [
+        f"{module} imports {target}"
+        for module in MODULES
+        if module.startswith(f"{NAME}.gap.")
+        for target in imports(module, types=True)
+        if target.startswith(f"{NAME}.gap.")
+        and GAP.index(target.split(".")[2]) > GAP.index(module.split(".")[2])
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_modules_of_gap_lie_in_rooms():
+    assert [p.name for p in (PACKAGE / "gap").glob("*.py")] == ["__init__.py"]
+
+
+@pytest.mark.parametrize("types", [False, True])
+def test_no_imports_run_in_a_circle(types):
+    """At run time nowhere; for annotations neither within `gap` nor within `validation`."""
+    rooms = ("gap", "validation")
+    graph = {
+        module: {t for t in imports(module, types=types) if t != module}
+        for module in MODULES
+        if not types or room_of(module, 1) in rooms
+    }
+    found = circles({m: targets & graph.keys() for m, targets in graph.items()})
+    assert not found, found
+
+
+def test_circles_are_seen():
+    graph = {"a": {"b"}, "b": {"c"}, "c": {"a", "d"}, "d": {"e"}, "e": set()}
+    assert circles(graph) == [{"a", "b", "c"}]
