@@ -38,7 +38,6 @@ MJCF = """<mujoco model="xl330_pendulum">
 logs."""
 MASS_ERROR = 0.2
 """Of the declared mass [kg]."""
-GAIN = (("torque_constant", PLACES), ("transmission_ratio", PLACES), ("voltage_sag", ("battery",)))
 LOADS = (("link_mass", PLACES), ("link_com", PLACES))
 FAULTS: dict[str, tuple[str, float, Fault | None]] = {
     "nothing": ("", 1.0, None),
