@@ -28,7 +28,7 @@ def test_effects_are_of_the_catalogue_and_cases_of_every_kind_and_robot_are_ther
 
 
 def test_every_place_is_a_name_of_the_robot(monkeypatch):
-    monkeypatch.setattr(plant, "DURATION", 1.0)
+    monkeypatch.setattr(plant, "DURATION", 0.2)
     for one in {(p.robot, w.what): p for p in PLANS for w in p.wrongs}.values():
         _, truth = material(Path(), one)
         assert truth.kind == one.kind
@@ -42,7 +42,7 @@ def test_every_place_is_a_name_of_the_robot(monkeypatch):
 
 
 def test_friction_three_times_as_large_is_over_what_references_or_the_file_say(monkeypatch):
-    monkeypatch.setattr(plant, "DURATION", 1.0)
+    monkeypatch.setattr(plant, "DURATION", 0.2)
     _, truth = material(Path(), plan("new-two_link-rough_everywhere-all-referenced"))
     model = mujoco.MjModel.from_xml_string(ROBOTS["two_link"].xml)
     assert [f.places[0] for f in truth.faults] == ["shoulder", "elbow"]
@@ -57,7 +57,7 @@ def test_friction_three_times_as_large_is_over_what_references_or_the_file_say(m
 
 
 def test_friction_of_both_kinds_at_both_joints_is_one_fault_a_joint(monkeypatch):
-    monkeypatch.setattr(plant, "DURATION", 1.0)
+    monkeypatch.setattr(plant, "DURATION", 0.2)
     _, truth = material(Path(), plan("new-two_link-rough_thick_everywhere-all-referenced-1"))
     assert truth.kind == "everywhere"
     assert [f.places[0] for f in truth.faults] == ["shoulder", "elbow"]
