@@ -11,7 +11,8 @@ import tyro
 from hyperleg_design import __version__, resources
 from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit
-from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.load import load_robot, walker
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,9 +30,9 @@ class Chosen(Printing):
     ] = ()
     """YAML file of parameters that differ, applied before --set."""
 
-    def load(self) -> Design:
+    def load(self) -> RobotDesign:
         """The design asked for."""
-        return load_design(
+        return load_robot(
             self.design, overrides=self.set, overlays=self.set_file, variant=self.variant or None
         )
 
@@ -108,13 +109,14 @@ class Analyze(Chosen):
     def run(self) -> None:
         """Analyse it."""
         from hyperleg_design.report.text import analysis_text
+        from hyperleg_design.report.tree_text import tree_analysis_text
         from hyperleg_design.sizing.analysis import analyze
 
         found = analyze(self.load())
         if self.json:
             emit(found)
         else:
-            print(analysis_text(found))
+            print((tree_analysis_text if "family" in found else analysis_text)(found))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,10 +146,14 @@ class Compare(Printing):
         from hyperleg_design.report import comparison
 
         designs = [
-            load_design(name, overrides=self.set, overlays=self.set_file) for name in self.designs
+            load_robot(name, overrides=self.set, overlays=self.set_file) for name in self.designs
         ]
         found = comparison.compare(designs, demand=self.demand)
-        walks = comparison.compare_walks(designs, self.evaluate, seeds=self.seeds)
+        walks = comparison.compare_walks(
+            [walker(d, "compare --evaluate") for d in designs] if self.evaluate else [],
+            self.evaluate,
+            seeds=self.seeds,
+        )
         for protocol, entries in walks.items():
             for entry, walked in zip(found.values(), entries, strict=True):
                 entry[f"evaluated {protocol}"] = walked

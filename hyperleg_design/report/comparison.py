@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import paper
 from hyperleg_design.report.text import table
 from hyperleg_design.robot import transmission
@@ -13,8 +14,10 @@ from hyperleg_design.robot.consistency import leg_length
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.names import JOINTS
+from hyperleg_design.robot.tree_design import TreeDesign
 
 if TYPE_CHECKING:
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
 
 AGREES = 1e-3
@@ -143,7 +146,7 @@ def motor_rows(names: tuple[str, ...] = ("U10", "RI70", "RI60")) -> list[Row]:
     return rows
 
 
-def compare(designs: list[Design], *, demand: bool = False) -> dict[str, Any]:
+def compare(designs: Sequence[RobotDesign], *, demand: bool = False) -> dict[str, Any]:
     """Designs beside each other.
 
     Args:
@@ -160,6 +163,10 @@ def compare(designs: list[Design], *, demand: bool = False) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for design in designs:
         whole = analyze(design)
+        if isinstance(design, TreeDesign):
+            found[_free(design.name, found)] = _tree_entry(design, whole, demand)
+            continue
+        design = cast("Design", design)
         kept = (
             "variant",
             "total_mass",
@@ -179,9 +186,36 @@ def compare(designs: list[Design], *, demand: bool = False) -> dict[str, Any]:
         if demand:
             walk = demand_of(design, "walk").summary()
             entry["walk"] = {k: walk[k] for k in WALK_MEASURES}
-        name = design.name if design.name not in found else f"{design.name} ({len(found) + 1})"
-        found[name] = entry
+        found[_free(design.name, found)] = entry
     return found
+
+
+def _free(name: str, found: Mapping[str, Any]) -> str:
+    """A name that no earlier design of the comparison has."""
+    return name if name not in found else f"{name} ({len(found) + 1})"
+
+
+def _tree_entry(design: TreeDesign, whole: Mapping[str, Any], demand: bool) -> dict[str, Any]:
+    """Measures of a design that writes its tree out, under HyperLeg's names where they mean the
+    same.
+    """
+    if demand:
+        raise InputError(
+            "compare",
+            "demand",
+            design.name,
+            "has no planned walk, which needs HyperLeg's legs; leave --demand out",
+        )
+    same = ("total_mass", "max_joint_torque", "single_joint_speed", "torque_alone")
+    forces = whole["contact_force"]
+    return {
+        **{k: whole[k] for k in (*same, "zonotope_to_box_volume")},
+        "leg_mass": whole["limb_mass"],
+        "leg_length": whole["standing_height"],
+        "contact_force": {
+            k: v["force"] if v["force"] is not None else "" for k, v in forces.items()
+        },
+    }
 
 
 MEASURED = {

@@ -10,7 +10,8 @@ from hyperleg_design.report.text import table
 from hyperleg_design.robot import parameters
 from hyperleg_design.robot.ablation import DESCRIPTION
 from hyperleg_design.robot.design import Design, load_design
-from hyperleg_design.robot.masses import mass_table
+from hyperleg_design.robot.dimensions import total_mass
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.motors import catalogue
 
 KINDS = (
@@ -56,8 +57,8 @@ def listing(kind: str = "all") -> dict[str, Any]:
 def _designs() -> dict[str, Any]:
     found = {}
     for name in resources.names("descriptions"):
-        design = load_design(name)
-        found[name] = {"variant": design.variant, "total_mass": float(mass_table(design).total)}
+        design = load_robot(name)
+        found[name] = {"variant": design.variant, "total_mass": float(total_mass(design))}
     return found
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import masses, transmission
 from hyperleg_design.robot.names import JOINTS, VARIANTS
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.hyperleg import HyperLeg
+
+Biped = TypeVar("Biped", bound="HyperLeg")
 
 DESCRIPTION = {
     "toe": "active toe",
@@ -21,7 +23,7 @@ DESCRIPTION = {
 }
 
 
-def ablate(design: Design, variant: str) -> Design:
+def ablate(design: Biped, variant: str) -> Biped:
     """The design with one ablation.
 
     Args:
@@ -59,7 +61,7 @@ def ablate(design: Design, variant: str) -> Design:
     return dataclasses.replace(made, variant=variant)
 
 
-def variants(design: Design) -> dict[str, Design]:
+def variants(design: Biped) -> dict[str, Biped]:
     """All ablations of a design, by name.
 
     Args:
@@ -71,7 +73,7 @@ def variants(design: Design) -> dict[str, Design]:
     return {name: ablate(design, name) for name in VARIANTS}
 
 
-def confound(design: Design, posture: str = "standing") -> dict[str, Any]:
+def confound(design: HyperLeg, posture: str = "standing") -> dict[str, Any]:
     """What each ablation takes away besides the toe.
 
     Args:

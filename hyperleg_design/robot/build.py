@@ -13,15 +13,16 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from hyperleg_design import provenance, resources
+from hyperleg_design.robot import dimensions
 from hyperleg_design.robot.description import TEMPLATE, tree_yaml, urdf
 from hyperleg_design.robot.mass_rows import MassRow, mass_rows
-from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.mjcf import mjcf
 from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.tree_design import TreeDesign
 from hyperleg_design.writing import output_folder, write_bytes, write_json
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 COLUMNS = (
     "kind",
@@ -37,11 +38,11 @@ COLUMNS = (
 )
 
 
-def build(design: Design, out: str | Path) -> Path:
+def build(design: RobotDesign, out: str | Path) -> Path:
     """Write a folder with everything about one robot; the same design gives the same bytes.
 
     `NAME.urdf` and `NAME.xml` (MJCF), `design.yaml` (reads back as the same design), `tree.yaml`
-    with the xacro template (`xacro biped.urdf.xacro tree:=tree.yaml`), `masses.csv`, `masses.md`,
+    with the xacro template (`xacro robot.urdf.xacro tree:=tree.yaml`), `masses.csv`, `masses.md`,
     and `manifest.json` with versions and checksums.
 
     Args:
@@ -69,7 +70,7 @@ def build(design: Design, out: str | Path) -> Path:
     files = {name: text.encode() for name, text in texts.items()}
     template = (resources.content_folder("descriptions") / TEMPLATE).read_text(encoding="utf-8")
     files[TEMPLATE] = template.replace(
-        '<robot name="biped"', f'<robot name="{design.name}"'
+        '<robot name="robot"', f'<robot name="{design.name}"'
     ).encode()
     with output_folder(out) as folder:
         for name, content in files.items():
@@ -78,7 +79,7 @@ def build(design: Design, out: str | Path) -> Path:
     return Path(out)
 
 
-def design_yaml(design: Design) -> str:
+def design_yaml(design: RobotDesign) -> str:
     """The resolved design as YAML with label and source of each value; `load_design` reads it back
     as the same design.
     """
@@ -115,7 +116,7 @@ def masses_csv(rows: list[MassRow]) -> str:
     return stream.getvalue()
 
 
-def masses_markdown(design: Design, rows: list[MassRow]) -> str:
+def masses_markdown(design: RobotDesign, rows: list[MassRow]) -> str:
     """The mass table to read, in kilograms, millimetres and gram square metres."""
     cells = [
         ["part", "pieces", "mass [kg]", "centre of mass x, y, z [mm]", "principal inertia [g m²]"]
@@ -138,6 +139,12 @@ def masses_markdown(design: Design, rows: list[MassRow]) -> str:
         for line in cells
     ]
     lines.insert(1, f"|{'|'.join('-' * (width + 2) for width in widths)}|")
+    if isinstance(design, TreeDesign):
+        note = (
+            "Parts of one limb as described. Centres of mass of links are measured from their "
+            "joint, of limb and robot\nfrom the root link, in the zero posture."
+        )
+        return f"# Masses of {design.name}\n\n{note}\n\n" + "\n".join(lines) + "\n"
     note = (
         "Left parts; the right ones mirror y. Centres of mass of links and segments are measured "
         "from their upper joint, of leg and robot\n"
@@ -146,14 +153,13 @@ def masses_markdown(design: Design, rows: list[MassRow]) -> str:
     return f"# Masses of {design.name} ({design.variant})\n\n{note}\n\n" + "\n".join(lines) + "\n"
 
 
-def _manifest(design: Design, files: dict[str, bytes]) -> dict[str, Any]:
-    table = mass_table(design)
+def _manifest(design: RobotDesign, files: dict[str, bytes]) -> dict[str, Any]:
     return {
         "design": design.name,
         "variant": design.variant,
         "source": design.source,
-        "total_mass": float(table.total),
-        "leg_mass": float(table.leg),
+        "total_mass": float(dimensions.total_mass(design)),
+        "leg_mass": float(dimensions.limb_mass(design)),
         "versions": provenance.versions(),
         "git_commit": provenance.git_commit() or None,
         "sha256": {

@@ -11,9 +11,10 @@ from hyperleg_design.errors import InputError, shown
 from hyperleg_design.reading import read_yaml
 from hyperleg_design.robot.check_mjcf import check_mjcf
 from hyperleg_design.robot.check_urdf import check_urdf, parse_xml
-from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.design import Design
 from hyperleg_design.robot.finding import Finding
 from hyperleg_design.robot.linkage import LinkageModel
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.motors import Motor, catalogue, load_motor
 
 KINDS = ("design", "motor", "urdf", "mjcf")
@@ -43,7 +44,7 @@ def kind_of(path: str | Path) -> str:
     data = read_yaml(resources.find("descriptions", path))
     if "constants" in data and "convention" in data:
         return "motor"
-    return "design" if "base" in data or "pelvis" in data else "unknown"
+    return "design" if {"base", "pelvis", "family"} & set(data) else "unknown"
 
 
 def check_file(path: str | Path) -> list[Finding]:
@@ -115,10 +116,11 @@ def _check_design_file(path: str | Path) -> list[Finding]:
     """
     from hyperleg_design.robot.description import urdf
 
-    design = load_design(path)
+    design = load_robot(path)
     found = check_urdf(urdf(design))
     try:
-        LinkageModel.of(design)
+        if isinstance(design, Design):
+            LinkageModel.of(design)
     except InputError as error:
         found.append(finding_of(error, "warning"))
     return found

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot import masses, motors, transmission
 from hyperleg_design.robot.names import JOINTS
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.hyperleg import HyperLeg
 
 
-def check_design(design: Design) -> None:
+def check_design(design: HyperLeg) -> None:
     """Raise the first misfit found.
 
     Raises:
@@ -104,14 +105,12 @@ def check_design(design: Design) -> None:
 
     _check_inertia(design, where)
 
-    from hyperleg_design.robot import masses, motors, transmission
-
     motors.check_names(design, where)
     masses.check_masses(design, where)
     transmission.check_invertible(design, where)
 
 
-def _check_name(design: Design, where: str) -> None:
+def _check_name(design: HyperLeg, where: str) -> None:
     """Names become file names, and names in URDF and MJCF."""
     if not isinstance(design.name, str) or not re.fullmatch(
         r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}", design.name
@@ -125,7 +124,7 @@ def _check_name(design: Design, where: str) -> None:
         )
 
 
-def _check_batch(design: Design, where: str) -> None:
+def _check_batch(design: HyperLeg, where: str) -> None:
     sizes = {path: size for path, size in design.batch_sizes().items() if size > 1}
     if len(set(sizes.values())) > 1:
         first, last = min(sizes, key=lambda p: sizes[p]), max(sizes, key=lambda p: sizes[p])
@@ -137,12 +136,12 @@ def _check_batch(design: Design, where: str) -> None:
         )
 
 
-def leg_length(design: Design) -> Any:
+def leg_length(design: HyperLeg) -> Any:
     """Hip-pitch axis to sole, standing straight [m]."""
     return design.thigh.length + design.shank.length + design.foot.ankle_height
 
 
-def _check_inertia(design: Design, where: str) -> None:
+def _check_inertia(design: HyperLeg, where: str) -> None:
     """Radii of gyration obey the triangle inequality, as those of any body do."""
     for field in (
         "pelvis.gyration",

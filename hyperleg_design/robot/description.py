@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from hyperleg_design import resources
-from hyperleg_design.robot.tree import Link, Shape, Tree, TreeJoint, build_tree
+from hyperleg_design.robot.kinematic_tree import Link, Shape, Tree, TreeJoint
+from hyperleg_design.robot.tree import build_tree
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
-TEMPLATE = "biped.urdf.xacro"
+TEMPLATE = "robot.urdf.xacro"
 
 
 def tree_mapping(tree: Tree) -> dict[str, Any]:
@@ -36,7 +37,7 @@ def tree_yaml(tree: Tree) -> str:
     )
 
 
-def urdf(design: Design, tree: Tree | None = None) -> str:
+def urdf(design: RobotDesign, tree: Tree | None = None) -> str:
     """URDF of one robot; its tree may be given if it is already there.
 
     Args:
@@ -85,10 +86,12 @@ def _shape(shape: Shape) -> dict[str, Any]:
 
 
 def _joint(joint: TreeJoint) -> dict[str, Any]:
+    turn = {"turn": [float(v) for v in joint.turn]} if any(joint.turn) else {}
     return {
         "parent": joint.parent,
         "child": joint.child,
         "position": [float(v) for v in joint.position],
+        **turn,
         "axis": [float(v) for v in joint.axis],
         "fixed": joint.fixed,
         "lower": joint.lower,

@@ -1,9 +1,6 @@
-"""A robot design: typed parameters, read from YAML, overridden, batched.
+"""A design of HyperLeg's family: read from YAML, overridden, and checked each time.
 
-A design is the paper's kind of biped: a pelvis and two mirrored legs of seven joints, with motors
-coupled below the hip. Axes: x forward, y left, z up. Pitch axes point left, so hip flexion is
-negative, knee flexion, plantar flexion and toe flexion are positive; yaw and roll axes of the right
-leg mirror the left's, so equal angles are mirrored postures.
+Designs of any family are read by `robot.load.load_robot`.
 """
 
 from __future__ import annotations
@@ -11,9 +8,9 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, dataclass, field
+from dataclasses import MISSING, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import yaml
@@ -22,93 +19,29 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import parse_yaml, read_yaml, short_name
 from hyperleg_design.robot import parameters
+from hyperleg_design.robot.ablation import ablate
+from hyperleg_design.robot.consistency import check_design
+from hyperleg_design.robot.hyperleg import HyperLeg
+from hyperleg_design.robot.masses import check_printed, lapsed
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.robot.parameters import Origin
-from hyperleg_design.robot.sections import (
-    Actuators,
-    Contact,
-    Electrical,
-    Foot,
-    FrictionModel,
-    GearModel,
-    Hip,
-    Joints,
-    MassModel,
-    Pelvis,
-    ReferenceBuild,
-    Segment,
-    StopModel,
-    Toe,
-    Transmission,
-)
+
+if TYPE_CHECKING:
+    from typing import Self
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Design:
-    """A robot, or a batch of robots that differ in numbers and motors only."""
-
-    name: str
-    pelvis: Pelvis
-    hip: Hip
-    thigh: Segment
-    shank: Segment
-    foot: Foot
-    toe: Toe
-    joints: Joints
-    actuators: Actuators
-    transmission: Transmission
-    electrical: Electrical
-    reference: ReferenceBuild
-    masses: MassModel
-    contact: Contact
-    friction: FrictionModel = field(default_factory=FrictionModel)
-    gears: GearModel = field(default_factory=GearModel)
-    stops: StopModel = field(default_factory=StopModel)
-    variant: str = "toe"
-    """Ablation that made it; informative."""
-    origins: Mapping[str, Origin] = field(default_factory=dict, repr=False)
-    """Origin of each leaf, by dotted path."""
-    source: str = ""
-    """File it was read from."""
+class Design(HyperLeg):
+    """A biped of HyperLeg's family, checked whenever one is made, so also when values are
+    replaced.
+    """
 
     def __post_init__(self) -> None:
-        from hyperleg_design.robot.consistency import check_design
-
         check_design(self)
-
-    @property
-    def batch_shape(self) -> tuple[int, ...]:
-        """`()` for one robot, `(n,)` for a batch."""
-        sizes = self.batch_sizes().values()
-        return (max(sizes),) if sizes else ()
-
-    def batch_sizes(self) -> dict[str, int]:
-        """Length of the batch of each leaf that holds one, by dotted path."""
-        values = ((path, rule, self[path]) for path, rule in parameters.rules(Design).items())
-        return {
-            path: len(value)
-            for path, rule, value in values
-            if isinstance(value, np.ndarray) and value.ndim > (1 if rule.size else 0)
-        }
-
-    def __getitem__(self, path: str) -> Any:
-        """Value of a leaf by dotted path, `design["toe.mass"]`."""
-        value: Any = self
-        for part in path.split("."):
-            try:
-                value = getattr(value, part)
-            except AttributeError:
-                raise InputError(
-                    self.name,
-                    path,
-                    None,
-                    parameters.unknown(path, sorted(parameters.rules(Design))),
-                ) from None
-        return value
 
     def with_values(
         self, values: Mapping[str, Any], where: str = "override", label: str = "user"
-    ) -> Design:
+    ) -> Self:
         """A copy with leaves replaced by dotted path.
 
         A printed sum of masses (`masses.expected_total`, `masses.expected_leg`) lapses where a mass
@@ -122,78 +55,14 @@ class Design:
         Raises:
             InputError: unknown path, or a value or combination that makes no sense.
         """
-        from hyperleg_design.robot.masses import check_printed, lapsed
-
         origins = {**self.origins, **{str(p): Origin(label, where) for p in values}}
         unprinted = lapsed(self, values)
         origins.update(
             {p: Origin("derived", f"lapsed: a mass was replaced by {where}") for p in unprinted}
         )
-        try:
-            made = parameters.with_values(self, {**values, **unprinted}, where, origins=origins)
-            check_printed(made, where)
-            return made
-        except InputError as error:
-            if error.where == where:
-                raise
-            raise InputError(
-                f"{self.source or self.name} with {where}",
-                error.field,
-                error.value,
-                error.remedy,
-                bad=error.bad,
-            ) from None
-
-    def take(self, index: int) -> Design:
-        """One robot of a batch; values keep their origins.
-
-        Raises:
-            IndexError: the batch is not that long.
-        """
-        values = {
-            path: self[path][0 if size == 1 else index] for path, size in self.batch_sizes().items()
-        }
-        if not values:
-            return self
-        plain = {path: str(v) if isinstance(v, str) else v for path, v in values.items()}
-        return parameters.with_values(self, plain, f"{self.name}[{index}]")
-
-    def rows(self, index: np.ndarray) -> Design:
-        """A batch of the robots with these numbers, which may repeat.
-
-        All its number leaves are arrays with the batch in front, whichever differ, so that what is
-        computed of a robot does not depend on what others of the batch differ in, to the last
-        digit.
-
-        Args:
-            index: `(n,)`, of robots of a batch; zeros for copies of a single robot.
-        """
-        rules, values = parameters.rules(Design), {}
-        for path, value in parameters.leaves(self).items():
-            own = np.asarray(value)
-            if rules[path].kind != "number" and not own.ndim:
-                continue
-            core = 1 if rules[path].size else 0
-            batch = own if own.ndim > core else own[None]
-            values[path] = batch[np.zeros_like(index) if len(batch) == 1 else index]
-        return parameters.with_values(self, values, self.name)
-
-    def to_mapping(self) -> dict[str, Any]:
-        """All leaves as nested plain mappings, each with value, label and source where known."""
-        result: dict[str, Any] = {"name": self.name, "variant": self.variant}
-        for path, value in parameters.leaves(self).items():
-            place = result
-            *sections, last = path.split(".")
-            for section in sections:
-                place = place.setdefault(section, {})
-            origin = self.origins.get(path)
-            plain = value.tolist() if isinstance(value, np.ndarray) else value
-            place[last] = (
-                plain
-                if origin is None
-                else {"value": plain, "label": origin.label, "source": origin.source}
-            )
-        return result
+        made = self._replaced({**values, **unprinted}, where, origins)
+        check_printed(made, where)
+        return made
 
 
 def load_design(
@@ -219,8 +88,6 @@ def load_design(
     Raises:
         InputError: names file, field, value and remedy.
     """
-    from hyperleg_design.robot.ablation import ablate
-
     design, own_variant = _read(resources.find("descriptions", name))
     chosen = parse_overrides(overrides)
     design = changed(design, overrides=chosen, overlays=overlays)
@@ -323,8 +190,6 @@ def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, A
 def _build(
     data: dict[str, Any], name: str, where: str, origins: dict[str, Origin], variant: str
 ) -> Design:
-    from hyperleg_design.robot.masses import check_printed
-
     sections = parameters.section_types(Design)
     optional = {f.name for f in dataclasses.fields(Design) if f.default_factory is not MISSING}
     for key in data:
@@ -357,9 +222,24 @@ def _build(
 
 
 def _overlaid(design: Design, data: Mapping[str, Any], where: str) -> Design:
+    values, origins = leaf_values(data, Design, where)
+    if not values:
+        return design
+    made = design.with_values(values, where)
+    return dataclasses.replace(made, origins={**made.origins, **origins})
+
+
+def leaf_values(
+    data: Mapping[str, Any], cls: type, where: str
+) -> tuple[dict[str, Any], dict[str, Origin]]:
+    """Values and origins of nested leaves by dotted path, as a file with some of them holds.
+
+    Raises:
+        InputError: a leaf that is neither a value nor `{value, label, source}`.
+    """
     values: dict[str, Any] = {}
     origins: dict[str, Origin] = {}
-    known = parameters.rules(Design)
+    known = parameters.rules(cls)
 
     def walk(part: Mapping[str, Any], prefix: str) -> None:
         for key, value in part.items():
@@ -370,7 +250,4 @@ def _overlaid(design: Design, data: Mapping[str, Any], where: str) -> Design:
                 values[path], origins[path] = parameters.labelled(value, where, path)
 
     walk(data, "")
-    if not values:
-        return design
-    made = design.with_values(values, where)
-    return dataclasses.replace(made, origins={**made.origins, **origins})
+    return values, origins

@@ -18,21 +18,23 @@ motor that is not installed has no friction. Another law is one function, regist
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import gear, transmission
+from hyperleg_design.robot import gear, transmission, tree_limb
 from hyperleg_design.robot.names import JOINTS
+from hyperleg_design.robot.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.hyperleg import HyperLeg
 
 FRICTION_SPEED = 0.1
 """Width v_m of the Coulomb friction's tanh [rad/s] (assumed; the paper does not print it)."""
 
-Law = Callable[["Design"], tuple[np.ndarray, np.ndarray]]
+Law = Callable[["HyperLeg"], tuple[np.ndarray, np.ndarray]]
 _LAWS: dict[str, Law] = {}
 
 
@@ -46,19 +48,23 @@ def friction_law(name: str) -> Callable[[Law], Law]:
     return register
 
 
-def joint_friction(design: Design) -> tuple[np.ndarray, np.ndarray]:
-    """Friction of the seven joints of one leg by the design's law.
+def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
+    """Friction of the joints of one limb by the design's law; declared in a design that writes its
+    tree out.
 
     Args:
         design: a robot or batch.
 
     Returns:
-        Coulomb [Nm] and viscous [Nms/rad] friction, each `(..., 7)` in the order of `JOINTS`; a
-        locked toe's has no effect.
+        Coulomb [Nm] and viscous [Nms/rad] friction, each `(..., joints)`; of HyperLeg, of all
+        seven in the order of `JOINTS`, where a locked toe's has no effect.
 
     Raises:
         InputError: no such law.
     """
+    if isinstance(design, TreeDesign):
+        return tree_limb.of_joints(design, "coulomb"), tree_limb.of_joints(design, "viscous")
+    design = cast("HyperLeg", design)
     if design.friction.law not in _LAWS:
         raise InputError(
             design.source or design.name,
@@ -70,13 +76,13 @@ def joint_friction(design: Design) -> tuple[np.ndarray, np.ndarray]:
 
 
 @friction_law("declared")
-def declared(design: Design) -> tuple[np.ndarray, np.ndarray]:
+def declared(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
     """The declared friction, whatever motors and reductions."""
     return _declared(design, "coulomb"), _declared(design, "viscous")
 
 
 @friction_law("reflected")
-def reflected(design: Design) -> tuple[np.ndarray, np.ndarray]:
+def reflected(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
     """The motors' share reflected through the reductions; see the module."""
     share = np.expand_dims(design.friction.motor_share, -1)
     matrix, reference = gear.absolute_reductions(design)
@@ -92,6 +98,6 @@ def reflected(design: Design) -> tuple[np.ndarray, np.ndarray]:
     return np.maximum(coulomb, 0.0), scaled("viscous", 2)
 
 
-def _declared(design: Design, field: str) -> np.ndarray:
+def _declared(design: HyperLeg, field: str) -> np.ndarray:
     values: list[Any] = [getattr(getattr(design.joints, joint), field) for joint in JOINTS]
     return np.stack(np.broadcast_arrays(*values), -1).astype(float)

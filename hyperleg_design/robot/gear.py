@@ -19,16 +19,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import motors, transmission
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
+from hyperleg_design.robot.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.hyperleg import HyperLeg
 
 STAGE_PLACES = {
     "knee": ("thigh", 1.0),
@@ -54,7 +56,7 @@ class GearChange:
     """Of the stage of each joint of `STAGE_PLACES` [kg], `(...)`."""
 
 
-Law = Callable[["Design"], GearChange]
+Law = Callable[["HyperLeg"], GearChange]
 _LAWS: dict[str, Law] = {}
 
 
@@ -68,7 +70,7 @@ def gear_law(name: str) -> Callable[[Law], Law]:
     return register
 
 
-def gear_change(design: Design) -> GearChange:
+def gear_change(design: HyperLeg) -> GearChange:
     """Changes against the reference build by the design's law.
 
     Raises:
@@ -85,13 +87,13 @@ def gear_change(design: Design) -> GearChange:
 
 
 @gear_law("declared")
-def declared(design: Design) -> GearChange:
+def declared(design: HyperLeg) -> GearChange:
     """No change, whatever the reductions."""
     return GearChange()
 
 
 @gear_law("catalogue")
-def catalogue(design: Design) -> GearChange:
+def catalogue(design: HyperLeg) -> GearChange:
     """Similar gears and stages for other torques, and equal stages in series; see the module."""
     gears = design.gears
     matrix, reference = absolute_reductions(design)
@@ -125,16 +127,17 @@ def catalogue(design: Design) -> GearChange:
     return GearChange(inertia, load, stage)
 
 
-def rotor_inertia(design: Design) -> np.ndarray:
-    """Inertia that turns with each motor, the rotor and the change of its gear, `(..., 7)`
-    [kg m^2].
+def rotor_inertia(design: RobotDesign) -> np.ndarray:
+    """Inertia that turns with each motor, the rotor and the change of its gear, `(..., motors)`
+    [kg m^2]; of HyperLeg's seven. A design that writes its tree out has the rotors alone.
     """
-    return np.asarray(
-        motors.motor_arrays(design).rotor_inertia + gear_change(design).rotor_inertia, float
-    )
+    rotors = motors.motor_arrays(design).rotor_inertia
+    if isinstance(design, TreeDesign):
+        return rotors
+    return np.asarray(rotors + gear_change(cast("HyperLeg", design)).rotor_inertia, float)
 
 
-def absolute_reductions(design: Design) -> tuple[np.ndarray, np.ndarray]:
+def absolute_reductions(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
     """|M| of the design and of its reference build in the design's posture, each `(..., 7, 7)`
     [-].
     """
@@ -144,7 +147,7 @@ def absolute_reductions(design: Design) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def peak_torques(design: Design) -> tuple[np.ndarray, np.ndarray]:
+def peak_torques(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
     """Peak torque of the seven motors of a leg, of the design and of its reference build [Nm], each
     `(..., 7)`; a toe motor that is not installed counts.
     """
@@ -159,14 +162,14 @@ def peak_torques(design: Design) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def installed(design: Design) -> np.ndarray:
+def installed(design: HyperLeg) -> np.ndarray:
     """1 for each motor that is there, 0 for a toe motor that is not, `(7,)`."""
     there = np.ones(len(ACTUATOR_OF_MOTOR))
     there[len(transmission.motor_names(design)) :] = 0.0
     return there
 
 
-def reference_part(design: Design, actuator: str, part: str) -> Any:
+def reference_part(design: HyperLeg, actuator: str, part: str) -> Any:
     """`motor` or `gear` of the reference build for an actuator of the design."""
     return getattr(design.reference, f"{_REFERENCE_OF_ACTUATOR.get(actuator, actuator)}_{part}")
 

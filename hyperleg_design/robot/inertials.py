@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import masses
+from hyperleg_design.robot.bodies import Inertial, shifted
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.hyperleg import HyperLeg
 
 LEG_LINKS = (
     "hip_yaw_carrier",
@@ -25,21 +25,7 @@ LEG_LINKS = (
 """Links of a leg, one behind each joint of `names.JOINTS`."""
 
 
-@dataclass(frozen=True, eq=False)
-class Inertial:
-    """Inertial of a link in its own frame (at its joint, axes of the pelvis in the zero
-    posture).
-    """
-
-    mass: np.ndarray
-    """[kg] `(...)`"""
-    com: np.ndarray
-    """Centre of mass [m] `(..., 3)`."""
-    inertia: np.ndarray
-    """About the centre of mass [kg m^2] `(..., 3, 3)`."""
-
-
-def inertials(design: Design, side: float = 1.0) -> dict[str, Inertial]:
+def inertials(design: HyperLeg, side: float = 1.0) -> dict[str, Inertial]:
     """Inertials of the pelvis and of the links of one leg.
 
     Args:
@@ -109,7 +95,7 @@ def _change(table: masses.MassTable, segment: str, legs: int) -> Any:
 
 
 def _with_housed(
-    design: Design, segment: str, table: masses.MassTable, body: Inertial, side: float
+    design: HyperLeg, segment: str, table: masses.MassTable, body: Inertial, side: float
 ) -> Inertial:
     """The body with the changes of housed actuators added as points; the same body where nothing
     changed.
@@ -133,8 +119,8 @@ def _with_housed(
     com = moment / mass[..., None]
     inertia = (
         body.inertia
-        + _shifted(body.mass, body.com - com)
-        + sum(_shifted(np.asarray(m), p - com) for m, p in points)
+        + shifted(body.mass, body.com - com)
+        + sum(shifted(np.asarray(m), p - com) for m, p in points)
     )
     principal = np.linalg.eigvalsh(inertia)
     bad = (principal[..., 0] <= 0) | (
@@ -153,12 +139,4 @@ def _with_housed(
         mass,
         np.where(changed[..., None], com, body.com),
         np.where(changed[..., None, None], inertia, body.inertia),
-    )
-
-
-def _shifted(mass: Any, offset: np.ndarray) -> np.ndarray:
-    """Inertia of a point mass about a point `offset` away, `(..., 3, 3)`."""
-    squared = np.sum(offset**2, -1)[..., None, None] * np.eye(3)
-    return np.asarray(mass)[..., None, None] * (
-        squared - offset[..., :, None] * offset[..., None, :]
     )

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.robot.posture import link_poses
-from hyperleg_design.robot.tree import Link, build_tree
+from hyperleg_design.robot.kinematic_tree import Link
+from hyperleg_design.robot.posture import Pose, link_poses
+from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 SEGMENT_LINKS = {
     "pelvis": ("pelvis",),
@@ -29,10 +31,10 @@ class MassRow:
     """Inertial of one part."""
 
     kind: str
-    """`segment`, `link`, `leg` or `robot`."""
+    """`segment`, `link`, `leg` (`limb` of a tree that is written out) or `robot`."""
     name: str
     count: int
-    """How many of it the robot has; the right leg's mirror the left's."""
+    """How many of it the robot has."""
     mass: float
     """Of one [kg]."""
     com: np.ndarray
@@ -42,22 +44,20 @@ class MassRow:
     """Principal moments of inertia about the centre of mass, smallest first [kg m^2] `(3,)`."""
 
 
-def mass_rows(design: Design) -> list[MassRow]:
+def mass_rows(design: RobotDesign) -> list[MassRow]:
     """Rows of the mass table: segments, leg and robot in the zero posture, then links.
 
     Raises:
         InputError: a batch of designs.
     """
     tree = build_tree(design)
-    places = {
-        name: position for name, (_, position) in link_poses(tree).items()
-    }  # frames are parallel in the zero posture
-    left = [link for link in tree.links if link.name.startswith("left_")]
+    poses = link_poses(tree)
+    first, copies = design.copies[0], len(design.copies)
+    start = f"{first}_" if first else ""
+    limb = [link for link in tree.links if link.name != tree.base and link.name.startswith(start)]
 
     def row(kind: str, name: str, count: int, links: Iterable[Link], origin: np.ndarray) -> MassRow:
-        return MassRow(
-            kind, name, count, *_together([(link, places[link.name] - origin) for link in links])
-        )
+        return MassRow(kind, name, count, *_together([(k, poses[k.name]) for k in links], origin))
 
     rows = [
         row(
@@ -65,26 +65,36 @@ def mass_rows(design: Design) -> list[MassRow]:
             name,
             1 if name == "pelvis" else 2,
             [tree.link(n) for n in links],
-            places[links[0]],
+            poses[links[0]][1],
         )
-        for name, links in SEGMENT_LINKS.items()
+        for name, links in ({} if isinstance(design, TreeDesign) else SEGMENT_LINKS).items()
     ]
-    rows.append(row("leg", "leg", 2, left, np.zeros(3)))
+    kind = "limb" if isinstance(design, TreeDesign) else "leg"
+    rows.append(row(kind, kind, copies, limb, np.zeros(3)))
     rows.append(row("robot", "robot", 1, tree.links, np.zeros(3)))
-    for link in [tree.link("pelvis"), *left]:
-        count = 1 if link.name == "pelvis" else 2
-        rows.append(row("link", link.name.removeprefix("left_"), count, [link], places[link.name]))
+    for link in [tree.link(tree.base), *limb]:
+        count = 1 if link.name == tree.base else copies
+        name = link.name if link.name == tree.base else link.name.removeprefix(start)
+        rows.append(row("link", name, count, [link], poses[link.name][1]))
     return rows
 
 
-def _together(parts: list[tuple[Link, np.ndarray]]) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mass, centre of mass and principal moments of links at offsets, frames parallel."""
+def _together(
+    parts: list[tuple[Link, Pose]], origin: np.ndarray
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """Mass, centre of mass from an origin and principal moments of links at their poses."""
     mass = sum(link.mass for link, _ in parts)
     if mass == 0:
         return 0.0, np.zeros(3), np.zeros(3)
-    com = sum((link.mass * (offset + link.com) for link, offset in parts), start=np.zeros(3)) / mass
+    places = [(place - origin) + rotation @ link.com for link, (rotation, place) in parts]
+    com = (
+        sum((k.mass * at for (k, _), at in zip(parts, places, strict=True)), start=np.zeros(3))
+        / mass
+    )
     inertia = np.zeros((3, 3))
-    for link, offset in parts:
-        arm = offset + link.com - com
-        inertia += link.inertia + link.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    for (link, (rotation, _)), at in zip(parts, places, strict=True):
+        arm = at - com
+        inertia += rotation @ link.inertia @ rotation.T + link.mass * (
+            arm @ arm * np.eye(3) - np.outer(arm, arm)
+        )
     return mass, com, np.linalg.eigvalsh(inertia)

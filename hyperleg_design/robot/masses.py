@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import gear, motors
+from hyperleg_design.robot import gear
+from hyperleg_design.robot.actuator import actuator_mass
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SEGMENTS
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.hyperleg import HyperLeg
     from hyperleg_design.robot.sections import Actuator
 
 _REFERENCE_PART = {
@@ -71,7 +72,7 @@ class MassTable:
         return self.pelvis + 2 * self.leg
 
 
-Law = Callable[["Design"], MassTable]
+Law = Callable[["HyperLeg"], MassTable]
 _LAWS: dict[str, Law] = {}
 
 
@@ -85,7 +86,7 @@ def mass_law(name: str) -> Callable[[Law], Law]:
     return register
 
 
-def mass_table(design: Design) -> MassTable:
+def mass_table(design: HyperLeg) -> MassTable:
     """Masses of the segments by the design's law.
 
     Args:
@@ -108,19 +109,12 @@ def mass_table(design: Design) -> MassTable:
     return _LAWS[design.masses.law](design)
 
 
-def actuator_mass(motor: Any, gear: Any, gear_mass_per_torque: Any) -> Any:
-    """Mass of motor and gear [kg]: m_motor + k * gear * peak torque, `(...)`."""
-    weight = motors.gather(motor, lambda m: m.mass)
-    peak = motors.gather(motor, lambda m: m.peak_torque())
-    return weight + gear_mass_per_torque * gear * peak
-
-
-def built_mass(design: Design, actuator: Actuator) -> Any:
+def built_mass(design: HyperLeg, actuator: Actuator) -> Any:
     """Mass of an actuator as the design builds it [kg]."""
     return actuator_mass(actuator.motor, actuator.gear, design.masses.gear_mass_per_torque)
 
 
-def reference_mass(design: Design, name: str) -> Any:
+def reference_mass(design: HyperLeg, name: str) -> Any:
     """Mass of an actuator in the reference build [kg]; `name` as in `Actuators`."""
     part = _REFERENCE_PART[name]
     motor, gear = (
@@ -131,7 +125,7 @@ def reference_mass(design: Design, name: str) -> Any:
 
 
 @mass_law("components")
-def components(design: Design) -> MassTable:
+def components(design: HyperLeg) -> MassTable:
     """Declared masses, corrected for other actuators, places and lengths than the reference
     build's.
     """
@@ -155,7 +149,7 @@ def components(design: Design) -> MassTable:
 
 
 @mass_law("fixed")
-def fixed(design: Design) -> MassTable:
+def fixed(design: HyperLeg) -> MassTable:
     """The declared masses, whatever motors and lengths; a missing toe motor still counts, ballast
     as declared.
     """
@@ -168,7 +162,7 @@ def _legs(segment: str) -> int:
     return 2 if segment == "pelvis" else 1
 
 
-def _moved(design: Design, name: str, before: Any, after: Any) -> list[HousedMass]:
+def _moved(design: HyperLeg, name: str, before: Any, after: Any) -> list[HousedMass]:
     """Changes where an actuator was and where it is; one change where these are the same."""
     was, now = getattr(design.reference.places, name), getattr(design.actuators, name)
     if was.housed_in == now.housed_in and np.array_equal(
@@ -182,7 +176,7 @@ def _moved(design: Design, name: str, before: Any, after: Any) -> list[HousedMas
 
 
 def _table(
-    design: Design, housed: Iterable[HousedMass], load: Mapping[str, Any] | None
+    design: HyperLeg, housed: Iterable[HousedMass], load: Mapping[str, Any] | None
 ) -> MassTable:
     """Masses from changes and from the actuators in the reference build; no growth with length
     without the latter.
@@ -210,7 +204,7 @@ def _table(
     )
 
 
-def check_masses(design: Design, where: str) -> None:
+def check_masses(design: HyperLeg, where: str) -> None:
     """Whether the masses add up and stay positive.
 
     Raises:
@@ -247,7 +241,7 @@ def check_masses(design: Design, where: str) -> None:
         )
 
 
-def check_printed(design: Design, where: str) -> None:
+def check_printed(design: HyperLeg, where: str) -> None:
     """Whether the declared masses add up to the printed sums, where a file gives those.
 
     Raises:
@@ -269,7 +263,7 @@ def check_printed(design: Design, where: str) -> None:
             )
 
 
-def lapsed(design: Design, values: Iterable[str]) -> dict[str, float]:
+def lapsed(design: HyperLeg, values: Iterable[str]) -> dict[str, float]:
     """Printed sums that no longer hold when these leaves are replaced, each set to 0, which means
     no check.
     """

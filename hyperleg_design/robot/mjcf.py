@@ -18,16 +18,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import description, transmission
-from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot.described import prefixed
+from hyperleg_design.robot.dimensions import standing_height
 from hyperleg_design.robot.gear import rotor_inertia
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.robot.names import SIDES
 from hyperleg_design.robot.tree import Tree, build_tree
 
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 TIME_STEP = 0.005
 """Simulation step [s]: 200 Hz (paper, Table II)."""
@@ -39,7 +39,7 @@ STAND = "stand"
 """Keyframe of the default posture, soles on the floor."""
 
 
-def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) -> mujoco.MjSpec:
+def mujoco_spec(design: RobotDesign, *, friction: bool = True, floor: bool = True) -> mujoco.MjSpec:
     """Editable MuJoCo model of one robot.
 
     Args:
@@ -61,9 +61,10 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
     spec.modelname = design.name
     spec.option.timestep = TIME_STEP
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    pelvis = spec.body("pelvis")
-    pelvis.add_freejoint(name=BASE_JOINT)
-    pelvis.pos = [0.0, 0.0, float(leg_length(design))]
+    base = spec.body(tree.base)
+    if tree.floating:
+        base.add_freejoint(name=BASE_JOINT)
+    base.pos = [0.0, 0.0, float(standing_height(design))]
     _dress_geoms(spec, design, tree)
     for joint in tree.moving:
         made = spec.joint(joint.name)
@@ -75,10 +76,10 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
         )
         made.frictionloss = joint.coulomb if friction else 0.0
         made.armature = 0.0
-        made.solref_limit = [design.stops.time_constant, design.stops.damping_ratio]
+        made.solref_limit = [design.stop_section.time_constant, design.stop_section.damping_ratio]
         made.solimp_limit = [
-            min(0.9, design.stops.impedance),
-            design.stops.impedance,
+            min(0.9, design.stop_section.impedance),
+            design.stop_section.impedance,
             *STOP_IMPEDANCE_SHAPE,
         ]
     _add_drives(spec, design)
@@ -91,7 +92,7 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
             contype=1,
             conaffinity=0,
             friction=_friction(design),
-            solref=[design.contact.time_constant, design.contact.damping_ratio],
+            solref=[design.contact_section.time_constant, design.contact_section.damping_ratio],
             rgba=[0.93, 0.93, 0.91, 1],
         )
         spec.worldbody.add_light(pos=[1, 1, 4], dir=[-0.2, -0.2, -1], castshadow=False)
@@ -99,7 +100,9 @@ def mujoco_spec(design: Design, *, friction: bool = True, floor: bool = True) ->
     return spec
 
 
-def mujoco_model(design: Design, *, friction: bool = True, floor: bool = True) -> mujoco.MjModel:
+def mujoco_model(
+    design: RobotDesign, *, friction: bool = True, floor: bool = True
+) -> mujoco.MjModel:
     """Compiled MuJoCo model of one robot; see `mujoco_spec`.
 
     Args:
@@ -113,7 +116,7 @@ def mujoco_model(design: Design, *, friction: bool = True, floor: bool = True) -
     return mujoco_spec(design, friction=friction, floor=floor).compile()
 
 
-def mjcf(design: Design, *, friction: bool = True) -> str:
+def mjcf(design: RobotDesign, *, friction: bool = True) -> str:
     """MJCF text of one robot, numbers in full precision.
 
     Args:
@@ -128,11 +131,11 @@ def mjcf(design: Design, *, friction: bool = True) -> str:
         return str(spec.to_xml())
 
 
-def _friction(design: Design) -> list[float]:
-    return [design.contact.friction, design.contact.torsional_friction, 0.0001]
+def _friction(design: RobotDesign) -> list[float]:
+    return [design.contact_section.friction, design.contact_section.torsional_friction, 0.0001]
 
 
-def _dress_geoms(spec: mujoco.MjSpec, design: Design, tree: Tree) -> None:
+def _dress_geoms(spec: mujoco.MjSpec, design: RobotDesign, tree: Tree) -> None:
     import mujoco
 
     for link in tree.links:
@@ -152,14 +155,17 @@ def _dress_geoms(spec: mujoco.MjSpec, design: Design, tree: Tree) -> None:
                 geom.condim = 4
                 geom.group = 3
                 geom.friction = _friction(design)
-                geom.solref = [design.contact.time_constant, design.contact.damping_ratio]
+                geom.solref = [
+                    design.contact_section.time_constant,
+                    design.contact_section.damping_ratio,
+                ]
                 geom.rgba = [0.15, 0.15, 0.17, 1.0]
                 colliding += 1
         if link.pads:
             places = np.array([p.position for p in link.pads])
             low, high = (
-                places.min(0) - 1.5 * design.contact.pad_radius,
-                places.max(0) + 1.5 * design.contact.pad_radius,
+                places.min(0) - 1.5 * design.contact_section.pad_radius,
+                places.max(0) + 1.5 * design.contact_section.pad_radius,
             )
             body.add_site(
                 name=f"{link.name}_sole",
@@ -170,33 +176,33 @@ def _dress_geoms(spec: mujoco.MjSpec, design: Design, tree: Tree) -> None:
             )
 
 
-def _add_drives(spec: mujoco.MjSpec, design: Design) -> None:
+def _add_drives(spec: mujoco.MjSpec, design: RobotDesign) -> None:
     import mujoco
 
     matrix = transmission.joint_from_motor(design)
     joints, names = transmission.joint_names(design), transmission.motor_names(design)
     constants, inertia = motor_arrays(design), rotor_inertia(design)
-    for side in SIDES:
+    for side in design.copies:
         for column, motor in enumerate(names):
-            tendon = spec.add_tendon(name=f"{side}_{motor}", armature=inertia[column])
+            tendon = spec.add_tendon(name=prefixed(side, motor), armature=inertia[column])
             for row, joint in enumerate(joints):
                 if matrix[row, column]:
-                    tendon.wrap_joint(f"{side}_{joint}", matrix[row, column])
+                    tendon.wrap_joint(prefixed(side, joint), matrix[row, column])
             peak = constants.peak_torque[column]
             spec.add_actuator(
-                name=f"{side}_{motor}",
-                target=f"{side}_{motor}",
+                name=prefixed(side, motor),
+                target=prefixed(side, motor),
                 trntype=mujoco.mjtTrn.mjTRN_TENDON,
                 ctrllimited=True,
                 ctrlrange=[-peak, peak],
             )
 
 
-def _add_sensors(spec: mujoco.MjSpec, design: Design, tree: Tree) -> None:
+def _add_sensors(spec: mujoco.MjSpec, design: RobotDesign, tree: Tree) -> None:
     import mujoco
 
     kind, place = mujoco.mjtSensor, mujoco.mjtObj
-    spec.body("pelvis").add_site(name="imu", pos=[0.0, 0.0, 0.0], group=5)
+    spec.body(tree.base).add_site(name="imu", pos=[0.0, 0.0, 0.0], group=5)
     for name, sensor in (
         ("gyro", kind.mjSENS_GYRO),
         ("accelerometer", kind.mjSENS_ACCELEROMETER),
@@ -219,9 +225,9 @@ def _add_sensors(spec: mujoco.MjSpec, design: Design, tree: Tree) -> None:
             objtype=place.mjOBJ_JOINT,
             objname=joint.name,
         )
-    for side in SIDES:
+    for side in design.copies:
         for motor in transmission.motor_names(design):
-            name = f"{side}_{motor}"
+            name = prefixed(side, motor)
             spec.add_sensor(
                 name=f"{name}_motor_velocity",
                 type=kind.mjSENS_TENDONVEL,
@@ -253,12 +259,13 @@ def _add_stand(spec: mujoco.MjSpec, tree: Tree) -> None:
     for joint in tree.moving:
         data.joint(joint.name).qpos = joint.default
     mujoco.mj_kinematics(model, data)
-    lowest = min(
+    heights = [
         float(data.geom(i).xpos[2] - model.geom_size[i, 0])
         for i in range(model.ngeom)
         if model.geom_conaffinity[i] == 1
-    )
-    data.qpos[2] -= lowest
+    ]
+    if tree.floating and heights:
+        data.qpos[2] -= min(heights)
     spec.add_key(name=STAND, qpos=data.qpos.copy())
 
 

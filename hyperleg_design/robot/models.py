@@ -14,13 +14,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import description, transmission
+from hyperleg_design.robot.dimensions import standing_height
 from hyperleg_design.robot.gear import rotor_inertia
-from hyperleg_design.robot.tree import Tree, build_tree
+from hyperleg_design.robot.kinematic_tree import Tree
+from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.tree_limb import turned
 
 if TYPE_CHECKING:
     import pinocchio
 
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +36,8 @@ class RigidBodyModel:
     only.
     """
 
-    design: Design
+    design: Any
+    """A `RobotDesign` of any family."""
     tree: Tree
     model: pinocchio.Model
     data: pinocchio.Data
@@ -86,11 +91,9 @@ class RigidBodyModel:
         """Zero posture, base at the height at which straight legs touch the floor."""
         import pinocchio as pin
 
-        from hyperleg_design.robot.consistency import leg_length
-
         q = np.array(pin.neutral(self.model))
         if self.floating:
-            q[2] = leg_length(self.design)
+            q[2] = float(standing_height(self.design))
         return q
 
     def to_mujoco(
@@ -127,18 +130,19 @@ def quaternion_matrix(xyzw: np.ndarray) -> np.ndarray:
     )
 
 
-def leg_reflected_inertia(design: Design, posture: str | None = None) -> np.ndarray:
+def leg_reflected_inertia(design: RobotDesign, posture: str | None = None) -> np.ndarray:
     """M diag(J) M^T of one leg, `(..., joints, joints)` [kg m^2]."""
     rotors = rotor_inertia(design)[..., : len(transmission.motor_names(design))]
     return transmission.reflected_inertia(transmission.joint_from_motor(design, posture), rotors)
 
 
-def rigid_body_model(design: Design, *, floating: bool = True) -> RigidBodyModel:
+def rigid_body_model(design: RobotDesign, *, floating: bool = True) -> RigidBodyModel:
     """Pinocchio model of one robot.
 
     Args:
         design: one robot; batches are refused.
-        floating: whether the base moves freely; else it is welded to the world.
+        floating: whether the base moves freely; else it is welded to the world, as is one that its
+            design fixes.
 
     Returns:
         The model with its data and the reflected inertias of the motors.
@@ -149,12 +153,17 @@ def rigid_body_model(design: Design, *, floating: bool = True) -> RigidBodyModel
     import pinocchio as pin
 
     tree = build_tree(design)
-    text = description.urdf(design, tree)
-    model: Any = (
-        pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
-        if floating
-        else pin.buildModelFromXML(text)
-    )
+    floating = floating and tree.floating
+    model: Any
+    if isinstance(design, TreeDesign):
+        model = _model_of(tree, floating)
+    else:
+        text = description.urdf(design, tree)
+        model = (
+            pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
+            if floating
+            else pin.buildModelFromXML(text)
+        )
     names = [j.name for j in tree.moving]
     own = list(model.names)[2:] if floating else list(model.names)[1:]
     if own != names:
@@ -163,7 +172,36 @@ def rigid_body_model(design: Design, *, floating: bool = True) -> RigidBodyModel
     reflected = np.zeros((model.nv, model.nv))
     block = leg_reflected_inertia(design)
     count = block.shape[0]
-    for leg in range(2):
+    for leg in range(len(design.copies)):
         place = slice(base + leg * count, base + (leg + 1) * count)
         reflected[place, place] = block
     return RigidBodyModel(design, tree, model, model.createData(), floating, reflected)
+
+
+def _model_of(tree: Tree, floating: bool) -> Any:
+    """Pinocchio's model with the joints in the tree's order, which a URDF does not keep."""
+    import pinocchio as pin
+
+    model = pin.Model()
+    model.name = tree.name
+    start = pin.SE3(np.eye(3), np.array([0.0, 0.0, 0.0 if floating else tree.height]))
+    place: dict[str, tuple[int, Any]] = {tree.base: (0, start)}
+    if floating:
+        root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root_joint")
+        place[tree.base] = (root, pin.SE3.Identity())
+    for joint in tree.joints:
+        parent, at = place[joint.parent]
+        own = at * pin.SE3(turned(np.rad2deg(joint.turn)), np.array(joint.position))
+        if joint.fixed:
+            place[joint.child] = (parent, own)
+            continue
+        kind = pin.JointModelRevoluteUnaligned(np.array(joint.axis))
+        place[joint.child] = (
+            model.addJoint(parent, kind, own, joint.name),
+            pin.SE3.Identity(),
+        )
+    for link in tree.links:
+        index, at = place[link.name]
+        model.appendBodyToJoint(index, pin.Inertia(link.mass, link.com, link.inertia), at)
+        model.addBodyFrame(link.name, index, at, 0)
+    return model

@@ -29,7 +29,8 @@ from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, MOTORS
 from hyperleg_design.robot.parameters import LABELS, Rule
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.hyperleg import HyperLeg
 
 CONFIDENCES = ("high", "medium", "low")
 RPM = 2 * math.pi / 60
@@ -188,8 +189,8 @@ class Motor:
 
 @dataclass(frozen=True, eq=False)
 class MotorArrays:
-    """Constants of the seven motors of one leg, batched; every array is `(..., 7)` in the order of
-    `MOTORS`.
+    """Constants of the motors of one limb, batched; every array is `(..., motors)`, HyperLeg's in
+    the order of `MOTORS`.
     """
 
     no_load_speed: np.ndarray
@@ -391,7 +392,7 @@ def _motor_at(path: Path, written: int) -> Motor:
     return load_motor(path)
 
 
-def check_names(design: Design, where: str) -> None:
+def check_names(design: HyperLeg, where: str) -> None:
     """Whether all motors that a design names are in the catalogue.
 
     Raises:
@@ -416,16 +417,19 @@ def gather(names: Any, value: Any) -> np.ndarray:
     )
 
 
-def motor_arrays(design: Design) -> MotorArrays:
-    """Constants of the seven motors of one leg of a design or batch, each `(..., 7)`."""
-    kind = design.electrical.constants
+def motor_arrays(design: RobotDesign) -> MotorArrays:
+    """Constants of the motors of one limb of a design or batch, each `(..., motors)`; of HyperLeg's
+    seven, whether the toe's is installed or not.
+    """
+    electrical = design.electrical_section
+    kind = electrical.constants
     if isinstance(kind, np.ndarray):
         raise InputError(
             design.name, "electrical.constants", kind.tolist(), "cannot differ within a batch"
         )
     batch = design.batch_shape
-    motors_of = [getattr(design.actuators, a).motor for a in ACTUATOR_OF_MOTOR]
-    voltage = np.broadcast_to(np.asarray(design.electrical.voltage_ratio, float), batch)[..., None]
+    motors_of = [actuator.motor for actuator in design.every_actuator]
+    voltage = np.broadcast_to(np.asarray(electrical.voltage_ratio, float), batch)[..., None]
 
     def stacked(value: Any) -> np.ndarray:
         return np.stack([np.broadcast_to(gather(n, value), batch) for n in motors_of], -1)

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hyperleg_design.robot.tree import Tree
+from hyperleg_design.robot.kinematic_tree import Tree, TreeJoint
 
 Pose = tuple[np.ndarray, np.ndarray]
-"""Rotation `(3, 3)` and position `(3,)` [m] in the pelvis's frame."""
+"""Rotation `(3, 3)` and position `(3,)` [m] in the base's frame."""
 
 
 def axis_rotation(axis: np.ndarray, angle: float) -> np.ndarray:
@@ -20,7 +20,7 @@ def axis_rotation(axis: np.ndarray, angle: float) -> np.ndarray:
 
 
 def link_poses(tree: Tree, angles: Mapping[str, float] | None = None) -> dict[str, Pose]:
-    """Pose of every link in the pelvis's frame.
+    """Pose of every link in the base's frame.
 
     Args:
         tree: the robot.
@@ -33,12 +33,24 @@ def link_poses(tree: Tree, angles: Mapping[str, float] | None = None) -> dict[st
     unknown = set(angles) - {j.name for j in tree.moving}
     if unknown:
         raise KeyError(f"no moving joint {sorted(unknown)[0]!r}")
-    poses: dict[str, Pose] = {"pelvis": (np.eye(3), np.zeros(3))}
+    poses: dict[str, Pose] = {tree.base: (np.eye(3), np.zeros(3))}
     for joint in tree.joints:
         rotation, position = poses[joint.parent]
+        if any(joint.turn):
+            poses[joint.child] = _turned(joint, rotation, position, angles.get(joint.name, 0.0))
+            continue
         turn = axis_rotation(np.array(joint.axis), angles.get(joint.name, 0.0))
         poses[joint.child] = (rotation @ turn, position + rotation @ np.array(joint.position))
     return poses
+
+
+def _turned(joint: TreeJoint, rotation: np.ndarray, position: np.ndarray, angle: float) -> Pose:
+    """Pose behind a joint whose frame is turned in its parent's."""
+    roll, pitch, yaw = joint.turn
+    x, y, z = np.eye(3)
+    turn = axis_rotation(z, yaw) @ axis_rotation(y, pitch) @ axis_rotation(x, roll)
+    own = rotation @ turn @ axis_rotation(np.array(joint.axis), angle)
+    return own, position + rotation @ np.array(joint.position)
 
 
 def default_angles(tree: Tree) -> dict[str, float]:
@@ -47,10 +59,12 @@ def default_angles(tree: Tree) -> dict[str, float]:
 
 
 def lowest_point(tree: Tree, poses: Mapping[str, Pose]) -> float:
-    """Height of the lowest sole pad in the pelvis's frame [m]."""
+    """Height of the lowest pad in the base's frame [m]; of the lowest link's origin where there
+    are no pads.
+    """
     heights = [
         float((poses[link.name][0] @ np.array(pad.position) + poses[link.name][1])[2]) - pad.size[0]
         for link in tree.links
         for pad in link.pads
     ]
-    return min(heights)
+    return min(heights or [float(position[2]) for _, position in poses.values()])

@@ -13,17 +13,20 @@ from __future__ import annotations
 
 import dataclasses
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot import tree_limb
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, POSTURES
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, POSTURES
 from hyperleg_design.robot.sections import LinkageScale
+from hyperleg_design.robot.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.hyperleg import HyperLeg
 
 HIP = slice(0, 3)
 KNEE, ANKLE_PITCH, ANKLE_ROLL, TOE = 3, 4, 5, 6
@@ -32,7 +35,7 @@ M_KNEE, M_ANKLE_LEFT, M_ANKLE_RIGHT, M_TOE = 3, 4, 5, 6
 """Columns of M below the hip."""
 
 
-def gear_ratios(design: Design) -> np.ndarray:
+def gear_ratios(design: HyperLeg) -> np.ndarray:
     """Gears over those of the reference build, below the hip; the gears themselves at the hip [-],
     `(..., 7)`.
     """
@@ -46,7 +49,7 @@ def gear_ratios(design: Design) -> np.ndarray:
     return np.stack(np.broadcast_arrays(*parts), -1).astype(float)
 
 
-def full_joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
+def full_joint_from_motor(design: HyperLeg, posture: str | None = None) -> np.ndarray:
     """M of the leg with all joints and motors, `(..., 7, 7)` [-].
 
     Args:
@@ -64,7 +67,7 @@ def full_joint_from_motor(design: Design, posture: str | None = None) -> np.ndar
     )
 
 
-def reference_joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
+def reference_joint_from_motor(design: HyperLeg, posture: str | None = None) -> np.ndarray:
     """M of the reference build, for which friction and gears are declared, `(..., 7, 7)` [-]; a
     reduction that the reference build leaves open is the design's own.
     """
@@ -102,20 +105,25 @@ def _matrix(printed: Any, scale: LinkageScale, gears: np.ndarray) -> np.ndarray:
     return matrix * gears[..., None, :]
 
 
-def joint_names(design: Design) -> tuple[str, ...]:
-    """Joints that move: all of `JOINTS`, or without the toe where that is locked."""
-    return JOINTS if design.toe.joint == "active" else JOINTS[:-1]
+def joint_names(design: RobotDesign) -> tuple[str, ...]:
+    """Joints of one limb that move; HyperLeg's are `JOINTS`, without the toe where that is
+    locked.
+    """
+    return tuple(design.joint_sections)
 
 
-def motor_names(design: Design) -> tuple[str, ...]:
-    """Motors that are there: all of `MOTORS`, or without the toe's where that is not installed."""
-    return MOTORS if design.actuators.toe_installed else MOTORS[:-1]
+def motor_names(design: RobotDesign) -> tuple[str, ...]:
+    """Motors of one limb that are there; HyperLeg's are `MOTORS`, without the toe's where that is
+    not installed.
+    """
+    return tuple(design.actuator_sections)
 
 
-def joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
+def joint_from_motor(design: RobotDesign, posture: str | None = None) -> np.ndarray:
     """M over the joints that move and the motors that are there, `(..., joints, motors)` [-].
 
-    A locked toe whose motor stays gives a 6 x 7 matrix: that motor still helps knee and ankle.
+    A locked toe whose motor stays gives a 6 x 7 matrix: that motor still helps knee and ankle. A
+    design that writes its tree out has one posture, its default, whatever is asked for.
 
     Args:
         design: a robot, or a batch of `n` robots.
@@ -125,7 +133,9 @@ def joint_from_motor(design: Design, posture: str | None = None) -> np.ndarray:
         M with tau_joint = M tau_motor and motor_velocity = M^T joint_velocity; power is the
         same on both sides.
     """
-    return full_joint_from_motor(design, posture)[
+    if isinstance(design, TreeDesign):
+        return tree_limb.joint_from_motor(design)
+    return full_joint_from_motor(cast("HyperLeg", design), posture)[
         ..., : len(joint_names(design)), : len(motor_names(design))
     ]
 
@@ -166,16 +176,19 @@ def reflected_inertia(matrix: np.ndarray, rotor_inertia: np.ndarray) -> np.ndarr
     return (matrix * np.asarray(rotor_inertia)[..., None, :]) @ np.swapaxes(matrix, -1, -2)
 
 
-def derate(design: Design) -> np.ndarray:
+def derate(design: RobotDesign) -> np.ndarray:
     """Fraction of the summed peak torque counted on at each joint that moves, `(..., joints)`
     [-].
     """
+    if isinstance(design, TreeDesign):
+        return tree_limb.of_joints(design, "derate")
+    actuators = cast("HyperLeg", design).actuators
     of_joint = {"ankle_pitch": "ankle", "ankle_roll": "ankle"}
-    parts = [getattr(design.actuators, of_joint.get(j, j)).derate for j in joint_names(design)]
+    parts = [getattr(actuators, of_joint.get(j, j)).derate for j in joint_names(design)]
     return np.stack(np.broadcast_arrays(*parts), -1).astype(float)
 
 
-def max_joint_torque(design: Design, posture: str = "standing") -> np.ndarray:
+def max_joint_torque(design: RobotDesign, posture: str = "standing") -> np.ndarray:
     """Largest torque of each joint alone, derated as in Table I, `(..., joints)` [Nm]: derate * sum
     |M| tau_peak.
 
@@ -190,7 +203,7 @@ def max_joint_torque(design: Design, posture: str = "standing") -> np.ndarray:
     return derate(design) * joint_torque(np.abs(joint_from_motor(design, posture)), peak)
 
 
-def single_joint_speed(design: Design, posture: str = "walking") -> np.ndarray:
+def single_joint_speed(design: RobotDesign, posture: str = "walking") -> np.ndarray:
     """No-load speed of each joint while the others stand still, `(..., joints)` [rad/s]: min over
     motors of omega_0 / |M|.
 
@@ -207,7 +220,7 @@ def single_joint_speed(design: Design, posture: str = "walking") -> np.ndarray:
         return np.min(np.where(matrix > 0, free[..., None, :] / matrix, np.inf), -1)
 
 
-def check_invertible(design: Design, where: str) -> None:
+def check_invertible(design: HyperLeg, where: str) -> None:
     """Whether motors reach every joint.
 
     Raises:

@@ -4,8 +4,7 @@ pictures.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -13,90 +12,21 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.inertials import LEG_LINKS, inertials
+from hyperleg_design.robot.kinematic_tree import Link, Shape, Tree, TreeJoint
 from hyperleg_design.robot.names import JOINTS, SIDES
+from hyperleg_design.robot.tree_build import tree_of
+from hyperleg_design.robot.tree_design import TreeDesign
 
 if TYPE_CHECKING:
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
+
+__all__ = ["SIGN", "Link", "Shape", "Tree", "TreeJoint", "build_tree"]
 
 SIGN = {"left": 1.0, "right": -1.0}
 
 
-@dataclass(frozen=True)
-class Shape:
-    """A drawn or colliding primitive in its link's frame."""
-
-    kind: str
-    """`box` (full sizes), `cylinder` (radius, length, along z) or `sphere` (radius)."""
-    size: tuple[float, ...]
-    """[m]"""
-    position: tuple[float, float, float]
-    """Of the centre [m]."""
-
-
-@dataclass(frozen=True, eq=False)
-class Link:
-    """A rigid link."""
-
-    name: str
-    mass: float
-    """[kg]; zero only for a link fixed to another."""
-    com: np.ndarray
-    """Centre of mass [m] `(3,)`."""
-    inertia: np.ndarray
-    """About the centre of mass [kg m^2] `(3, 3)`."""
-    visuals: tuple[Shape, ...]
-    pads: tuple[Shape, ...] = ()
-    """Spheres that touch the ground."""
-
-
-@dataclass(frozen=True)
-class TreeJoint:
-    """A joint between two links; frames are parallel in the zero posture."""
-
-    name: str
-    parent: str
-    child: str
-    position: tuple[float, float, float]
-    """Of the child's frame in the parent's [m]."""
-    axis: tuple[float, float, float]
-    fixed: bool
-    lower: float
-    """[rad]"""
-    upper: float
-    """[rad]"""
-    effort: float
-    """Largest torque [Nm]."""
-    velocity: float
-    """No-load speed [rad/s]."""
-    coulomb: float
-    """[Nm]"""
-    viscous: float
-    """[Nm s/rad]"""
-    default: float
-    """Posture to which actions are added [rad]."""
-
-
-@dataclass(frozen=True)
-class Tree:
-    """Links from the pelvis outward, and the joints between them in the order left leg, right
-    leg.
-    """
-
-    name: str
-    links: tuple[Link, ...]
-    joints: tuple[TreeJoint, ...]
-
-    @property
-    def moving(self) -> tuple[TreeJoint, ...]:
-        """Joints that move, left leg first."""
-        return tuple(j for j in self.joints if not j.fixed)
-
-    def link(self, name: str) -> Link:
-        """A link by name."""
-        return next(link for link in self.links if link.name == name)
-
-
-def build_tree(design: Design) -> Tree:
+def build_tree(design: RobotDesign) -> Tree:
     """The tree of one robot.
 
     Raises:
@@ -106,6 +36,13 @@ def build_tree(design: Design) -> Tree:
         raise InputError(
             design.name, "", None, "holds a batch of designs; take one of them for a model"
         )
+    if isinstance(design, TreeDesign):
+        return tree_of(design)
+    return _hyperleg(cast("Design", design))
+
+
+def _hyperleg(design: Design) -> Tree:
+    """The tree of a pelvis and two mirrored legs."""
     links: list[Link] = []
     joints: list[TreeJoint] = []
     for side in SIDES:

@@ -4,7 +4,7 @@ confound.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -15,10 +15,13 @@ from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, POSTURES
+from hyperleg_design.robot.tree_design import TreeDesign
 from hyperleg_design.sizing import zonotope
 from hyperleg_design.sizing.envelope import motor_envelope
+from hyperleg_design.sizing.tree_analysis import analyze_tree
 
 if TYPE_CHECKING:
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
 
 SCHEMA = 1
@@ -28,7 +31,7 @@ BELOW_HIP = slice(3, None)
 """Joints that share motors: knee, ankle pitch, ankle roll and, where it moves, the toe."""
 
 
-def analyze(design: Design) -> dict[str, Any]:
+def analyze(design: RobotDesign) -> dict[str, Any]:
     """Analyse one design.
 
     Args:
@@ -41,11 +44,15 @@ def analyze(design: Design) -> dict[str, Any]:
         [rad/s] (walking), `torque_alone` [Nm] by joint (walking, the others at zero, not derated),
         `joint_limits` (the joints under one convention, which it states),
         `reflected_inertia` [kg m^2] in the design's posture, `zonotope_to_box_volume` of the joints
-        below the hip (walking, zero speed), `motors`, `ablation_confound`.
+        below the hip (walking, zero speed), `motors`, `ablation_confound`. Of a design that writes
+        its tree out, what `tree_analysis.analyze_tree` returns.
 
     Raises:
         InputError: a batch of designs.
     """
+    if isinstance(design, TreeDesign):
+        return analyze_tree(design)
+    design = cast("Design", design)
     if design.batch_shape:
         raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
     table = mass_table(design)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -28,7 +28,8 @@ from hyperleg_design.robot.transmission import (
     motor_names,
     motor_velocity,
 )
-from hyperleg_design.sizing.contacts import TIP, contact_kinematics, sole_pads
+from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.sizing.contacts import TIP, contact_kinematics, contact_points, sole_pads
 from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
 from hyperleg_design.sizing.kinematics import (
     about_y,
@@ -42,6 +43,7 @@ from hyperleg_design.sizing.motions.foot_path import rolling
 from hyperleg_design.sizing.motions.motion import GRAVITY
 
 if TYPE_CHECKING:
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
 
 DIRECTIONS: Mapping[str, np.ndarray] = {
@@ -92,7 +94,7 @@ class ContactForce:
     """The force in its direction over the robot's weight [-]."""
 
 
-def posture(design: Design, name: str, model: RigidBodyModel | None = None) -> np.ndarray:
+def posture(design: RobotDesign, name: str, model: RigidBodyModel | None = None) -> np.ndarray:
     """A named posture of both legs alike, the lower pads on the floor: Pinocchio's `q`, `(nq,)`.
 
     `standing`: knees bent by 20 deg, soles flat. `mid_squat`: by 80 deg. `toe_off`: heels up by 30
@@ -103,9 +105,19 @@ def posture(design: Design, name: str, model: RigidBodyModel | None = None) -> n
         InputError: no such posture, or a batch.
         InfeasibleError: a joint's range ends before.
     """
+    model = model or rigid_body_model(design)
+    if isinstance(design, TreeDesign):
+        if name != "default":
+            raise InputError("posture", "", name, "expects default, the design's own posture")
+        q = model.neutral()
+        start = 7 if model.floating else 0
+        q[start:] = [joint.default for joint in model.tree.moving]
+        if model.floating:
+            q[2] -= float(contact_points(model, q)[:, 2].min(initial=np.inf))
+        return q
     if name not in POSTURES:
         raise InputError("posture", "", name, f"expects one of {', '.join(POSTURES)}")
-    model = model or rigid_body_model(design)
+    design = cast("Design", design)
     pitch = np.asarray(_HEEL_PITCH if name == "toe_off" else 0.0)
     moved = rolling(design, TIP, np.array([[float(pitch)], [0.0], [0.0]]))[0, 0]
     ankle = np.array([moved[0], 0.0, design.foot.ankle_height + moved[1]])
@@ -125,7 +137,7 @@ def posture(design: Design, name: str, model: RigidBodyModel | None = None) -> n
 
 
 def largest_force(
-    design: Design,
+    design: RobotDesign,
     q: np.ndarray | str,
     direction: str = "vertical",
     *,
@@ -162,8 +174,9 @@ def largest_force(
         raise InputError(
             "capability", "direction", direction, f"expects one of {', '.join(DIRECTIONS)}"
         )
-    if side not in SIDES:
-        raise InputError("capability", "side", side, f"expects one of {', '.join(SIDES)}")
+    sides = design.copies
+    if side not in sides:
+        raise InputError("capability", "side", side, f"expects one of {', '.join(sides)}")
     if vertical is not None and not (
         np.isfinite(vertical) and vertical > 0 and direction == "forward"
     ):
@@ -192,10 +205,13 @@ def largest_force(
         )
 
     weight = GRAVITY * float(sum(link.mass for link in model.tree.links))
-    columns = slice(6 + SIDES.index(side) * joints, 6 + (SIDES.index(side) + 1) * joints)
+    base = model.base_dof
+    columns = slice(base + sides.index(side) * joints, base + (sides.index(side) + 1) * joints)
     points, jacobian = contact_kinematics(model, q)
     pads = sole_pads(model.tree)
-    own = np.array([pad.side == side for pad in pads])
+    own = np.array([pad.side == side for pad in pads], bool)
+    if not np.any(own):
+        raise InfeasibleError(f"{design.name}: {side or 'the robot'} has no pads to push with")
     lowest = points[own, 2].min()
     touching = np.flatnonzero(own & (points[:, 2] < lowest + ON_FLOOR))
     gravity = model.inverse_dynamics(q, np.zeros(model.model.nv), np.zeros(model.model.nv))[columns]
@@ -204,7 +220,7 @@ def largest_force(
 
     force = cp.Variable((len(touching), 3))  # over weight
     torque = cp.Variable(len(motor_names(design)))  # over peak
-    peak, friction = envelope.peak_torque, float(design.contact.friction)
+    peak, friction = envelope.peak_torque, float(design.contact_section.friction)
     pushed = np.swapaxes(jacobian[touching][:, :, columns].reshape(-1, joints), 0, 1) * weight
     scale = np.max(np.abs(matrix) @ peak)
     constraints = [
@@ -257,7 +273,7 @@ def largest_force(
 
 
 def _result(
-    design: Design,
+    design: RobotDesign,
     direction: str,
     model: RigidBodyModel,
     q: np.ndarray,
@@ -274,10 +290,13 @@ def _result(
     pad_force = np.zeros((len(pads), 3))
     pad_force[touching] = found
     total = found.sum(0)
-    ankle = model.frame_position(q, f"{side}_foot")
+    link = pads[touching[0]].link if isinstance(design, TreeDesign) else f"{side}_foot"
+    ankle = model.frame_position(q, link)
     center = (points[touching] * found[:, 2:]).sum(0) / max(total[2], 1e-12) - ankle
     near = np.minimum(upper - torque, torque - lower) / envelope.peak_torque
-    slack = float(design.contact.friction) * found[:, 2] - np.linalg.norm(found[:, :2], axis=1)
+    slack = float(design.contact_section.friction) * found[:, 2] - np.linalg.norm(
+        found[:, :2], axis=1
+    )
     loaded = found[:, 2] > 1e-3 * weight
     return ContactForce(
         design=design.name,

@@ -35,6 +35,8 @@ class Pad:
 def sole_pads(tree: Tree) -> tuple[Pad, ...]:
     """Pads of both feet: left heel, ball, tip, then the right's; two in each row."""
     found = []
+    if not tree.hyperleg:
+        return _limb_pads(tree)
     for link in tree.links:
         side = link.name.split("_")[0]
         for index, shape in enumerate(link.pads):
@@ -42,6 +44,25 @@ def sole_pads(tree: Tree) -> tuple[Pad, ...]:
             found.append(
                 Pad(
                     f"{side}_{row}_{index % 2}", side, row, link.name, shape.position, shape.size[0]
+                )
+            )
+    return tuple(found)
+
+
+def _limb_pads(tree: Tree) -> tuple[Pad, ...]:
+    """Pads of a tree that is written out, limb by limb; those of the root link belong to none."""
+    found = []
+    for link in tree.links:
+        limb = next((n for n in tree.limbs if n and link.name.startswith(f"{n}_")), tree.limbs[0])
+        for index, shape in enumerate(link.pads):
+            found.append(
+                Pad(
+                    f"{link.name}_{index}",
+                    "" if link.name == tree.base else limb,
+                    "",
+                    link.name,
+                    shape.position,
+                    shape.size[0],
                 )
             )
     return tuple(found)

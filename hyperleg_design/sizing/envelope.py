@@ -23,7 +23,7 @@ from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.transmission import motor_names
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 BRAKING, IDLE, DRIVING = -1, 0, 1
 """What `quadrant` returns: the motor takes power from the joint, exchanges none, gives power to
@@ -72,7 +72,7 @@ class MotorEnvelope:
         )
 
 
-def motor_envelope(design: Design) -> MotorEnvelope:
+def motor_envelope(design: RobotDesign) -> MotorEnvelope:
     """Envelope of the installed motors of one leg, a robot's `(motors,)` or a batch's `(n,
     motors)`.
 
@@ -89,8 +89,8 @@ def motor_envelope(design: Design) -> MotorEnvelope:
         stall_torque=arrays.stall_torque[..., installed],
         peak_torque=arrays.peak_torque[..., installed],
         power_constant=arrays.power_constant[..., installed],
-        efficiency_out=design.electrical.efficiency_out,
-        efficiency_regen=design.electrical.efficiency_regen,
+        efficiency_out=design.electrical_section.efficiency_out,
+        efficiency_regen=design.electrical_section.efficiency_regen,
     )
 
 

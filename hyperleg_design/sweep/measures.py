@@ -15,8 +15,9 @@ import numpy as np
 
 from hyperleg_design.reading import summary_line
 from hyperleg_design.robot import consistency, masses, transmission
+from hyperleg_design.robot.bodies import Inertial
 from hyperleg_design.robot.design import Design
-from hyperleg_design.robot.inertials import Inertial, inertials
+from hyperleg_design.robot.inertials import inertials
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
 from hyperleg_design.sizing import zonotope

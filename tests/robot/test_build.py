@@ -41,7 +41,7 @@ def test_the_files(built):
         "hyperleg.xml",
         "design.yaml",
         "tree.yaml",
-        "biped.urdf.xacro",
+        "robot.urdf.xacro",
         "masses.csv",
         "masses.md",
         "manifest.json",
@@ -107,7 +107,7 @@ def test_the_same_bytes_twice(heavy_toe, built, tmp_path):
 def test_xacro_makes_the_urdf_without_this_package(built):
     xacro = Path(sys.executable).with_name("xacro")
     done = subprocess.run(
-        [xacro, "biped.urdf.xacro", "tree:=tree.yaml"],
+        [xacro, "robot.urdf.xacro", "tree:=tree.yaml"],
         cwd=built,
         capture_output=True,
         text=True,
@@ -147,7 +147,7 @@ def test_a_name_of_ones_own(tmp_path, write):
     path = write("tall.yaml", "base: hyperleg\nthigh: {length: 0.4}\n")
     built = build(load_design(path), tmp_path / "out")
     assert (built / "tall.urdf").is_file()
-    assert '<robot name="tall"' in (built / "biped.urdf.xacro").read_text()
+    assert '<robot name="tall"' in (built / "robot.urdf.xacro").read_text()
 
 
 def test_a_batch_cannot_be_built(heavy_toe, tmp_path):

@@ -1,0 +1,34 @@
+"""Mass and height of a robot of any family, batched."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from hyperleg_design.robot import masses, tree_limb
+from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot.tree_design import TreeDesign
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.design import Design
+
+
+def total_mass(design: RobotDesign) -> Any:
+    """Mass of the robot [kg], `(...)`."""
+    if isinstance(design, TreeDesign):
+        return tree_limb.limb_masses(design).total
+    return masses.mass_table(cast("Design", design)).total
+
+
+def limb_mass(design: RobotDesign) -> Any:
+    """Mass of one limb: of one leg, or of all but the root link [kg], `(...)`."""
+    if isinstance(design, TreeDesign):
+        return tree_limb.limb_masses(design).limb
+    return masses.mass_table(cast("Design", design)).leg
+
+
+def standing_height(design: RobotDesign) -> Any:
+    """Base's origin above the floor in the zero posture [m], `(...)`."""
+    if isinstance(design, TreeDesign):
+        return tree_limb.standing_height(design)
+    return leg_length(cast("Design", design))

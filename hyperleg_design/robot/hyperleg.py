@@ -1,0 +1,78 @@
+"""The parameters of HyperLeg's family: a pelvis and two mirrored legs of seven joints.
+
+The data alone; `robot.design.Design` is the same, checked whenever one is made. Axes: x forward,
+y left, z up. Pitch axes point left, so hip flexion is negative, knee flexion, plantar flexion and
+toe flexion are positive; yaw and roll axes of the right leg mirror the left's, so equal angles are
+mirrored postures.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, SIDES
+from hyperleg_design.robot.sections import (
+    Actuators,
+    Contact,
+    Electrical,
+    Foot,
+    FrictionModel,
+    GearModel,
+    Hip,
+    Joints,
+    MassModel,
+    Pelvis,
+    ReferenceBuild,
+    Segment,
+    StopModel,
+    Toe,
+    Transmission,
+)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class HyperLeg(RobotDesign):
+    """A biped of HyperLeg's kind, or a batch of bipeds that differ in numbers and motors only."""
+
+    pelvis: Pelvis
+    hip: Hip
+    thigh: Segment
+    shank: Segment
+    foot: Foot
+    toe: Toe
+    joints: Joints
+    actuators: Actuators
+    transmission: Transmission
+    electrical: Electrical
+    reference: ReferenceBuild
+    masses: MassModel
+    contact: Contact
+    stops: StopModel = field(default_factory=StopModel)
+    friction: FrictionModel = field(default_factory=FrictionModel)
+    gears: GearModel = field(default_factory=GearModel)
+    variant: str = "toe"
+    """Ablation that made it; informative."""
+
+    @property
+    def copies(self) -> tuple[str, ...]:
+        """The two sides."""
+        return SIDES
+
+    @property
+    def joint_sections(self) -> dict[str, Any]:
+        """Joints that move, by name: all seven, or without the toe where that is locked."""
+        names = JOINTS if self.toe.joint == "active" else JOINTS[:-1]
+        return {name: getattr(self.joints, name) for name in names}
+
+    @property
+    def every_actuator(self) -> tuple[Any, ...]:
+        """Sections of the seven motors, the toe's among them whether it is installed or not."""
+        return tuple(getattr(self.actuators, name) for name in ACTUATOR_OF_MOTOR)
+
+    @property
+    def actuator_sections(self) -> dict[str, Any]:
+        """Motors that are there, by name: all seven, or without the toe's."""
+        names = MOTORS if self.actuators.toe_installed else MOTORS[:-1]
+        return dict(zip(names, self.every_actuator, strict=False))

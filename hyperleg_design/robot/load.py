@@ -1,0 +1,134 @@
+"""Reading a design of any family."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.design import (
+    Design,
+    design_from_mapping,
+    leaf_values,
+    load_design,
+    parse_overrides,
+)
+from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.tree_load import FAMILY, tree_design_from_mapping
+
+FAMILIES = ("hyperleg", FAMILY)
+"""What `family:` may say; a file without it is of the first one."""
+
+
+def load_robot(
+    name: str | Path = "hyperleg",
+    *,
+    overrides: Mapping[str, Any] | Iterable[str] = (),
+    overlays: Iterable[str | Path] = (),
+    variant: str | None = None,
+) -> RobotDesign:
+    """Read a design of any family.
+
+    Args:
+        name: a shipped name (`hyperleg`, `mini_cheetah`) or a YAML file. A file holds a whole
+            design, or `base: NAME` with the leaves that differ.
+        overrides: mapping of dotted paths to values, or texts `path=value`.
+        overlays: YAML files with nested leaves, applied in order before `overrides`.
+        variant: ablation to make of a HyperLeg, one of `names.VARIANTS`.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    path = resources.find("descriptions", name)
+    if family_of(path) != FAMILY:
+        return load_design(name, overrides=overrides, overlays=overlays, variant=variant)
+    if variant:
+        raise InputError("variant", "", variant, f"{name} has no variants; leave it out")
+    design = _read(path)
+    for overlay in overlays:
+        place = resources.find("descriptions", overlay)
+        design = _overlaid(design, read_yaml(place), short_name(place))
+    chosen = parse_overrides(overrides)
+    return design.with_values(chosen, "--set") if chosen else design
+
+
+def walker(design: RobotDesign, what: str) -> Design:
+    """The design, where it is of HyperLeg's family.
+
+    Args:
+        design: a robot of any family.
+        what: that needs one, for the error.
+
+    Raises:
+        InputError: it is of another family.
+    """
+    if not isinstance(design, Design):
+        raise InputError(
+            what,
+            "",
+            design.name,
+            "writes its tree out; this needs a design of HyperLeg's family, such as hyperleg",
+        )
+    return design
+
+
+def robot_from_mapping(data: Mapping[str, Any], where: str) -> RobotDesign:
+    """A design of any family from what its `to_mapping` gives.
+
+    Raises:
+        InputError: no mapping, an unknown or missing field, or a value that makes no sense.
+    """
+    if isinstance(data, Mapping) and data.get("family") == FAMILY:
+        return tree_design_from_mapping(data, where, where)
+    return design_from_mapping(data, where)
+
+
+def family_of(path: Path) -> str:
+    """Family of the design in a file, that of its base where it has one.
+
+    Raises:
+        InputError: an unknown family, or a base that leads back to itself.
+    """
+    seen: list[Path] = []
+    while True:
+        data = read_yaml(path)
+        family = data.get("family")
+        if family is not None and family not in FAMILIES:
+            remedy = f"expects one of {', '.join(FAMILIES)}"
+            raise InputError(short_name(path), "family", family, remedy)
+        if family or not isinstance(data.get("base"), str) or path.resolve() in seen:
+            return family or FAMILIES[0]
+        seen.append(path.resolve())
+        path = _base(path, data["base"])
+
+
+def _base(path: Path, name: str) -> Path:
+    beside = path.with_name(f"{name}.yaml")
+    return beside if beside.is_file() else resources.find("descriptions", name)
+
+
+def _read(path: Path, seen: tuple[Path, ...] = ()) -> TreeDesign:
+    data, where = read_yaml(path), short_name(path)
+    if path.resolve() in seen:
+        raise InputError(where, "base", data.get("base"), "leads back to itself")
+    name = str(data.get("name", re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem)))
+    if "base" not in data:
+        return tree_design_from_mapping(data, name, where)
+    base = _read(_base(path, str(data["base"])), (*seen, path.resolve()))
+    rest = {k: v for k, v in data.items() if k not in ("base", "family", "name", "description")}
+    made = _overlaid(base, rest, where)
+    return dataclasses.replace(made, name=name, source=where)
+
+
+def _overlaid(design: TreeDesign, data: Mapping[str, Any], where: str) -> TreeDesign:
+    values, origins = leaf_values(data, type(design), where)
+    if not values:
+        return design
+    made = design.with_values(values, where)
+    return dataclasses.replace(made, origins={**made.origins, **origins})

@@ -1,0 +1,39 @@
+"""A small design that writes its tree out, for tests to break."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.tree_load import tree_design_from_mapping
+
+SHIPPED = ("mini_cheetah", "parallel_ankle", "teaching_leg")
+"""Robots in `descriptions/` that write their tree out."""
+
+_LINK = {"mass": 1.0, "com": [0, 0, -0.1], "gyration": [0.1, 0.1, 0.05]}
+_LEG: dict[str, Any] = {
+    "family": "tree",
+    "name": "leg",
+    "trunk": {"link": "base", "motion": "fixed", "height": 0.5},
+    "links": {"base": dict(_LINK), "thigh": dict(_LINK), "shank": dict(_LINK)},
+    "joints": {
+        "hip": {"parent": "base", "child": "thigh"},
+        "knee": {"parent": "thigh", "child": "shank", "position": [0, 0, -0.2]},
+    },
+    "actuators": {
+        "hip": {"motor": "RI70", "gear": 7, "housed_in": "base"},
+        "knee": {"motor": "RI60", "gear": 9, "housed_in": "thigh"},
+    },
+    "pads": {"foot": {"link": "shank", "position": [0, 0, -0.2], "radius": 0.02}},
+}
+
+
+def leg_file(**sections: Any) -> dict[str, Any]:
+    """What a file of a leg of two joints holds, with sections replaced."""
+    return copy.deepcopy(_LEG) | sections
+
+
+def leg(**sections: Any) -> TreeDesign:
+    """A leg of two joints on a stand."""
+    return tree_design_from_mapping(leg_file(**sections), "leg", "leg.yaml")
