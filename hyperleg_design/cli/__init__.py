@@ -13,7 +13,7 @@ from typing import Annotated, Any, Union
 import tyro
 
 from hyperleg_design import __version__
-from hyperleg_design.cli import design, gap, policies, validate
+from hyperleg_design.cli import design, gap, policies, search, validate
 from hyperleg_design.cli.arguments import check_bounds
 from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.robot.motors import use_folder
@@ -49,6 +49,7 @@ VERBS: dict[str, Any] = {
     "check": design.Check,
     "analyze": design.Analyze,
     "sweep": design.Sweep,
+    "search": search.Search,
     "compare": design.Compare,
     "study": design.Study,
     "train": policies.Train,

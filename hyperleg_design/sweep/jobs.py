@@ -86,9 +86,7 @@ def cluster(address: str) -> Iterator[Executor | None]:
             "--scheduler", "", address, "needs hyperleg-design[cluster] (dask.distributed)"
         ) from None
     try:
-        client: Any = distributed.Client(  # type: ignore[no-untyped-call]
-            address, timeout=CONNECT, set_as_default=False
-        )
+        client: Any = distributed.Client(address, timeout=CONNECT, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise InputError(
             "--scheduler", "", address, f"does not answer ({type(error).__name__}); is it running?"

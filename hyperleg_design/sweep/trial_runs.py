@@ -14,7 +14,7 @@ import hashlib
 import io
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
@@ -183,10 +183,33 @@ def evaluate_batch(
 ) -> bytes:
     """Trials of one policy on some designs of a sweep, as a Parquet file."""
     values = {name: column[samples] for name, column in sweep.samples().items()}
+    return _parquet(evaluate_values(sweep, variant, values, samples, protocol, policy, threads))
+
+
+def evaluate_values(
+    sweep: Sweep,
+    variant: str,
+    values: Mapping[str, np.ndarray],
+    samples: np.ndarray,
+    protocol: dict[str, Any],
+    policy: Path,
+    threads: int | None = None,
+) -> pd.DataFrame:
+    """Trials of one policy on designs by their values on the axes, `(n,)` each; see `trial_rows`.
+
+    Args:
+        sweep: the definition.
+        variant: ablation.
+        values: by axis, `(n,)`.
+        samples: numbers of the designs, `(n,)`.
+        protocol: as `protocol_mapping` gives it.
+        policy: ONNX file.
+        threads: of the simulation.
+    """
     designs = sweep.design(values, variant).rows(np.arange(len(samples)))
     run = protocol_from_mapping(protocol, "protocol")
     found, rejected = evaluate_all(load_policy(policy), designs, run, threads)
-    return _parquet(trial_rows(found, rejected, samples, variant, run, policy))
+    return trial_rows(found, rejected, samples, variant, run, policy)
 
 
 def evaluate_all(

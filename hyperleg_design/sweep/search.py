@@ -1,0 +1,393 @@
+"""Search for good designs with Optuna: designs are asked for in batches, evaluated together, and
+told.
+
+The axes of a sweep are the space: ranges become numbers, lists become choices. Objectives are any
+measures of `registry`; constraints hold torque, heat and falls within bounds. The study lies in a
+database (SQLite beside the results, or PostgreSQL for many machines), so a search goes on where it
+was killed, and `optuna-dashboard` shows it while it runs.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import uuid
+import warnings
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.evaluation.protocol import protocol_mapping
+from hyperleg_design.sweep import measures, registry
+from hyperleg_design.sweep.evaluate import evaluate_samples
+from hyperleg_design.sweep.jobs import completed
+from hyperleg_design.sweep.space import Sweep
+from hyperleg_design.sweep.trial_runs import BATCH, Plan, evaluate_values, kind_of
+from hyperleg_design.sweep.trial_table import design_table
+
+if TYPE_CHECKING:
+    import optuna
+    import pandas as pd
+
+DATABASE, OWNER = "study.db", "search.json"
+VARIANT = "variant"
+"""Parameter that chooses the toe, where there are several."""
+REASON, ROW, OWN = "reason", "row", "owner"
+"""Attributes of a trial: why it failed, all that was measured, and who runs it."""
+_BOUND = re.compile(r"\s*([\w.]+)\s*(<=|>=)\s*(\S+)\s*")
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """A bound on a measure."""
+
+    name: str
+    """Full name of the measure."""
+    bound: float
+    at_most: bool
+    """Whether the measure must not be above the bound; else not below."""
+
+    def violation(self, value: float) -> float:
+        """By how much a value breaks it; not positive where it holds, infinite where unknown."""
+        if not np.isfinite(value):
+            return float("inf")
+        return value - self.bound if self.at_most else self.bound - value
+
+
+def read_constraint(text: str, protocols: Sequence[str]) -> Constraint:
+    """A constraint from a text such as `walk.thermal_peak<=1`.
+
+    Raises:
+        InputError: no such form, measure, or number.
+    """
+    found = _BOUND.fullmatch(text)
+    try:
+        if found is None:
+            raise ValueError
+        bound = float(found[3])
+    except ValueError:
+        raise InputError(
+            "--constraint", "", text, "expects MEASURE<=NUMBER or MEASURE>=NUMBER"
+        ) from None
+    entry = registry.resolve(found[1], protocols, "--constraint")
+    return Constraint(entry.name, bound, found[2] == "<=")
+
+
+def usual_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
+    """Falls, heat and torque within bounds under each protocol (assumed)."""
+    return tuple(
+        Constraint(f"{protocol}.{name}", bound, True)
+        for protocol in protocols
+        for name, bound in (("fell", 0.05), ("thermal_peak", 1.0), ("limit_share", 0.05))
+    )
+
+
+@dataclass(frozen=True)
+class Search:
+    """What is looked for."""
+
+    sweep: Sweep
+    """Its axes are the space; its grid or samples are not used."""
+    plan: Plan
+    objectives: tuple[str, ...]
+    """Full names of measures."""
+    constraints: tuple[Constraint, ...]
+
+    @property
+    def protocols(self) -> list[str]:
+        """Kinds of the plan's protocols."""
+        return [kind_of(p) for p in self.plan.protocols]
+
+    @property
+    def directions(self) -> list[str]:
+        """`minimize` or `maximize` for each objective."""
+        better = [registry.entries()[name].better for name in self.objectives]
+        return ["maximize" if b == "high" else "minimize" for b in better]
+
+    def digest(self) -> str:
+        """Fingerprint of all that decides a trial's numbers."""
+        described = [
+            self.sweep.digest(),
+            self.plan.digest,
+            self.objectives,
+            [vars(c) for c in self.constraints],
+        ]
+        return hashlib.sha256(json.dumps(described).encode()).hexdigest()
+
+
+def search_of(
+    sweep: Sweep,
+    plan: Plan,
+    objectives: Sequence[str] = (),
+    constraints: Sequence[str] = (),
+) -> Search:
+    """A search over a sweep's axes.
+
+    Args:
+        sweep: the space.
+        plan: protocols and policies.
+        objectives: names of measures; the sweep's own by default.
+        constraints: texts such as `walk.fell<=0.1`; `usual_constraints` by default.
+
+    Raises:
+        InputError: no objective, or a name that is no measure at hand.
+    """
+    protocols = [kind_of(p) for p in plan.protocols]
+    names = objectives or (*sweep.objectives, *sweep.trial_objectives)
+    chosen = tuple(registry.resolve(n, protocols, "--objective").name for n in names)
+    if not chosen or len(set(chosen)) < len(chosen):
+        raise InputError("search", "objectives", list(names), "expects different measures")
+    bounds = tuple(read_constraint(text, protocols) for text in constraints)
+    return Search(sweep, plan, chosen, bounds or usual_constraints(protocols))
+
+
+@contextmanager
+def _database(url: str) -> Iterator[None]:
+    """Errors of the database as one clear error."""
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        yield
+    except (SQLAlchemyError, ImportError) as error:
+        reason = " ".join(str(error).split())[:160]
+        raise InputError(
+            "--storage", "", re.sub(r"//[^@/]*@", "//...@", url), f"does not serve: {reason}"
+        ) from None
+
+
+def open_study(search: Search, storage: str, name: str) -> optuna.Study:
+    """The study of a search in a database, made where it is not there.
+
+    Raises:
+        InputError: Optuna is not installed, or the database refuses or is corrupt.
+        OutputError: the database holds another search under this name.
+    """
+    try:
+        import optuna
+    except ImportError:
+        raise InputError("search", "", None, "needs hyperleg-design[search] (optuna)") from None
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
+    with _database(storage):
+        try:
+            study = optuna.create_study(
+                storage=storage,
+                study_name=name,
+                load_if_exists=True,
+                directions=search.directions,
+                sampler=optuna.samplers.TPESampler(seed=search.sweep.seed),
+            )
+        except ValueError:  # other directions
+            study = None
+        if study is not None and "digest" not in study.user_attrs:
+            study.set_metric_names(list(search.objectives))
+            study.set_user_attr("digest", search.digest())
+        if study is None or study.user_attrs["digest"] != search.digest():
+            raise OutputError(
+                f"the study {name} in this database is of another space, plan, objective or "
+                f"constraint; choose another --name"
+            )
+    return study
+
+
+def run_search(
+    search: Search,
+    out: str | Path,
+    trials: int,
+    *,
+    storage: str = "",
+    name: str = "",
+    batch: int = BATCH,
+    executor: Executor | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+) -> optuna.Study:
+    """Search until the study holds so many finished trials.
+
+    Args:
+        search: what is looked for.
+        out: folder that marks this process's own trials, and holds the database by default.
+        trials: finished ones in all, those of earlier and other runs included.
+        storage: URL of the database; SQLite in `out` by default.
+        name: of the study; the sweep's by default.
+        batch: designs asked for and evaluated at a time; a killed run repeats at most those.
+        executor: evaluates on other processes or machines; this process by default.
+        threads: of each simulation.
+        progress: show a bar.
+
+    Returns:
+        The study. Each trial has all that was measured as the attribute `row`; failed ones say why.
+
+    Raises:
+        InputError: the database refuses, or a policy does not fit.
+        OutputError: the database holds another search under this name.
+    """
+    import optuna
+    from tqdm import tqdm
+
+    folder = Path(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    url = storage or f"sqlite:///{(folder / DATABASE).resolve()}"
+    study = open_study(search, url, name or search.sweep.name)
+    owner = _owner(folder)
+    done = (optuna.trial.TrialState.COMPLETE, optuna.trial.TrialState.FAIL)
+    with _database(url):
+        _take_up(study, owner)
+        finished = len(study.get_trials(deepcopy=False, states=done))
+        with tqdm(
+            total=trials, initial=min(finished, trials), disable=not progress, unit="design"
+        ) as bar:
+            while finished < trials:
+                asked = [study.ask() for _ in range(min(batch, trials - finished))]
+                for trial in asked:
+                    trial.set_user_attr(OWN, owner)
+                _evaluate(search, study, asked, executor, threads)
+                before = finished
+                finished = len(study.get_trials(deepcopy=False, states=done))
+                bar.update(finished - before)
+    return study
+
+
+def _owner(folder: Path) -> str:
+    """Name of those who search into a folder, by which a later run knows its own trials."""
+    path = folder / OWNER
+    if not path.exists():
+        path.write_text(json.dumps({OWN: uuid.uuid4().hex}))
+    try:
+        return str(json.loads(path.read_text())[OWN])
+    except (ValueError, KeyError, TypeError):
+        raise OutputError(f"{path}: is damaged; delete it") from None
+
+
+def _take_up(study: optuna.Study, owner: str) -> None:
+    """Run again what a killed run of the same folder left unfinished."""
+    import optuna
+
+    running = (optuna.trial.TrialState.RUNNING,)
+    for trial in study.get_trials(deepcopy=False, states=running):
+        if trial.user_attrs.get(OWN) == owner:
+            study.tell(trial.number, state=optuna.trial.TrialState.PRUNED)
+            study.enqueue_trial(trial.params)
+
+
+def _suggested(search: Search, trial: optuna.Trial) -> tuple[str, dict[str, Any]]:
+    """Variant and value of each axis."""
+    values: dict[str, Any] = {}
+    for axis in search.sweep.axes:
+        values[axis.name] = (
+            trial.suggest_categorical(axis.name, list(axis.levels))
+            if axis.levels
+            else trial.suggest_float(axis.name, axis.low, axis.high, log=axis.log)
+        )
+    variants = search.sweep.variants
+    variant = trial.suggest_categorical(VARIANT, variants) if len(variants) > 1 else variants[0]
+    return str(variant), values
+
+
+def _evaluate(
+    search: Search,
+    study: optuna.Study,
+    asked: list[optuna.Trial],
+    executor: Executor | None,
+    threads: int | None,
+) -> None:
+    """Evaluate what was asked for, and tell."""
+    import pandas as pd
+
+    sweep = search.sweep
+    points = [_suggested(search, trial) for trial in asked]
+    rows: dict[int, dict[str, Any]] = {}
+    reasons: dict[int, str] = {}
+    jobs: list[tuple[int, tuple[Any, ...]]] = []
+    for variant in sweep.variants:
+        own = [i for i, (v, _) in enumerate(points) if v == variant]
+        if not own:
+            continue
+        values = {a.name: np.array([points[i][1][a.name] for i in own]) for a in sweep.axes}
+        numbers, refused = evaluate_samples(sweep, values, variant)
+        columns = measures.columns(sweep.measures)
+        for k, i in enumerate(own):
+            rows[i] = {"sample": asked[i].number, "variant": variant, **points[i][1]}
+            rows[i] |= dict(zip(columns, numbers[:, k].tolist(), strict=True))
+            if refused[k]:
+                reasons[i] = str(refused[k])
+        good = [k for k in range(len(own)) if not refused[k]]
+        samples = np.array([asked[own[k]].number for k in good])
+        kept = {name: column[good] for name, column in values.items()}
+        for protocol in search.plan.protocols if good else ():
+            for one in search.plan.policies[kind_of(protocol), variant]:
+                job = (sweep, variant, kept, samples, protocol_mapping(protocol), one.path, threads)
+                jobs.append((len(jobs), job))
+    parts = dict(completed(evaluate_values, jobs, executor))
+    measured: dict[int, dict[str, Any]] = {}
+    if parts:
+        trials = pd.concat([parts[k] for k in sorted(parts)], ignore_index=True)
+        whole = pd.DataFrame([rows[i] for i in sorted(rows)])
+        designs = design_table(sweep, trials, {str(c): whole[c].to_numpy() for c in whole})
+        for row in designs.to_dict("records"):
+            measured[int(row["sample"])] = {str(k): v for k, v in row.items()}
+    for i, trial in enumerate(asked):
+        _tell(search, study, trial, rows[i] | measured.get(trial.number, {}), reasons.get(i, ""))
+
+
+def _tell(
+    search: Search, study: optuna.Study, trial: optuna.Trial, row: dict[str, Any], reason: str
+) -> None:
+    import optuna
+
+    plain = {k: _plain(v) for k, v in row.items()}
+    trial.set_user_attr(ROW, plain)
+    values = [float(row.get(name, np.nan)) for name in search.objectives]
+    for constraint in search.constraints:
+        violation = constraint.violation(float(row.get(constraint.name, np.nan)))
+        trial.set_constraint(constraint.name, min(violation, 1e6))
+    refused = reason or next((str(row[k]) for k in row if k.endswith(".reason") and row[k]), "")
+    if not refused and not np.isfinite(values).all():
+        lost = [n for n, v in zip(search.objectives, values, strict=True) if not np.isfinite(v)]
+        refused = f"no trial gives {', '.join(lost)}"
+    if refused:
+        trial.set_user_attr(REASON, refused)
+        study.tell(trial, state=optuna.trial.TrialState.FAIL)
+    else:
+        study.tell(trial, values)
+
+
+def _plain(value: Any) -> Any:
+    plain = value.item() if hasattr(value, "item") else value
+    return None if isinstance(plain, float) and not np.isfinite(plain) else plain
+
+
+def found_designs(search: Search, study: optuna.Study) -> list[dict[str, Any]]:
+    """The trials on the study's Pareto front that hold all constraints, by their first objective.
+
+    Returns:
+        Their `row`s. They are candidates: their policies were trained on other designs unless the
+        row's `PROTOCOL.policy` says specialist.
+    """
+    rows = [trial.user_attrs[ROW] for trial in study.best_trials]
+    first, reverse = search.objectives[0], search.directions[0] == "maximize"
+    return sorted(rows, key=lambda row: row[first], reverse=reverse)
+
+
+def trial_frame(study: optuna.Study) -> pd.DataFrame:
+    """All trials: number, state, reason of failure, and what was measured."""
+    import pandas as pd
+
+    return pd.DataFrame(
+        [
+            {
+                "number": trial.number,
+                "state": trial.state.name.lower(),
+                "reason": trial.user_attrs.get(REASON, ""),
+                **trial.user_attrs.get(ROW, {}),
+            }
+            for trial in study.get_trials(deepcopy=False)
+        ]
+    )

@@ -1,0 +1,214 @@
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hyperleg_design import cli
+from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
+from hyperleg_design.sweep import measures
+from hyperleg_design.sweep import search as searching
+from hyperleg_design.sweep.search import (
+    Constraint,
+    found_designs,
+    read_constraint,
+    run_search,
+    search_of,
+    trial_frame,
+    usual_constraints,
+)
+from hyperleg_design.sweep.space import sweep_from_mapping
+from hyperleg_design.sweep.trial_runs import plan
+
+optuna = pytest.importorskip("optuna")
+
+SPACE = {
+    "design": "hyperleg",
+    "sampling": "sobol",
+    "count": 1,
+    "seed": 3,
+    "measures": ["total_mass", "push_off_heat", "push_off_use"],
+    "objectives": ["total_mass", "push_off_heat"],
+    "axes": {
+        "toe.mass": {"low": 0.05, "high": 1.0, "log": True},
+        "knee": {"paths": ["transmission.scale.knee"], "scale": {"low": 0.5, "high": 2.0}},
+        "actuators.knee.motor": {"values": ["RI60", "RI70"]},
+    },
+}
+
+
+def small(**changes):
+    sweep = sweep_from_mapping(SPACE | changes)
+    return search_of(sweep, plan(sweep, []), constraints=["push_off_use<=1.5"])
+
+
+def test_the_front_holds_the_constraints_and_nothing_beats_it(tmp_path):
+    search = small()
+    study = run_search(search, tmp_path, 24, batch=8, progress=False)
+    rows = trial_frame(study)
+    assert len(rows) == 24
+    assert set(rows["state"]) <= {"complete", "fail"}
+    front = found_designs(search, study)
+    assert front
+    feasible = rows[(rows["state"] == "complete") & (rows["push_off_use"] <= 1.5)]
+    for row in front:
+        assert row["push_off_use"] <= 1.5
+        better = (feasible["total_mass"] < row["total_mass"]) & (
+            feasible["push_off_heat"] < row["push_off_heat"]
+        )
+        assert not better.any()
+        base = search.sweep.base
+        made = base.with_values(
+            {
+                "toe.mass": row["toe.mass"],
+                "transmission.scale.knee": row["knee"] * base.transmission.scale.knee,
+                "actuators.knee.motor": row["actuators.knee.motor"],
+            }
+        )
+        own = measures.evaluate(made, ["total_mass", "push_off_heat"])
+        assert row["push_off_heat"] == pytest.approx(own["push_off_heat"][0], rel=1e-9)
+
+
+def test_an_impossible_corner_fails_and_says_why(tmp_path):
+    """A foot as long as the leg."""
+    axes = SPACE["axes"] | {"foot.ball_length": {"low": 0.45, "high": 0.6}}
+    study = run_search(small(axes=axes), tmp_path, 12, batch=6, progress=False)
+    failed = trial_frame(study).query("state == 'fail'")
+    assert len(failed)
+    assert failed["reason"].str.contains("foot").all()
+
+
+def test_a_killed_search_goes_on_and_counts_nothing_twice(tmp_path, monkeypatch):
+    whole, calls = searching._tell, []
+
+    def stopped(*arguments):
+        calls.append(arguments)
+        if len(calls) == 7:
+            raise KeyboardInterrupt
+        whole(*arguments)
+
+    monkeypatch.setattr(searching, "_tell", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        run_search(small(), tmp_path, 12, batch=4, progress=False)
+    study = run_search(small(), tmp_path, 12, batch=4, progress=False)
+    rows = trial_frame(study)
+    finished = rows[rows["state"].isin(["complete", "fail"])]
+    assert len(finished) == 12
+    lost = rows[rows["state"] == "pruned"]
+    assert len(lost) == 2  # of the batch in flight, asked for again
+    axes = ["toe.mass", "knee"]
+    again = {tuple(t.params[a] for a in axes) for t in study.trials if t.number > lost.index.max()}
+    assert {tuple(study.trials[n].params[a] for a in axes) for n in lost["number"]} <= again
+    assert run_search(small(), tmp_path, 12, progress=False).trials == study.trials
+
+
+def test_a_database_holds_one_search_under_a_name(tmp_path):
+    run_search(small(), tmp_path, 1, progress=False)
+    for other in (small(seed=4), small(objectives=["total_mass"])):
+        with pytest.raises(OutputError, match="choose another --name"):
+            run_search(other, tmp_path, 1, progress=False)
+    run_search(small(seed=4), tmp_path, 1, name="other", progress=False)
+
+
+def test_a_database_that_refuses_or_is_corrupt_is_one_clear_error(tmp_path):
+    url = "postgresql+psycopg://me:secret@127.0.0.1:1/none"
+    with pytest.raises(InputError, match=r"--storage.*does not serve") as caught:
+        run_search(small(), tmp_path, 1, storage=url, progress=False)
+    assert "secret" not in str(caught.value)
+    (tmp_path / "study.db").write_bytes(b"no database at all" * 100)
+    with pytest.raises(InputError, match="does not serve"):
+        run_search(small(), tmp_path, 1, progress=False)
+
+
+def test_constraints_are_read_strictly():
+    found = read_constraint("walk.thermal_peak <= 1.5", ["walk"])
+    assert found == Constraint("walk.thermal_peak", 1.5, True)
+    assert found.violation(2.0) == 0.5
+    assert found.violation(np.nan) == np.inf
+    assert read_constraint("total_mass>=30", []).violation(31.0) == -1.0
+    for text in ("thermal_peak", "walk.fell<=x", "walk.fell<0.1", "fall<=1"):
+        with pytest.raises(InputError):
+            read_constraint(text, ["walk"])
+    names = {c.name for c in usual_constraints(["walk"])}
+    assert names == {"walk.fell", "walk.thermal_peak", "walk.limit_share"}
+
+
+def test_designs_are_walked(tmp_path):
+    protocol = WalkProtocol(trials=2, distance=0.6, time_limit=0.8, steady=Steady(begin=0.3))
+    sweep = sweep_from_mapping(SPACE | {"axes": {"toe.mass": {"low": 0.1, "high": 0.5}}})
+    search = search_of(sweep, plan(sweep, [protocol], seeds=1), ["walk.power", "total_mass"])
+    study = run_search(search, tmp_path, 3, batch=3, progress=False)
+    rows = trial_frame(study)
+    assert set(rows["walk.policy"]) == {"zero-shot"}
+    told = {t.number: t.values[0] for t in study.trials if t.values}
+    for number, power in told.items():
+        assert power == rows.set_index("number").loc[number, "walk.power"]
+    assert all("walk.thermal_peak" in t.constraints for t in study.trials)
+
+
+def test_from_the_command_line(tmp_path, capsys):
+    import yaml
+
+    (tmp_path / "space.yaml").write_text(yaml.safe_dump(SPACE))
+    arguments = ["search", str(tmp_path / "space.yaml"), "--trials", "6"]
+    bounds = ["--constraint", "push_off_use<=1.5", "--out", str(tmp_path / "out")]
+    assert cli.main([*arguments, *bounds]) == 0
+    assert "candidates" in capsys.readouterr().out
+    assert cli.main([*arguments, "--objective", "cost_of_transport", *bounds]) == 2
+    assert "--evaluate" in capsys.readouterr().err
+
+
+def _postgres() -> Path | None:
+    found = sorted(Path("/usr/lib/postgresql").glob("*/bin/initdb"))
+    return found[-1].parent if found else None
+
+
+@pytest.fixture
+def postgres(tmp_path):
+    """URL of a database of a PostgreSQL server of its own, on a free local port."""
+    pytest.importorskip("psycopg")
+    programs = _postgres()
+    if programs is None:
+        pytest.skip("PostgreSQL is not installed (Debian: postgresql)")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    folder = tmp_path / "server"
+    folder.mkdir()
+    user: list[str] = []
+    if os.geteuid() == 0:  # PostgreSQL refuses to run as root
+        if shutil.which("setpriv") is None:
+            pytest.skip("setpriv is not there to start PostgreSQL as another user than root")
+        user = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
+        os.chown(folder, 65534, 65534)
+        for part in (*folder.parents,):
+            if str(part).startswith(str(tmp_path.parents[1])):
+                part.chmod(part.stat().st_mode | 0o011)
+    data = str(folder / "data")
+
+    def run(*words):
+        done = subprocess.run([*user, *words], capture_output=True, text=True, cwd="/")
+        if done.returncode:
+            pytest.skip(f"PostgreSQL does not start here: {done.stderr.strip()[-200:]}")
+
+    run(f"{programs}/initdb", "-D", data, "-U", "me", "-A", "trust", "--no-sync")
+    options = f"-p {port} -k {folder} -c listen_addresses=127.0.0.1 -c fsync=off"
+    run(f"{programs}/pg_ctl", "-D", data, "-w", "-l", f"{folder}/log", "-o", options, "start")
+    yield f"postgresql+psycopg://me@127.0.0.1:{port}/postgres"
+    run(f"{programs}/pg_ctl", "-D", data, "-m", "immediate", "stop")
+
+
+def test_two_searches_share_a_study_in_postgresql(postgres, tmp_path):
+    search = small()
+    run_search(search, tmp_path / "one", 5, storage=postgres, batch=5, progress=False)
+    study = run_search(search, tmp_path / "two", 9, storage=postgres, batch=4, progress=False)
+    rows = trial_frame(study)
+    assert len(rows) == 9
+    owners = [t.user_attrs["owner"] for t in study.trials]
+    assert sorted(map(owners.count, set(owners))) == [4, 5]
