@@ -77,8 +77,10 @@ def test_the_front_holds_the_constraints_and_nothing_beats_it(tmp_path):
 
 def test_an_impossible_corner_fails_and_says_why(tmp_path):
     """A foot as long as the leg."""
-    axes = SPACE["axes"] | {"foot.ball_length": {"low": 0.58, "high": 0.6}}
-    study = run_search(small(axes=axes), tmp_path, 12, batch=6, progress=False)
+    axes = SPACE["axes"] | {"foot.ball_length": {"low": 0.4, "high": 0.6}}
+    study = run_search(
+        small(axes=axes, set={"thigh.length": 0.2}), tmp_path, 12, batch=6, progress=False
+    )
     failed = trial_frame(study).query("state == 'fail'")
     assert len(failed)
     assert failed["reason"].str.contains("foot").all()
