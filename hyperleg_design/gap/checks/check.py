@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.excitation import Excitation, excitation_of
+from hyperleg_design.gap.checks.gates import unusable
 from hyperleg_design.gap.checks.plausibility import implausible
 from hyperleg_design.gap.logs.sampling import Column, Sampling, columns_of, sampling_of
 from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
@@ -73,6 +75,11 @@ class Check:
         for finding in self.errors:
             raise InputError(self.name, finding.signal, None, f"{finding.what}; {finding.remedy}")
 
+    def with_findings(self, findings: Sequence[Finding]) -> Check:
+        """The same with further findings, in the order of their severity."""
+        every = sorted([*self.findings, *findings], key=lambda f: SEVERITIES.index(f.severity))
+        return dataclasses.replace(self, findings=tuple(every))
+
     @property
     def shown(self) -> tuple[str, ...]:
         """Effects that the log can show."""
@@ -101,15 +108,20 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
             compared.
     """
     sampling, columns = sampling_of(log.time), columns_of(log)
+    refused = unusable(log, subject)
+    measured = not any(f.signal == "t" or f.signal.startswith("position/") for f in refused)
     found = [
         *(Finding(NOTE, "", remark, "") for remark in log.metadata.remarks),
+        *refused,
         *_required(log, subject),
         *_clock(sampling),
         *_columns(columns, sampling),
-        *implausible(log, subject),
+        *(implausible(log, subject) if measured else ()),
     ]
     ordered = tuple(sorted(_merged(found), key=lambda f: SEVERITIES.index(f.severity)))
-    return Check(log.name, sampling, columns, ordered, excitation_of(log, subject))
+    return Check(
+        log.name, sampling, columns, ordered, excitation_of(log, subject) if measured else ()
+    )
 
 
 def _merged(findings: list[Finding]) -> list[Finding]:
@@ -214,6 +226,8 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
     found = []
     for one in columns:
         kind = one.column.partition("/")[0]
+        if one.missing == 1.0 and kind == "position":
+            continue  # told by `gates`
         if one.missing == 1.0:
             found.append(Finding(WARNING, one.column, "holds no values", "it counts as missing"))
             continue

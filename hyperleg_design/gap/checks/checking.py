@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.checks.agreement import disagreements
 from hyperleg_design.gap.checks.check import Check, check_log
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.readers import open_log
@@ -44,7 +45,11 @@ def check_sources(
     columns = dict(_pair(text) for text in mapping)
     logs = [log for source in sources for log in open_log(source, mapping=columns)]
     known: dict[str, Subject] = {}
-    checks = [check_log(log, _subject(log, robot, known)) for log in logs]
+    apart = disagreements(logs)
+    checks = [
+        check.with_findings(apart.get(log.name, ()))
+        for log, check in ((log, check_log(log, _subject(log, robot, known))) for log in logs)
+    ]
     if out is not None:
         with output_folder(out, keep=("*.parquet",)) as folder:
             write_json(folder / "check.json", [check.mapping() for check in checks])

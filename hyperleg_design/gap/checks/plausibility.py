@@ -429,7 +429,7 @@ def _robot(log: Log, subject: Subject) -> list[Finding]:
         ]
         found.append(
             Finding(
-                WARNING,
+                ERROR,
                 f"position/{strangers[0]}",
                 f"joints that the robot does not have: {', '.join(near[:5])}",
                 "rename or remove them",

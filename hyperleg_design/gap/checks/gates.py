@@ -1,0 +1,100 @@
+"""What no diagnosis can use: few ticks, positions without values, torques of impossible size."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.model.subject import Subject
+
+FEWEST = 20
+"""Ticks that velocities and accelerations need at least, by the smoothing's window (derived)."""
+BEYOND, DOUBTFUL = 100.0, 5.0
+"""Torque over the drive's limit that is in another unit, and that is worth a warning [-] (assumed:
+a limit that a file declares may be the continuous one, a fifth of the peak)."""
+LARGEST_TORQUE = 1e5
+"""Torque that no joint of a legged robot or arm has [Nm] (assumed)."""
+PERCENTILE = 90.0
+"""Of a torque's size, so that a spike does not refuse a log."""
+
+
+def unusable(log: Log, subject: Subject | None = None) -> list[Finding]:
+    """Findings that refuse a log, or doubt it, whatever its clock and units look like.
+
+    Args:
+        log: what was read.
+        subject: the robot; without it, torques are compared with `LARGEST_TORQUE` only.
+
+    Returns:
+        Errors and warnings; empty for a log that is fit.
+    """
+    return [*_ticks(log), *_positions(log), *_sizes(log, subject)]
+
+
+def _ticks(log: Log) -> list[Finding]:
+    if len(log.time) >= FEWEST:
+        return []
+    return [
+        Finding(
+            ERROR,
+            "t",
+            f"has {len(log.time)} ticks, too few for velocities and accelerations",
+            f"record {FEWEST} at the very least; 20 s at 100 Hz are good",
+        )
+    ]
+
+
+def _positions(log: Log) -> list[Finding]:
+    return [
+        Finding(
+            ERROR,
+            f"position/{joint}",
+            "holds no values",
+            "log it, or leave the joint's columns out if it stands still",
+        )
+        for joint in log.joints
+        if not log.has("position", joint)
+    ]
+
+
+def _sizes(log: Log, subject: Subject | None) -> list[Finding]:
+    found = []
+    for column, values in log.signals.items():
+        kind, _, name = column.partition("/")
+        if kind not in ("joint_torque", "motor_torque", "motor_torque_command"):
+            continue
+        size = np.abs(values[np.isfinite(values)])
+        if not len(size):
+            continue
+        usual = float(np.percentile(size, PERCENTILE))
+        limit = _limit(kind, name, subject)
+        if usual > LARGEST_TORQUE or usual > BEYOND * limit:
+            than = f"{usual / limit:.3g} times the drive's {limit:.3g} Nm" if limit < np.inf else ""
+            what = f"is {than or f'{usual:.3g} Nm'} for a tenth of the log: no such torque"
+            found.append(Finding(ERROR, column, what, "convert to Nm"))
+        elif usual > DOUBTFUL * limit:
+            what = f"is {usual / limit:.3g} times the drive's {limit:.3g} Nm for a tenth of the log"
+            found.append(
+                Finding(WARNING, column, what, "check its unit, and the limit in the robot's file")
+            )
+    return found
+
+
+def _limit(kind: str, name: str, subject: Subject | None) -> float:
+    """Largest torque of a motor, or of all motors of a joint together [Nm]; infinite if unknown."""
+    if subject is None:
+        return np.inf
+    if kind == "joint_torque" or name not in subject.motors:
+        if name not in subject.joints:
+            return np.inf
+        row = np.abs(subject.joint_from_motor[subject.joints.index(name)])
+        limits = subject.torque_limit[row > 0]
+        limit = float(row[row > 0] @ limits) if len(limits) else np.inf
+    else:
+        limit = float(subject.torque_limit[subject.motors.index(name)])
+    return limit if limit > 0 else np.inf
