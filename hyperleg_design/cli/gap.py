@@ -200,6 +200,9 @@ class Diagnose(Printing):
     """Logs to be diagnosed, files or folders of any format that `hyperleg gap check` reads."""
     reference: tuple[str, ...] = ()
     """Logs of the healthy robot: they set the floor and the calibration."""
+    reference_robot: str = ""
+    """Design, YAML, MJCF or URDF of the robot in the reference logs, if it was built differently
+    then; the same as now by default."""
     out: Path
     """Folder to write diagnosis.json, index.html and its figures to."""
     seed: Annotated[int, AtLeast(0)] = 0
@@ -220,6 +223,7 @@ class Diagnose(Printing):
             self.logs,
             self.reference,
             self.out,
+            reference_robot=self.reference_robot,
             seed=self.seed,
             thresholds=self.thresholds or None,
             threads=self.threads,

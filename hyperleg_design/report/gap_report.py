@@ -21,6 +21,7 @@ def diagnose_to_folder(
     references: Sequence[str | os.PathLike[str]],
     out: str | os.PathLike[str],
     *,
+    reference_robot: str = "",
     seed: int = 0,
     thresholds: str | None = None,
     threads: int = 2,
@@ -34,6 +35,8 @@ def diagnose_to_folder(
             references.
         references: of the healthy robot.
         out: folder, written whole or not at all.
+        reference_robot: of the references, where the robot was built differently then; empty: the
+            same.
         seed: of everything random.
         thresholds: rules of the decision, a file; the shipped ones by default.
         threads: the answer does not depend on them.
@@ -47,17 +50,23 @@ def diagnose_to_folder(
         OutputError: the folder cannot be written.
     """
     from hyperleg_design.gap.checks.intake import open_logs
-    from hyperleg_design.gap.pipeline.diagnose import diagnose
+    from hyperleg_design.gap.pipeline.diagnose import diagnose, subjects
     from hyperleg_design.gap.signals.conditioning import condition
-    from hyperleg_design.gap.signals.loading import load_subject
     from hyperleg_design.report.gap_page import write_gap_page
 
     check_output_folder(out)
     tests, healthy = open_logs(sources, references)
     found = diagnose(
-        robot or None, tests, healthy, seed=seed, thresholds=thresholds, threads=threads, show=show
+        robot or None,
+        tests,
+        healthy,
+        reference_robot=reference_robot or None,
+        seed=seed,
+        thresholds=thresholds,
+        threads=threads,
+        show=show,
     ).mapping()
-    subject = load_subject(robot or None, [*tests, *healthy])
+    subject, _ = subjects(robot or None, reference_robot or None, tests, healthy)
     with output_folder(out) as folder:
         write_json(folder / "diagnosis.json", found)
         write_gap_page(folder, found, [condition(log, subject) for log in tests[:MOST_SHOWN]])

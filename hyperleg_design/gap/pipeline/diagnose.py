@@ -29,6 +29,7 @@ from hyperleg_design.gap.signals.loading import load_subject
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
+    from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
 
@@ -37,6 +38,7 @@ def diagnose(
     logs: Sequence[Log],
     reference: Sequence[Log] = (),
     *,
+    reference_robot: str | Path | None = None,
     seed: int = 0,
     thresholds: str | Path | Thresholds | None = None,
     threads: int = 2,
@@ -48,6 +50,8 @@ def diagnose(
         robot: a design of ours, an MJCF or a URDF file; none: what the logs name.
         logs: to be diagnosed; those whose metadata call them references count as such.
         reference: of the same robot when all was well.
+        reference_robot: nominal model of the robot in the reference logs, where it was built
+            differently then; by default the same as now. Joints and motors must be the same.
         seed: of the bootstrap; the same logs and seed give the same diagnosis.
         thresholds: rules, or a file of them; the shipped ones by default.
         threads: that share the work; they change no result.
@@ -68,20 +72,67 @@ def diagnose(
             len(logs),
             "name no log to be diagnosed: give at least one that is not a reference",
         )
-    subject = load_subject(robot, [*tests, *healthy])
-    checks = [check_log(log, subject) for log in [*tests, *healthy]]
+    subject, before = subjects(robot, reference_robot, tests, healthy)
+    checks = [
+        *(check_log(log, subject) for log in tests),
+        *(check_log(log, before) for log in healthy),
+    ]
     for check in checks:
         check.refuse()
     say(f"conditioning {len(checks)} logs of {subject.name}")
     return diagnose_signals(
         [condition(log, subject) for log in tests],
-        [condition(log, subject) for log in healthy],
+        [condition(log, before) for log in healthy],
         seed=seed,
         thresholds=thresholds,
         threads=threads,
         show=show,
         checks=checks,
     )
+
+
+def subjects(
+    robot: str | Path | None,
+    reference_robot: str | Path | None,
+    tests: Sequence[Log],
+    references: Sequence[Log],
+) -> tuple[Subject, Subject]:
+    """Nominal models of the robot in the tests and in the references.
+
+    Args:
+        robot: of the tests, and of the references unless they have their own.
+        reference_robot: of the references; none: the same.
+        tests: logs to be diagnosed.
+        references: logs of the healthy robot.
+
+    Returns:
+        The two, the same object where there is one model.
+
+    Raises:
+        InputError: a robot that cannot be read or does not go with its logs, a robot for references
+            that are not there, or two robots whose joints or motors differ.
+    """
+    if not reference_robot:
+        subject = load_subject(robot, [*tests, *references])
+        return subject, subject
+    if not references:
+        raise InputError(
+            "diagnose",
+            "reference_robot",
+            str(reference_robot),
+            "needs reference logs: name them with --reference",
+        )
+    subject, before = load_subject(robot, tests), load_subject(reference_robot, references)
+    for what in ("joints", "motors"):
+        now, then = getattr(subject, what), getattr(before, what)
+        if now != then:
+            raise InputError(
+                "diagnose",
+                "reference_robot",
+                str(reference_robot),
+                f"has other {what} than {subject.name}: {', '.join(then)}, not {', '.join(now)}",
+            )
+    return subject, before
 
 
 def diagnose_signals(

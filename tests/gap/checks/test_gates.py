@@ -11,7 +11,7 @@ from rig import rig_log, spoiled
 
 from hyperleg_design.gap.checks.check import check_log
 from hyperleg_design.gap.checks.gates import FEWEST
-from hyperleg_design.gap.model.subject import load_subject
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.fixture(scope="module")
