@@ -351,7 +351,7 @@ def _tell(
     refused = reason or next((str(row[k]) for k in row if k.endswith(".reason") and row[k]), "")
     if not refused and not np.isfinite(values).all():
         lost = [n for n, v in zip(search.objectives, values, strict=True) if not np.isfinite(v)]
-        refused = f"no trial gives {', '.join(lost)}"
+        refused = f"gives no number for {', '.join(lost)}"
     if refused:
         trial.set_user_attr(REASON, refused)
         study.tell(trial, state=optuna.trial.TrialState.FAIL)
