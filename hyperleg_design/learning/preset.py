@@ -92,7 +92,8 @@ class Ramp:
     """A value that changes linearly over some steps and then stays."""
 
     target: tuple[str, str, str]
-    """`rewards`, term, `weight` or a parameter; or `commands`, setting, empty."""
+    """`rewards`, term, `weight` or a parameter; `commands`, setting, empty; or `policy`,
+    `deviation`, empty: the largest standard deviation of the actions."""
     low: float
     """Value at its beginning."""
     high: float
@@ -324,17 +325,18 @@ def _ramp(data: Any, where: str, path: str) -> Ramp:
     if kind == "rewards" and name:
         parameter = parameter or "weight"
         _check_term(name, [parameter], where, f"{path}.set")
-    elif kind != "commands" or not name or parameter:
+    elif str(data["set"]) != "policy.deviation" and (kind != "commands" or not name or parameter):
         raise InputError(
             where,
             f"{path}.set",
             data["set"],
-            "expects rewards.TERM, rewards.TERM.PARAMETER or commands.SETTING",
+            "expects rewards.TERM, rewards.TERM.PARAMETER, commands.SETTING or policy.deviation",
         )
     begins = data.get("begins", "stage")
     if begins not in BEGINS:
         raise InputError(where, f"{path}.begins", begins, f"expects one of {', '.join(BEGINS)}")
-    low, high = (_number(data[key], where, f"{path}.{key}") for key in ("from", "to"))
+    least = 1e-3 if kind == "policy" else -1e12
+    low, high = (_number(data[key], where, f"{path}.{key}", least) for key in ("from", "to"))
     return Ramp(
         (kind, name, parameter),
         low,

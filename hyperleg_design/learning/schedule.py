@@ -72,11 +72,27 @@ class Schedule:
             if stage.commands:
                 environment.set_commands(**stage.commands)
             for ramp in stage.ramps:
+                if ramp.target[0] == "policy":
+                    continue
                 set_value(
                     environment,
                     ramp,
                     self._progress(ramp, i, done if i == index else self.preset.iterations(stage)),
                 )
+
+    @property
+    def most_deviation(self) -> float:
+        """Largest standard deviation of the actions that the ramps allow at present; infinite
+        without.
+        """
+        index, done = self.place
+        found = float("inf")
+        for i, stage in enumerate(self.stages[: index + 1]):
+            for ramp in stage.ramps:
+                if ramp.target[0] == "policy":
+                    length = done if i == index else self.preset.iterations(stage)
+                    found = _between(ramp, self._progress(ramp, i, length))
+        return found
 
     def advance(self, mean_episode: float, share: float) -> None:
         """An iteration is done.
@@ -130,10 +146,15 @@ class Schedule:
         return min(max(done * self.preset.steps_per_iteration / ramp.steps, 0.0), 1.0)
 
 
+def _between(ramp: Ramp, progress: float) -> float:
+    """Value of a ramp at its progress 0 .. 1."""
+    return ramp.low + progress * (ramp.high - ramp.low)
+
+
 def set_value(environment: Environment, ramp: Ramp, progress: float) -> None:
     """Set what a ramp changes, at its progress 0 .. 1."""
     kind, name, parameter = ramp.target
-    value = ramp.low + progress * (ramp.high - ramp.low)
+    value = _between(ramp, progress)
     if kind == "commands":
         environment.set_commands(**{name: value})
     elif parameter == "weight":

@@ -286,6 +286,10 @@ class Training:
         """Roll out, learn, and go on in the schedule."""
         algorithm, environment, began = self.algorithm, self.environment, time.monotonic()
         self.schedule.apply(environment)
+        if np.isfinite(self.schedule.most_deviation):
+            with torch.no_grad():
+                deviations = algorithm.get_policy().distribution.log_std_param
+                deviations.clamp_(max=float(np.log(self.schedule.most_deviation)))
         stage, gain = self.schedule.place[0], self.schedule.gain
         with torch.inference_mode():
             for _ in range(int(self.preset.rollout)):

@@ -14,7 +14,7 @@ PERIOD = 0.9
 """Of a stride [s]; of a person with legs of 0.79 m at 1.33 m/s; assumed."""
 PHASES = 50
 """Of the cycle that are compared with."""
-ANGLE, RATE = 0.2, 2.0
+ANGLE, RATE = 0.25, 2.5
 """Scales of the distance from the cycle [rad], [rad/s]; assumed."""
 KNOTS: dict[str, tuple[tuple[float, float], ...]] = {
     "hip_pitch": ((0, -27), (10, -24), (30, -6), (50, 11), (62, 2), (75, -22), (87, -31)),

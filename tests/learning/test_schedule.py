@@ -2,12 +2,14 @@ from __future__ import annotations
 
 import pytest
 
-from hyperleg_design.learning.preset import Preset
+from hyperleg_design.learning.preset import Preset, preset_from_mapping
 from hyperleg_design.learning.schedule import DECAY_EVERY, Schedule
 from hyperleg_design.robot.design import Design
 from hyperleg_design.simulation.assist import DECAY, OFF_BELOW
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task
+
+from .conftest import tiny_mapping
 
 
 @pytest.fixture
@@ -89,3 +91,19 @@ def test_a_state_put_back_sets_the_same(tiny: Preset, environment: Environment) 
     again.apply(other)
     assert other.chunks[0].rewards == expected[0]
     assert vars(other.chunks[0].commander.settings) == vars(expected[1])
+
+
+def test_exploration_is_bounded_by_a_ramp_that_leaves_the_environment_alone(
+    environment: Environment,
+) -> None:
+    data = tiny_mapping()
+    ramp = {"set": "policy.deviation", "from": 0.8, "to": 0.2, "steps": 64}
+    data["tasks"]["walk"][1]["ramps"] = [ramp]
+    schedule, bounds = Schedule(preset_from_mapping(data, "p.yaml"), "walk"), []
+    before = dict(environment.chunks[0].rewards)
+    for _ in range(7):
+        schedule.apply(environment)
+        bounds.append(schedule.most_deviation)
+        schedule.advance(0.0, 0.0)
+    assert bounds == pytest.approx([float("inf")] * 3 + [0.8, 0.5, 0.2, 0.2])
+    assert environment.chunks[0].rewards == before

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.learning.preset import Preset
+from hyperleg_design.learning.preset import Preset, preset_from_mapping
 from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, policies, read_status
 
 torch = pytest.importorskip("torch")
@@ -21,6 +21,8 @@ pytest.importorskip("tensorboard")
 from hyperleg_design.learning import train as module  # noqa: E402
 from hyperleg_design.learning.checkpoint import load_checkpoint  # noqa: E402
 from hyperleg_design.learning.train import train  # noqa: E402
+
+from .conftest import tiny_mapping  # noqa: E402
 
 
 @pytest.fixture(autouse=True)
@@ -204,3 +206,14 @@ def test_an_overlay_is_trained_with_written_down_and_compared(tiny: Preset, tmp_
         (straight / POLICY).read_bytes(), providers=["CPUExecutionProvider"]
     )
     assert json.loads(session.get_modelmeta().custom_metadata_map["overlay"]) == overlay
+
+
+def test_the_actions_deviation_keeps_to_its_bound(tmp_path: Path) -> None:
+    data = tiny_mapping()
+    ramp = {"set": "policy.deviation", "from": 0.3, "to": 0.1, "steps": 96}
+    data["tasks"]["walk"][0]["ramps"] = [ramp]
+    train("walk", "toe", 0, preset_from_mapping(data, "p.yaml"), tmp_path, iterations=4)
+    rows = [json.loads(line) for line in (tmp_path / PROGRESS).read_text().splitlines()]
+    bounds = [0.3, 0.3 - 0.2 / 3, 0.3 - 0.4 / 3, 0.1]
+    for row, bound in zip(rows, bounds, strict=True):
+        assert row["deviation"] <= 1.01 * bound  # one update may raise it by its learning rate
