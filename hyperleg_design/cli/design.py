@@ -62,6 +62,8 @@ class Build(Chosen):
 
     out: Path
     """Folder to write; replaced if hyperleg made it."""
+    target: Annotated[Literal["", "isaac"], tyro.conf.arg(name="for")] = ""
+    """Program that needs a further file: isaac, for actuator values in Isaac Lab's terms."""
 
     def run(self) -> None:
         """Build it."""
@@ -69,6 +71,11 @@ class Build(Chosen):
 
         design = self.load()
         folder = build(design, self.out)
+        if self.target == "isaac":
+            from hyperleg_design.simulation.isaac import FILE, isaac_actuators
+            from hyperleg_design.writing import write_json
+
+            write_json(folder / FILE, isaac_actuators(design))
         files = sorted(
             str(p.relative_to(folder))
             for p in folder.rglob("*")
