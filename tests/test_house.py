@@ -40,6 +40,8 @@ GAP = (
     "pipeline",
 )
 """Rooms of `gap`, each of which imports only rooms before it."""
+REPORT = ("pictures", "sizing", "walks", "gap", "sweep", "study")
+"""Rooms of `report`, each of which imports only rooms before it and what lies in no room."""
 
 
 def module_name(path: Path) -> str:
@@ -148,14 +150,27 @@ def test_rooms_of_gap_import_only_rooms_before_them():
     assert not wrong, "\n".join(wrong)
 
 
+def test_rooms_of_report_import_only_rooms_before_them():
+    order = {room: place for place, room in enumerate(REPORT, 1)}
+    wrong = [
+        f"{module} imports {target}"
+        for module in MODULES
+        if module.startswith(f"{NAME}.report.")
+        for target in imports(module, types=True)
+        if target.startswith(f"{NAME}.report.")
+        and order.get(target.split(".")[2], 0) > order.get(module.split(".")[2], 0)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
 def test_modules_of_gap_lie_in_rooms():
     assert [p.name for p in (PACKAGE / "gap").glob("*.py")] == ["__init__.py"]
 
 
 @pytest.mark.parametrize("types", [False, True])
 def test_no_imports_run_in_a_circle(types):
-    """At run time nowhere; for annotations neither within `gap` nor within `validation`."""
-    rooms = ("gap", "validation")
+    """At run time nowhere; for annotations not within `gap`, `validation` and `report`."""
+    rooms = ("gap", "validation", "report")
     graph = {
         module: {t for t in imports(module, types=types) if t != module}
         for module in MODULES

@@ -150,7 +150,7 @@ class Compare(Printing):
 
     def run(self) -> None:
         """Compare them."""
-        from hyperleg_design.report import comparison
+        from hyperleg_design.report.sizing import comparison
 
         designs = [
             load_robot(name, overrides=self.set, overlays=self.set_file) for name in self.designs
@@ -196,8 +196,8 @@ class Sweep(Printing):
 
     def run(self) -> None:
         """Run it."""
-        from hyperleg_design.report.sweep_page import sweep_report
-        from hyperleg_design.report.sweep_trials import evaluated_report
+        from hyperleg_design.report.sweep.page import sweep_report
+        from hyperleg_design.report.sweep.trials import evaluated_report
         from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.run import run_sweep
         from hyperleg_design.sweep.space import load_sweep
@@ -236,8 +236,8 @@ class Study(Printing):
 
     def run(self) -> None:
         """Run it."""
-        from hyperleg_design.report.evaluated import coverage, coverage_text
-        from hyperleg_design.report.study import run_study
+        from hyperleg_design.report.study.study import run_study
+        from hyperleg_design.report.walks.evaluated import coverage, coverage_text
 
         trainings = coverage(self.policies)
         if not self.json and (text := coverage_text(trainings)):

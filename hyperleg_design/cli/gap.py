@@ -32,7 +32,7 @@ class Check(Printing):
     def run(self) -> None:
         """Check them."""
         from hyperleg_design.gap.checks.checking import check_sources
-        from hyperleg_design.report.gap_text import checks_text
+        from hyperleg_design.report.gap.text import checks_text
 
         checks = check_sources(self.logs, robot=self.robot, mapping=self.map, out=self.out)
         if self.json:
@@ -52,7 +52,7 @@ class Effects(Printing):
     def run(self) -> None:
         """Print it."""
         from hyperleg_design.gap.playback.show import effects_table
-        from hyperleg_design.report.gap_show import effects_text
+        from hyperleg_design.report.gap.show import effects_text
 
         found = effects_table()
         if self.json:
@@ -82,7 +82,7 @@ class Show(Printing):
     def run(self) -> None:
         """Draw it."""
         from hyperleg_design.gap.playback.show import show
-        from hyperleg_design.report.gap_show import show_figure, show_summary, show_text
+        from hyperleg_design.report.gap.show import show_figure, show_summary, show_text
 
         shown = show(
             self.effect, self.robot or None, location=self.location or None, settings=self.set
@@ -123,7 +123,7 @@ class Apply(Printing):
             read_overlay,
             write_overlay,
         )
-        from hyperleg_design.report.gap_text import changed_text, replayed_text
+        from hyperleg_design.report.gap.text import changed_text, replayed_text
         from hyperleg_design.writing import write_json
 
         ready = self.diagnosis.suffix in (".yaml", ".yml")
@@ -174,7 +174,7 @@ class Measure(Printing):
         """Measure."""
         from hyperleg_design.gap.checks.intake import take_in
         from hyperleg_design.gap.playback.measure import measure
-        from hyperleg_design.report.gap_text import gap_text
+        from hyperleg_design.report.gap.text import gap_text
         from hyperleg_design.writing import output_folder, write_json
 
         found = take_in(self.robot, self.logs, self.reference)
@@ -214,8 +214,8 @@ class Diagnose(Printing):
 
     def run(self) -> None:
         """Diagnose."""
-        from hyperleg_design.report.gap_report import diagnose_to_folder
-        from hyperleg_design.report.gap_text import diagnosis_text
+        from hyperleg_design.report.gap.report import diagnose_to_folder
+        from hyperleg_design.report.gap.text import diagnosis_text
 
         show = None if self.json else print
         found, page = diagnose_to_folder(
@@ -261,7 +261,7 @@ class Excite(Printing):
 
     def run(self) -> None:
         """Design them."""
-        from hyperleg_design.report.gap_report import excite_to_folder
+        from hyperleg_design.report.gap.report import excite_to_folder
 
         text = excite_to_folder(
             self.robot,

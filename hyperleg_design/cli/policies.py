@@ -222,8 +222,8 @@ class Paper(Printing):
 
     def run(self) -> None:
         """Evaluate and write."""
-        from hyperleg_design.report.evaluated import coverage, coverage_text
-        from hyperleg_design.report.paper_page import read_tables, run_paper, tables_text
+        from hyperleg_design.report.walks.evaluated import coverage, coverage_text
+        from hyperleg_design.report.walks.paper_page import read_tables, run_paper, tables_text
 
         trainings = coverage(self.policies)
         if not self.json and (text := coverage_text(trainings)):
@@ -254,7 +254,7 @@ class Replay(Printing):
 
     def run(self) -> None:
         """Replay it."""
-        from hyperleg_design.report import replay
+        from hyperleg_design.report.pictures import replay
 
         if (self.gif is None) == (not self.viser):
             raise InputError("replay", "", None, "expects --gif FILE or --viser")

@@ -16,7 +16,7 @@ from hyperleg_design.evaluation.rollout import ARRIVED, FELL, Trial
 from hyperleg_design.evaluation.shipped import Shipped
 from hyperleg_design.evaluation.t_test import measure_t_test
 from hyperleg_design.evaluation.walk import measure_walk
-from hyperleg_design.report.evaluated import Evaluated
+from hyperleg_design.report.walks.evaluated import Evaluated
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of

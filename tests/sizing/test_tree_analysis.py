@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.report.comparison import compare, compare_text
+from hyperleg_design.report.sizing.comparison import compare, compare_text
 from hyperleg_design.report.tree_text import tree_analysis_text
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.models import rigid_body_model

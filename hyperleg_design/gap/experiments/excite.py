@@ -1,7 +1,7 @@
 """Recommended experiments for a rig: motions inside the robot's limits, which effects each can tell
 apart, and the shortest set.
 
-DIR/plan.json       the plan and what it tells, in numbers; report/gap_excite.py says the same for people
+DIR/plan.json       the plan and what it tells, in numbers; report/gap/excite.py says the same for people
 DIR/NAME.csv        targets of one motion: t, position_target/JOINT, drives_on; NAME.parquet is the same as a log
 
 What a motion tells is judged on its rehearsal, the nominal model's own log of it; `information`

@@ -10,7 +10,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.intake import take_in
 from hyperleg_design.gap.logs.log import write_log
 from hyperleg_design.gap.playback.measure import measure
-from hyperleg_design.report.gap_text import gap_text
+from hyperleg_design.report.gap.text import gap_text
 
 
 @pytest.fixture(scope="module")

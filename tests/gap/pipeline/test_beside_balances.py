@@ -12,7 +12,7 @@ from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
 from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_heard, of_imu
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import Named, Place, Value
-from hyperleg_design.report.gap_text import diagnosis_text
+from hyperleg_design.report.gap.text import diagnosis_text
 
 OTHER = Named("coulomb_friction", "hip", 0.9, 0.8, {})
 PLAY, SPRING = (

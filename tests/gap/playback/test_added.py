@@ -13,7 +13,7 @@ from hyperleg_design.evaluation.protocol import (
 )
 from hyperleg_design.gap.playback import added
 from hyperleg_design.gap.playback.overlay import Overlay
-from hyperleg_design.report.gap_text import changed_text, replayed_text
+from hyperleg_design.report.gap.text import changed_text, replayed_text
 
 TRUE = Overlay("coupled", {("viscous_friction", "knee"): {"damping": 0.3}})
 WRONG = Overlay("coupled", {("viscous_friction", "hip"): {"damping": 0.3}})

@@ -14,7 +14,7 @@ from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-from hyperleg_design.report.gap_page import write_gap_page
+from hyperleg_design.report.gap.page import write_gap_page
 
 MJCF = """<mujoco><worldbody><body name="arm">
 <joint name="hinge" type="hinge" axis="0 1 0" armature="0.02" damping="0.02" frictionloss="0.05"/>

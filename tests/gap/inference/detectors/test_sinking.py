@@ -140,7 +140,7 @@ def test_two_logs_foretell_each_other(subject, nominal):
 
 def test_the_page_shows_heights_over_loads(subject, nominal, tmp_path):
     from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
-    from hyperleg_design.report.gap_page import write_gap_page
+    from hyperleg_design.report.gap.page import write_gap_page
 
     signals = [condition(standing(subject, 4 * nominal), subject)]
     told = diagnose_signals(signals, effects=["ground_compliance"], threads=1)

@@ -151,7 +151,7 @@ def test_without_the_bases_velocity_nothing_is_said(subject):
 
 def test_the_page_shows_forces_over_speeds(subject, tmp_path):
     from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
-    from hyperleg_design.report.gap_page import write_gap_page
+    from hyperleg_design.report.gap.page import write_gap_page
 
     signals = [condition(pushed(subject, dry(0.45)), subject)]
     told = diagnose_signals(signals, effects=["ground_friction"], threads=1)

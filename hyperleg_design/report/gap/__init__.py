@@ -1,0 +1,1 @@
+"""Texts, figures and pages of diagnoses."""

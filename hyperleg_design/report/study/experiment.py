@@ -1,0 +1,52 @@
+"""The part of the study's page that evaluates the shipped policies: walks and T-tests with and
+without the active toe.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from hyperleg_design.report.page import Heading, Section
+from hyperleg_design.report.study.context import Made
+from hyperleg_design.report.walks.evaluated import T_TEST, WALK, Evaluated
+from hyperleg_design.report.walks.paper_page import NO_POLICY, evaluate_with_bar, policy_parts
+
+if TYPE_CHECKING:
+    from hyperleg_design.report.study.context import Context
+
+TITLE = "Walking and the T-test, with trained policies"
+
+
+def experiment(context: Context) -> Made:
+    """Ten walks or ten T-tests of every shipped policy, and what they say."""
+    found = evaluate_with_bar(context.policies, progress=context.progress)
+    if not found.policies:
+        return Made(Section(TITLE, [NO_POLICY]))
+    content: list[Any] = [
+        "Trained policies in simulation, with cooperative actuation, motor envelopes and friction, deterministic and without assist; hyperleg paper makes the same on a page of its own."
+    ]
+    for part in policy_parts(found, context.folder, "policy_"):
+        content += [Heading(part.title), *part.content]
+    return Made(Section(TITLE, content), _facts(found))
+
+
+def _facts(found: Evaluated) -> tuple[tuple[str, str], ...]:
+    facts = []
+    for kind, word in ((WALK, "walks"), (T_TEST, "T-tests")):
+        trials = [
+            e
+            for group in found.groups(kind)
+            for design in found.designs(group)
+            for e in found.of(group, design)
+        ]
+        if trials:
+            fell, arrived = (
+                sum(int(e.values(ending).sum()) for e in trials) for ending in ("fell", "arrived")
+            )
+            facts.append(
+                (
+                    f"{arrived} / {sum(len(e.outcomes) for e in trials)}",
+                    f"{word} of {len(trials)} policies that arrived; {fell} fell",
+                )
+            )
+    return tuple(facts)

@@ -1,0 +1,1 @@
+"""Figures and pages of evaluated walks and T-tests."""

@@ -1,0 +1,225 @@
+"""What evaluated policies say, as parts of a page: what there is, Tables III and IV and Figs. 4 to
+7 beside the paper, learning.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hyperleg_design.evaluation import statistics
+from hyperleg_design.evaluation.result import by_checkpoint
+from hyperleg_design.evaluation.shipped import learning_curve
+from hyperleg_design.evaluation.versus_paper import VARIANTS
+from hyperleg_design.report.drawer import Drawer, Part
+from hyperleg_design.report.page import Cell, Details, Table
+from hyperleg_design.report.pictures import motion
+from hyperleg_design.report.sizing.envelope_figures import torque_speed_figure
+from hyperleg_design.report.style import later, save
+from hyperleg_design.report.walks import walk_parts as walks
+from hyperleg_design.report.walks.beside_paper import (
+    beside,
+    differences,
+    rows_beside_paper,
+    toe_sentence,
+)
+from hyperleg_design.report.walks.evaluated import T_TEST, WALK, Evaluated, missing_text
+from hyperleg_design.report.walks.learning_figures import learning_figure
+from hyperleg_design.report.walks.t_test_figures import t_test_figure
+from hyperleg_design.report.walks.versus_figures import change_figure
+from hyperleg_design.report.walks.walk_figures import operating_points_figure
+
+
+def parts(found: Evaluated, draw: Drawer) -> list[Part]:
+    """All parts that the policies that are there allow, in the order of a page; what is missing is
+    said in the first.
+    """
+    made = [_what(found)]
+    if found.groups(WALK):
+        made += [
+            walks.walks(found, draw),
+            walks.table_three(found, draw),
+            walks.confound(found, draw),
+            walks.cycle(found, draw),
+        ]
+    if found.groups(T_TEST):
+        made.append(_table_four(found, draw))
+    if found.band:
+        made.append(walks.impacts(found, draw))
+    return [*made, _motors(found, draw), _learning(found, draw)]
+
+
+def _what(found: Evaluated) -> Part:
+    rows: list[list[Any]] = []
+    for kind in (WALK, T_TEST):
+        for group in found.groups(kind):
+            table = found.table(group)
+            for design in found.designs(group):
+                part = table[table["variant"] == design]
+                falls = statistics.share(list(by_checkpoint(part, "fell").values()), resamples=1000)
+                arrived = int(part["arrived"].sum())
+                ends = ", ".join(
+                    f"{count} {str(name).replace('_', ' ')}"
+                    for name, count in part["outcome"].value_counts().items()
+                )
+                seeds, policies = found.seeds(group, design), part["policy"].nunique()
+                fell = int(part["fell"].sum())
+                share = f"{100 * falls.mean:.1f} % [{100 * falls.low:.1f}, {100 * falls.high:.1f}]"
+                rows.append(
+                    [
+                        group,
+                        design,
+                        ", ".join(map(str, seeds)),
+                        policies,
+                        len(part),
+                        Cell(fell, "bad" if fell else "good"),
+                        share,
+                        Cell(ends, "good" if arrived == len(part) else "note"),
+                    ]
+                )
+    protocols = {e.protocol.name: e.protocol for e in found.evaluations}
+    text = "; ".join(
+        f"{name}: {int(p.trials)} trials, starting states from seed {int(p.seed)}"
+        for name, p in protocols.items()
+    )
+    content: list[Any] = [
+        f"{len(found.policies)} policies of {len({p.training for p in found.policies})} trainings, each run on its own protocol ({text}), deterministic and without assist. "
+        "Intervals are 95 % and rest on a hierarchical bootstrap over training seeds, late checkpoints and trials, widened for few seeds; "
+        "a difference is told only where both sides have three seeds and the interval leaves zero out. Falls are counted, never dropped; what a fallen trial cannot give is counted as missing.",
+        Table(
+            [
+                "group",
+                "design",
+                "seeds",
+                "policies",
+                "trials",
+                "falls",
+                "share of falls",
+                "how trials ended",
+            ],
+            rows,
+        ),
+    ]
+    content.append(
+        f"Of the campaign's trainings {len(found.missing)} are not there: {missing_text(found.missing)}."
+        if found.missing
+        else "All trainings of the campaign are there."
+    )
+    content.append(_deviations(found))
+    return Part("What was evaluated", content)
+
+
+def _deviations(found: Evaluated) -> Any:
+    """Reward terms and observations that are not the paper's, by group."""
+    terms: dict[str, dict[str, str]] = {}
+    for policy, one in zip(found.policies, found.evaluations, strict=True):
+        given = one.origin.get("deviations")
+        terms.setdefault(policy.group, {}).update(given if isinstance(given, dict) else {})
+    rows = [
+        [group, name.replace("_", " "), text]
+        for group, some in terms.items()
+        for name, text in some.items()
+    ]
+    rows += [
+        [group, "none", "the paper's reward alone"] for group, some in terms.items() if not some
+    ]
+    return Details(
+        "What is not the paper's: reward terms and observations",
+        [Table(["group", "term", "what it is"], rows)],
+    )
+
+
+def _table_four(found: Evaluated, draw: Drawer) -> Part:
+    content: list[Any] = [
+        "The Robot T-test, A B C D B A with the human test's lengths and free torso yaw. Deviation is from the nearest point of the course; from the leg being run it stands in the table of differences."
+    ]
+    made = {
+        name: rows for name, rows in rows_beside_paper(found).items() if name.startswith("Table IV")
+    }
+    if not made:
+        content.append(
+            "Table IV cannot be reproduced yet: no group has both of the paper's robots."
+        )
+    for name, rows in made.items():
+        content += [*beside(rows, name), toe_sentence(rows)]
+    if made:
+        content.append(
+            draw(
+                "table_4",
+                "Change that the toe makes: ours beside the paper's.",
+                lambda p: save(change_figure(made), p),
+            )
+        )
+    for group in found.groups(T_TEST):
+        runs = {d: found.of(group, d) for d in found.designs(group)}
+        shown = next((one.trials[0] for some in runs.values() for one in some if one.trials), None)
+        step = shown.time_step * shown.substeps if shown is not None else 0.02
+        content.append(
+            draw(
+                f"ways_{group}",
+                "Fig. 7: the course and the ways of all trials, coloured by speed; below, speed along the way.",
+                lambda p, runs=runs, step=step: save(t_test_figure(runs, step), p),  # type: ignore[misc]
+            )
+        )
+        jobs: list[Any] = []
+        for d, some in runs.items():
+            if (t := found.shown(group, d)) is not None:
+                caption = f"A T-test, {d.replace('_', ' ')}; longer runs faster than true."
+                jobs.append(
+                    (
+                        f"{group}_{d}",
+                        caption,
+                        lambda p, t=t, one=some[0]: motion.render_gif(
+                            motion.t_test_motion(t, one.protocol), p
+                        ),
+                        ".gif",
+                        False,
+                    )
+                )
+        content.append(draw.together(jobs))
+        if set(VARIANTS) <= set(runs):
+            content.append(differences(found, group, T_TEST))
+    return Part("Table IV: the T-test, beside the paper", content)
+
+
+def _motors(found: Evaluated, draw: Drawer) -> Part:
+    content: list[Any] = []
+    for kind, word in ((T_TEST, "a T-test"), (WALK, "a walk")):
+        for group in found.groups(kind)[:1]:
+            trials = {
+                d: t
+                for d in found.designs(group)
+                if d in VARIANTS and (t := found.shown(group, d)) is not None
+            }
+            if kind == T_TEST and "toe" in trials:
+                toe = trials["toe"]
+                legs = toe.layout.leg_joints
+                torque, speed = (
+                    values.reshape(-1, legs)[::4]
+                    for values in (toe.driven_joint_torque, toe.joint_velocity)
+                )
+                content.append(
+                    draw(
+                        "fig_4",
+                        "Fig. 4: the ankle's motors and joints in their envelopes during a T-test, active toe.",
+                        later(torque_speed_figure, toe.design, torque, speed),
+                    )
+                )
+            if trials:
+                content.append(
+                    draw(
+                        f"points_{group}",
+                        f"Operating points of every motor in {word}, both legs.",
+                        later(operating_points_figure, trials),
+                    )
+                )
+    return Part("Motors in their envelopes", content)
+
+
+def _learning(found: Evaluated, draw: Drawer) -> Part:
+    curves = [p for p in found.policies if p.late == 0 and learning_curve(p.path.parent)]
+    if not curves:
+        return Part("Learning curves", ["No training brought its learning curve along."])
+    caption = "Means over the robots in training, with exploration, and with assist as long as there is some."
+    return Part(
+        "Learning curves", [draw("learning", caption, lambda p: save(learning_figure(curves), p))]
+    )

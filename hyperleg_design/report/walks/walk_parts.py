@@ -1,0 +1,269 @@
+"""What evaluated walks say, as parts of a page: whether they are believable, Table III, the
+confound, Fig. 6, impacts.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.evaluation import attribution, statistics
+from hyperleg_design.evaluation.believable import walk_findings
+from hyperleg_design.evaluation.foot_pad import heel_mass, pad_of_contact
+from hyperleg_design.evaluation.measures import measure_of
+from hyperleg_design.evaluation.result import by_checkpoint
+from hyperleg_design.evaluation.steps import measured_steps
+from hyperleg_design.evaluation.versus_paper import VARIANTS
+from hyperleg_design.report.drawer import Drawer, Part
+from hyperleg_design.report.page import Cell, Table
+from hyperleg_design.report.pictures import motion, picture
+from hyperleg_design.report.style import later, save
+from hyperleg_design.report.walks.beside_paper import (
+    beside,
+    differences,
+    interval,
+    percent,
+    rows_beside_paper,
+    toe_sentence,
+    verdict,
+)
+from hyperleg_design.report.walks.evaluated import WALK, Evaluated
+from hyperleg_design.report.walks.versus_figures import attribution_figure, change_figure
+from hyperleg_design.report.walks.walk_figures import cycle_power_figure, impact_band_figure
+
+ATTRIBUTED = ("power", "joule_power", "steady_cost_of_transport", "grf_peak", "grf_loading_rate")
+"""Measures whose difference is split into toe, torque and mass."""
+
+
+def walks(found: Evaluated, draw: Drawer) -> Part:
+    """Pictures of walks, and the demands on them."""
+    content: list[Any] = []
+    groups = found.groups(WALK)
+    columns = [(group, design) for group in groups for design in found.designs(group)]
+    findings = [walk_findings(found.of(*column)) for column in columns]
+    rows = []
+    for lines in zip(*findings, strict=True):
+        demand = lines[0].demand
+        cells = [Cell(line.found, "good" if line.met else "bad") for line in lines]
+        rows.append([demand.why, f"{demand.low:.3g} … {demand.high:.3g}", *cells])
+    for group in groups[:1]:
+        trials = {d: t for d in found.designs(group) if (t := found.shown(group, d)) is not None}
+        pair = {
+            d: (t, found.of(group, d)[0].protocol.events)
+            for d, t in trials.items()
+            if d in VARIANTS or d == next(iter(trials))
+        }
+        jobs: list[Any] = []
+        if pair:
+            named = {name.replace("_", " "): value for name, value in pair.items()}
+            caption = "Fig. 5: one gait cycle at 1.33 m/s from the right side, touchdown to touchdown of the right foot; arrows: the floor's force, in proportion."
+            jobs.append(
+                (
+                    f"gait_{group}",
+                    caption,
+                    lambda p, named=named: picture.render(motion.strip_scene(named), p),
+                    ".png",
+                    True,
+                )
+            )
+        for d, t in trials.items():
+            if d in VARIANTS:
+                caption = f"A walk, {d.replace('_', ' ')}, at true speed."
+                jobs.append(
+                    (
+                        f"{group}_{d}",
+                        caption,
+                        lambda p, t=t: motion.render_gif(motion.walk_motion(t), p),
+                        ".gif",
+                        False,
+                    )
+                )
+        pictures = draw.together(jobs)
+        wide = int(bool(pair))
+        content += [*pictures[:wide], pictures[wide:]]
+    content += [
+        "Whether these are walks that a person would believe; means over all walks of all trainings, red where the demand is not met.",
+        Table(["demand", "range", *(f"{group}: {design}" for group, design in columns)], rows),
+    ]
+    return Part("Walks that a person would believe", content)
+
+
+def table_three(found: Evaluated, draw: Drawer) -> Part:
+    """Table III."""
+    content: list[Any] = [
+        "The paper's numbers beside ours: twenty metres at 1.33 m/s. Ablation: toe and its motor removed at equal mass (toe_removed_matched), which fits the ratios of the table best. "
+        "A printed number agrees where it lies in our interval."
+    ]
+    made = {
+        name: rows
+        for name, rows in rows_beside_paper(found).items()
+        if name.startswith("Table III")
+    }
+    if not made:
+        content.append("Cannot be reproduced yet: no group has both of the paper's robots.")
+    for name, rows in made.items():
+        content += [*beside(rows, name), toe_sentence(rows)]
+    if made:
+        content.append(
+            draw(
+                "table_3",
+                "Change that the toe makes: ours beside the paper's.",
+                lambda p: save(change_figure(made), p),
+            )
+        )
+    content += [
+        differences(found, group, WALK)
+        for group in found.groups(WALK)
+        if set(VARIANTS) <= set(found.designs(group))
+    ]
+    return Part("Table III: walking, beside the paper", content)
+
+
+def confound(found: Evaluated, draw: Drawer) -> Part:
+    """The difference split into toe, torque and mass."""
+    ladder: list[Any] = [
+        "Taking the toe's motor away also weakens knee and ankle, which it helps, and lightens the leg. The ablations change one thing at a time: toe locked with its motor kept, toe and motor gone at equal mass, gone with their mass. "
+        "Each line is the one without less the one with."
+    ]
+    figures = {}
+    for group in found.groups(WALK):
+        if len(set(attribution.LADDER) & set(found.designs(group))) < 2:
+            continue
+        table = found.table(group)
+        rows = []
+        shares = {}
+        for name in ATTRIBUTED:
+            groups = {
+                d: list(by_checkpoint(table[table["variant"] == d], name).values())
+                for d in found.designs(group)
+            }
+            shares[name.replace("_", " ")] = found_shares = attribution.attribute(groups)
+            for share in found_shares:
+                change = share.change
+                rows.append(
+                    [
+                        name.replace("_", " "),
+                        share.cause,
+                        interval(change.mean, change.low, change.high, measure_of(name).unit),
+                        percent(change.relative, change.relative_low, change.relative_high),
+                        verdict(change.verdict),
+                    ]
+                )
+        ladder.append(
+            Table(
+                ["measure", "what is taken away", "change", "relative", "verdict"],
+                rows,
+                f"Group {group}: {' → '.join(d for d in attribution.LADDER if d in found.designs(group))}.",
+            )
+        )
+        figures[group] = shares
+        absent = [d for d in attribution.LADDER if d not in found.designs(group)]
+        if absent:
+            ladder.append(
+                f"Steps that need {', '.join(absent)} cannot be told in the group {group}: no such training is there."
+            )
+    for group, shares in figures.items():
+        ladder.append(
+            draw(
+                f"confound_{group}",
+                f"What each step takes away adds to the measures, group {group}.",
+                later(attribution_figure, shares),
+            )
+        )
+    if not figures:
+        ladder.append("Cannot be told yet: no group has two of the ablations.")
+    return Part("How much is the toe, how much the lost torque, how much the mass", ladder)
+
+
+def cycle(found: Evaluated, draw: Drawer) -> Part:
+    """Fig. 6."""
+    content: list[Any] = []
+    for group in found.groups(WALK):
+        walks = {d: found.of(group, d) for d in found.designs(group) if d in VARIANTS}
+        if not walks:
+            continue
+        content.append(
+            draw(
+                f"cycle_{group}",
+                f"Fig. 6: power of the right leg over the gait cycle, group {group}; lines are means over policies, bands span the policies (one policy: a standard deviation over its strides).",
+                lambda p, w=walks: save(cycle_power_figure(w), p),  # type: ignore[misc]
+            )
+        )
+    return Part("Power over the gait cycle", content)
+
+
+def impacts(found: Evaluated, draw: Drawer) -> Part:
+    """Impacts over the stiffness of the sole, and the pad that it stands for."""
+    evaluation, trial = next(
+        (e, e.trials[0])
+        for e in found.evaluations
+        if e.trials and not hasattr(e.protocol, "course")
+    )
+    steps = measured_steps(trial, evaluation.protocol.events)
+    mass = (
+        float(np.median(heel_mass(trial, steps.touchdown, steps.foot)))
+        if len(steps)
+        else float("nan")
+    )
+    if not mass > 0:
+        return Part(
+            "Impacts over the stiffness of the sole",
+            ["Cannot be told: the walk that would say what mass stands behind a heel has no step."],
+        )
+    constants = sorted(next(iter(found.band.values())))
+    pads = {c: pad_of_contact(trial.design, mass, c) for c in constants}
+    own = float(trial.design.contact.time_constant)
+    rows: list[list[Any]] = []
+    for c in constants:
+        pad = pads[c]
+        cells = []
+        for walks in found.band.values():
+            one = statistics.estimate(
+                [e.values("grf_peak_body_weights") for e in walks[c]], resamples=1000
+            )
+            fell = int(sum(e.values("fell").sum() for e in walks[c]))
+            cells.append(
+                f"{interval(one.mean, one.low if one.speaks_of_seeds else math.nan, one.high, '')}{f', {fell} fell' if fell else ''}"
+            )
+        pair = [
+            [e.values("grf_peak_body_weights") for e in walks[c]] for walks in found.band.values()
+        ]
+        told = statistics.difference(*pair, resamples=1000).verdict if len(pair) == 2 else ""
+        rows.append(
+            [
+                f"{1e3 * c:.3g} ms{' (all else here)' if math.isclose(c, own) else ''}",
+                pad.stiffness / 1e3,
+                pad.damping(mass),
+                pad.modulus / 1e6,
+                *cells,
+                verdict(told),
+            ]
+        )
+    first = pads[constants[0]]
+    content: list[Any] = [
+        f"Much of an impact is the stiffness of the sole. The stated pad: {1e3 * first.thickness:.0f} mm of a soft sole on {1e4 * first.area:.1f} cm² under each heel; behind it stands an effective mass of {mass:.2f} kg "
+        "at touchdown (median over the steps of one walk, rotors included), which turns the contact's time constant into stiffness and damping. All time constants on this page but in this table are the design's; "
+        "the softest and the stiffest differ sixteenfold, and steps of 5 ms allow none stiffer. Solid rubber, at 1 to 10 MPa, would be stiffer than any of them, so printed newtons are not to be expected; designs are compared at equal settings.",
+        Table(
+            [
+                "time constant",
+                "stiffness [kN/m]",
+                "damping [Ns/m]",
+                "modulus [MPa]",
+                *(d.replace("_", " ") for d in found.band),
+                "difference",
+            ],
+            rows,
+            "Peak of the filtered vertical force within 50 ms of touchdown, in body weights. The policies were trained at the design's contact only.",
+        ),
+        draw(
+            "impact_band",
+            "Impact over the stiffness of the pad under a heel.",
+            lambda p: save(
+                impact_band_figure(found.band, {c: pads[c].stiffness for c in constants}), p
+            ),
+        ),
+    ]
+    return Part("Impacts over the stiffness of the sole", content)

@@ -1,0 +1,138 @@
+"""Animations show the recorded motion: places, directions and forces as they were."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import HyperlegError, InputError
+from hyperleg_design.evaluation.protocol import Events, TTestProtocol, WalkProtocol
+from hyperleg_design.report.pictures import motion
+
+
+@pytest.fixture(scope="module")
+def walk(walks):
+    return walks["toe"]
+
+
+def test_a_walk_moves_as_it_was_recorded(walk):
+    made = motion.walk_motion(walk, begin=2.0, duration=2.0, frames_per_second=10.0)
+    assert len(made.focus) == 20
+    pelvis = made.positions[:, 0]
+    speed = np.diff(pelvis[[0, -1], 0])[0] / 1.9
+    assert speed == pytest.approx(walk.base_velocity[:, 0].mean(), rel=0.05)
+    samples = (np.arange(2.0, 4.0, 0.1) / walk.time_step).round().astype(int)
+    assert made.focus[:, 0] == pytest.approx(
+        walk.base_position[samples, 0] - walk.base_position[0, 0], abs=0.2
+    )
+
+
+def test_pads_stand_on_the_floor(walk):
+    made = motion.walk_motion(walk, begin=2.0, duration=1.0)
+    pads = [i for i, solid in enumerate(made.solids) if solid.colour == motion.PAD]
+    lowest = (made.positions[:, pads, 2] - made.solids[pads[0]].size[0]).min(1)
+    assert np.abs(lowest).max() < 0.01
+
+
+def test_the_direction_of_a_walk_does_not_matter(walk):
+    angle = 2.0
+    level = np.array(
+        [[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]]
+    )
+    w, x, y, z = walk.base_orientation.T
+    c, s = np.cos(angle / 2), np.sin(angle / 2)
+    turned = dataclasses.replace(
+        walk,
+        base_position=walk.base_position @ level.T + [3.0, -4.0, 0.0],
+        base_orientation=np.stack([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w], -1),
+    )
+    one, other = (motion.walk_motion(trial, begin=1.0, duration=1.0) for trial in (walk, turned))
+    assert one.positions == pytest.approx(other.positions, abs=1e-6)
+    assert one.rotations == pytest.approx(other.rotations, abs=1e-6)
+
+
+def test_a_strip_has_a_row_a_walk_and_forces_that_carry_the_weight(walks):
+    events = WalkProtocol().events
+    scene = motion.strip_scene(
+        {name: (trial, events) for name, trial in walks.items()}, snapshots=5
+    )
+    labels = [text for _, text, _ in scene.labels]
+    assert labels.count("0 %") == labels.count("50 %") == 2
+    assert set(walks) <= set(labels)
+    up = [vector[2] for _, vector, _ in scene.arrows]
+    assert min(up) > 0
+    weights = sum(up) / motion.FORCE_LENGTH
+    assert 0.7 * 10 < weights < 1.3 * 10  # of ten snapshots, one body weight each in the mean
+    for start, _, _ in scene.arrows:
+        assert start[2] in (0.0, pytest.approx(-1.24))
+
+
+def test_a_strip_needs_strides(walk):
+    short = dataclasses.replace(
+        walk,
+        **{
+            f: getattr(walk, f)[:60]
+            for f in ("base_position", "base_orientation", "joint_position", "pad_force")
+        },
+    )
+    with pytest.raises(InputError, match="too few strides"):
+        motion.strip_scene({"toe": (short, Events())})
+
+
+def test_a_t_test_is_followed_over_its_course(course_run):
+    protocol = TTestProtocol()
+    made = motion.t_test_motion(course_run, protocol, most_frames=30)
+    assert len(made.focus) in (30, 31)
+    assert [text for _, text, _ in made.labels] == list(protocol.points)
+    far = np.linalg.norm(made.positions[:, 0, :2] - made.focus[:, :2], axis=-1)
+    assert far.max() < 2.5
+    assert len([line for line in made.lines if line[3] == 3.0]) == len(protocol.order) - 1
+
+
+def test_nothing_to_show_is_told(walk):
+    empty = dataclasses.replace(walk, base_position=np.empty((0, 3)))
+    with pytest.raises(InputError, match="no samples"):
+        motion.walk_motion(empty)
+
+
+def test_frames_become_a_file_that_is_small_enough(monkeypatch, tmp_path):
+    from PIL import Image
+
+    rng = np.random.default_rng(0)
+    frames = rng.integers(0, 255, (40, 60, 80, 3)).astype(np.uint8)
+    content = motion._gif(frames, 0.05, 16)
+    image = Image.open(io.BytesIO(content))
+    assert (image.size, image.n_frames, image.info["duration"]) == ((80, 60), 40, 50)
+
+    def saved(what, path):
+        stream = io.BytesIO()
+        np.save(stream, frames)
+        return stream.getvalue()
+
+    monkeypatch.setattr(motion, "drawn", saved)
+    shown = motion.Motion((), np.empty(0), np.empty(0), np.zeros((40, 3)), np.ones(3))
+    monkeypatch.setattr(motion, "MOST_BYTES", len(content) // 2)
+    path = motion.render_gif(shown, tmp_path / "a.gif")
+    assert path.stat().st_size <= len(content) // 2
+    assert Image.open(path).n_frames < 40
+    monkeypatch.setattr(motion, "MOST_BYTES", 100)
+    with pytest.raises(HyperlegError, match="too long"):
+        motion.render_gif(shown, tmp_path / "b.gif")
+    assert not (tmp_path / "b.gif").exists()
+
+
+def test_a_walk_is_drawn(walk, tmp_path):
+    made = motion.walk_motion(walk, begin=2.0, duration=0.5, frames_per_second=10.0)
+    try:
+        path = motion.render_gif(made, tmp_path / "walk.gif")
+    except HyperlegError as error:
+        pytest.skip(str(error))
+    from PIL import Image
+
+    image = Image.open(path)
+    assert image.n_frames == 5
+    pixels = np.asarray(image.convert("RGB"))
+    assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 10

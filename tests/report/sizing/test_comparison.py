@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+import pytest
+
+from hyperleg_design.report.sizing import comparison
+from hyperleg_design.robot.design import load_design
+
+
+@pytest.fixture(scope="module")
+def design():
+    return load_design("hyperleg")
+
+
+def test_table_one_agrees_but_for_the_speeds(design):
+    rows = comparison.table_one(design)
+    assert len(rows) == 4 + 3 * 7
+    for row in rows:
+        assert row.verdict == ("differs" if row.quantity.endswith("speed") else "agrees"), row
+    assert all(row.note for row in rows if row.verdict == "differs")
+
+
+def test_a_wrong_design_is_seen(design):
+    rows = comparison.table_one(design.with_values({"actuators.knee.gear": 8.0}))
+    wrong = {r.quantity for r in rows if r.verdict == "differs"}
+    assert {"knee torque, derated", "knee reduction, standing"} <= wrong
+
+
+def test_power_constants_differ_by_the_vendors_torque_constant():
+    rows = {r.quantity: r for r in comparison.motor_rows()}
+    assert rows["RI70 Cp"].ours == pytest.approx(24.7, abs=0.05)
+    assert rows["RI60 Cp"].difference == pytest.approx(90.0 / 124.57 - 1, abs=1e-3)
+
+
+def test_compare_puts_designs_beside_each_other(design):
+    found = comparison.compare([design, load_design("toe_removed")])
+    assert list(found) == ["hyperleg", "toe_removed"]
+    assert (
+        found["toe_removed"]["max_joint_torque"]["knee"]
+        < found["hyperleg"]["max_joint_torque"]["knee"]
+    )
+    text = comparison.compare_text(found)
+    assert "max_joint_torque.toe" in text
+    assert "toe_removed" in text.splitlines()[0]
+
+
+def test_compare_keeps_two_designs_of_one_name_apart(design):
+    assert len(comparison.compare([design, design.with_values({"toe.mass": 0.4})])) == 2

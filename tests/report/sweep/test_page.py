@@ -1,0 +1,26 @@
+from __future__ import annotations
+
+from hyperleg_design.report.sweep.page import sweep_report
+from hyperleg_design.sweep.run import run_sweep
+from hyperleg_design.sweep.space import sweep_from_mapping
+
+
+def test_the_page_stands_beside_the_table_and_shows_every_figure(tmp_path):
+    definition = {
+        "description": "small",
+        "design": "hyperleg",
+        "sampling": "grid",
+        "axes": {
+            "toe.mass": {"low": 0.1, "high": 0.3, "steps": 3},
+            "actuators.knee.gear": {"low": 6, "high": 8, "steps": 3},
+        },
+        "objectives": ["total_mass", "push_off_heat"],
+    }
+    result = run_sweep(sweep_from_mapping(definition), tmp_path / "out", progress=False)
+    summary = sweep_report(result)
+    html = (tmp_path / "out" / "index.html").read_text()
+    assert summary["designs"] == 9
+    figures = list((tmp_path / "out" / "figures").glob("*.png"))
+    assert figures
+    for figure in figures:
+        assert f"figures/{figure.name}" in html
