@@ -14,6 +14,7 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import parameters
+from hyperleg_design.robot.mjcf import TIME_STEP
 from hyperleg_design.simulation.commands import VelocityCommands, WaypointCommands
 from hyperleg_design.simulation.observations import PARTS
 from hyperleg_design.simulation.rewards import TERMS
@@ -101,12 +102,17 @@ class Task:
 
     @property
     def deviations(self) -> dict[str, str]:
-        """What is not the paper's: reward terms, and the gait clock where it is observed, with
-        descriptions.
+        """What is not the paper's: reward terms, the gait clock where it is observed, and the
+        simulation step, with descriptions.
         """
         found = {name: TERMS[name].description for name in self.rewards if not TERMS[name].paper}
         if any("clock" in parts for parts in self.observations.values()):
             found["clock"] = "gait clock in the observation"
+        if self.physics.time_step != TIME_STEP:
+            found["time_step"] = (
+                f"simulation steps of {1e3 * self.physics.time_step:g} ms, "
+                f"the paper's are {1e3 * TIME_STEP:g} ms"
+            )
         return found
 
     def posed(self, design: Design) -> Design:

@@ -35,10 +35,10 @@ def test_paper_presets_are_table_ii():
     assert goal.rewards["goal_arrival"].weight == 150
     assert goal.rewards["position_progress"].weight == 10
     for task in (walk, goal):
-        assert set(task.deviations) == {"joint_limits"}
+        assert set(task.deviations) == {"joint_limits", "time_step"}
         assert task.control.smoothing == 0.2
         assert task.physics.policy_step == pytest.approx(0.02)
-        assert task.physics.time_step == 0.005
+        assert task.physics.time_step == 0.0025
         assert task.limits.duration == 20.0
         assert task.thermal.time_constant == 3.0
 
