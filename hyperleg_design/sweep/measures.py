@@ -17,6 +17,7 @@ from hyperleg_design.reading import summary_line
 from hyperleg_design.robot import consistency, masses, transmission
 from hyperleg_design.robot.bodies import Inertial
 from hyperleg_design.robot.design import Design
+from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.inertials import inertials
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
@@ -243,6 +244,13 @@ def torque_alone(batch: Batch) -> np.ndarray:
     return np.stack(
         [zonotope.alone(matrix, -peak, peak, joint) for joint in range(matrix.shape[-2])], -1
     )
+
+
+@measure("Nm", "low", JOINTS)
+def coulomb_friction(batch: Batch) -> np.ndarray:
+    """Coulomb friction of each joint by the design's law of friction."""
+    moving = len(transmission.joint_names(batch.design))
+    return joint_friction(batch.design)[0][..., :moving]
 
 
 @measure("rad/s", "high", JOINTS)

@@ -10,14 +10,18 @@ from hyperleg_design.evaluation.policy import Scripted, standing
 from hyperleg_design.evaluation.rollout import record
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.environment import Environment
-from hyperleg_design.simulation.settings import Limits, Start
+from hyperleg_design.simulation.settings import Limits, Physics, Start
 from hyperleg_design.simulation.tasks import load_task
 
 
 @pytest.fixture
 def environment(design):
     def made(simulations=3, **sections):
-        return Environment(design, load_task("walk").changed(**sections), simulations=simulations)
+        return Environment(
+            design,
+            load_task("walk").changed(**{"physics": Physics(), **sections}),
+            simulations=simulations,
+        )
 
     return made
 
