@@ -17,6 +17,8 @@ _HOME = {
     "InfeasibleError": "errors",
     "Design": "robot.design",
     "load_design": "robot.design",
+    "load_robot": "robot.load",
+    "import_robot": "robot.importing",
     "ablate": "robot.ablation",
     "variants": "robot.ablation",
     "confound": "robot.ablation",
@@ -63,7 +65,9 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.description import urdf as urdf
     from hyperleg_design.robot.design import Design as Design
     from hyperleg_design.robot.design import load_design as load_design
+    from hyperleg_design.robot.importing import import_robot as import_robot
     from hyperleg_design.robot.linkage import LinkageModel as LinkageModel
+    from hyperleg_design.robot.load import load_robot as load_robot
     from hyperleg_design.robot.masses import mass_table as mass_table
     from hyperleg_design.robot.mjcf import mjcf as mjcf
     from hyperleg_design.robot.mjcf import mujoco_model as mujoco_model

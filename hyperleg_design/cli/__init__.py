@@ -47,6 +47,7 @@ VERBS: dict[str, Any] = {
     "list": design.List,
     "build": design.Build,
     "check": design.Check,
+    "import": design.Import,
     "analyze": design.Analyze,
     "sweep": design.Sweep,
     "search": search.Search,

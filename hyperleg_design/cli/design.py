@@ -108,6 +108,48 @@ class Check(Printing):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Import(Printing):
+    """Make a design from a URDF or MJCF and the motors behind its joints, and say where the file's
+    limits contradict them.
+    """
+
+    file: Annotated[str, tyro.conf.Positional]
+    """URDF or MJCF."""
+    actuation: Path
+    """YAML file that names motors and reductions; docs/robots.md says how."""
+    out: Path | None = None
+    """Design file to write; without it, the limits are only checked."""
+    no_meshes: bool = False
+    """Import although meshes are missing that the file names."""
+
+    def run(self) -> None:
+        """Import it."""
+        from hyperleg_design.robot.build import design_yaml
+        from hyperleg_design.robot.importing import import_robot
+        from hyperleg_design.writing import write_text
+
+        design, findings = import_robot(self.file, self.actuation, meshes=not self.no_meshes)
+        if self.out is not None:
+            write_text(self.out, design_yaml(design))
+        if self.json:
+            emit(
+                {
+                    "design": design.name,
+                    "file": None if self.out is None else str(self.out),
+                    "joints": list(design.joint_sections),
+                    "findings": [vars(finding) for finding in findings],
+                }
+            )
+            return
+        written = "" if self.out is None else f" -> {self.out}"
+        print(f"{design.name}: {len(design.joint_sections)} joints of one limb{written}")
+        for finding in findings:
+            print(finding)
+        if not findings:
+            print("the file's limits agree with the motors")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Analyze(Chosen):
     """Masses, reductions, torques, speeds, reflected inertia, envelope and confound of one
     design.

@@ -42,6 +42,9 @@ def load_robot(
         overlays: YAML files with nested leaves, applied in order before `overrides`.
         variant: ablation to make of a HyperLeg, one of `names.VARIANTS`.
 
+    Returns:
+        The checked design, one robot, of its file's family.
+
     Raises:
         InputError: names file, field, value and remedy.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -146,6 +147,13 @@ def test_the_three_ways_to_give_the_transmission_are_the_same():
         "motors": ["knee", "hip"],
     }
     assert np.allclose(transmission.joint_from_motor(leg(transmission=swapped)), [[7, -9], [0, 9]])
+
+
+def test_the_example_of_the_page_loads(tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "robots.md").read_text()
+    path = tmp_path / "mine.yaml"
+    path.write_text(page.split("```yaml\n")[1].split("```")[0])
+    assert transmission.joint_names(load_robot(path)) == ("hip", "knee")
 
 
 def test_joints_come_parents_first_whatever_the_file_says():

@@ -1,0 +1,234 @@
+"""A design from somebody else's URDF or MJCF and a file that names the motors behind its joints.
+
+    name: my_robot                       # the file's own name by default
+    trunk: {motion: fixed, height: 0.5}  # how the root stands; as the file has it by default
+    lock: ["gripper_*"]                  # joints that stay at zero, by name or pattern
+    actuators:                           # motors, by joint or pattern of joints, or by a name of
+      "leg_*": {motor: U10, gear: 25}    # their own where transmission says what they drive
+    joints: {"leg_*": {stiffness: 80, damping: 3, default_deg: 0}}
+    transmission, rods, pads, masses, electrical, contact, stops: as in a design of `family: tree`
+
+`lint` says where the effort, velocity and rotor inertia that the file states contradict those motors.
+"""  # noqa: E501
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters, transmission
+from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
+from hyperleg_design.robot.finding import Finding
+from hyperleg_design.robot.models import leg_reflected_inertia
+from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.tree_load import tree_design_from_mapping
+
+AGREES = 0.05
+"""Relative difference up to which a limit of the file agrees with the motors [-]."""
+KEYS = (
+    "name",
+    "trunk",
+    "lock",
+    "actuators",
+    "joints",
+    "transmission",
+    "rods",
+    "pads",
+    "masses",
+    "electrical",
+    "contact",
+    "stops",
+)
+"""What an actuation file may hold."""
+
+
+def import_robot(
+    path: str | Path, actuation: str | Path, *, meshes: bool = True
+) -> tuple[TreeDesign, list[Finding]]:
+    """A design from a URDF or MJCF and an actuation file.
+
+    Args:
+        path: URDF or MJCF.
+        actuation: YAML file, see the module.
+        meshes: whether the meshes that a URDF names must be there.
+
+    Returns:
+        The design, and what `lint` finds.
+
+    Raises:
+        InputError: the file is no robot (see `described_file.read_robot`), a joint without a motor,
+            a pattern that matches nothing, or actuation that does not fit.
+    """
+    robot = read_robot(path, meshes=meshes)
+    design = tree_design_from_mapping(
+        design_mapping(robot, read_yaml(Path(actuation)), short_name(Path(actuation))),
+        robot.name,
+        short_name(Path(actuation)),
+    )
+    return design, lint(robot, design)
+
+
+def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """What the design's file would hold.
+
+    Raises:
+        InputError: an unknown field, or a pattern that matches no joint.
+    """
+    for key in data:
+        if key not in KEYS:
+            raise InputError(where, str(key), data[key], parameters.unknown(str(key), list(KEYS)))
+    moving = [n for n, j in robot.joints.items() if j.kind != "fixed"]
+    locked = {
+        name
+        for pattern in data.get("lock") or []
+        for name in _matching(str(pattern), moving, where, "lock")
+    }
+    for name in moving:
+        kind = robot.joints[name].kind
+        if kind != "revolute" and name not in locked:
+            remedy = "is no kind of joint that a design moves; list it under lock"
+            raise InputError(robot.source, f"joint {name}", kind, remedy)
+    free = [name for name in moving if name not in locked]
+    actuators: dict[str, Any] = {}
+    for pattern, held in _section(data, "actuators", where).items():
+        own = pattern in _section(data, "transmission", where)
+        own = own or pattern in _section(data, "rods", where)
+        names = [pattern] if own else _matching(pattern, free, where, "actuators")
+        for name in names:
+            parent = robot.joints[name].parent if name in robot.joints else robot.root
+            actuators[name] = {"housed_in": parent} | dict(held)
+    joints = {
+        name: _joint(joint, robot.source, name in locked) for name, joint in robot.joints.items()
+    }
+    for pattern, held in _section(data, "joints", where).items():
+        for name in _matching(pattern, list(robot.joints), where, "joints"):
+            joints[name] |= held
+    trunk = {"link": robot.root, "motion": "floating" if robot.floating else "fixed"}
+    rest = {k: data[k] for k in KEYS[5:] if k in data}
+    return {
+        "family": "tree",
+        "name": str(data.get("name", robot.name)),
+        "trunk": trunk | dict(_section(data, "trunk", where)),
+        "links": {
+            name: {
+                "mass": _leaf(link.mass, robot.source),
+                "com": _leaf(link.com.tolist(), robot.source),
+                "inertia": _leaf(
+                    [
+                        float(link.inertia[i])
+                        for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+                    ],
+                    robot.source,
+                ),
+            }
+            for name, link in robot.links.items()
+        },
+        "joints": joints,
+        "actuators": actuators,
+        **rest,
+    }
+
+
+def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
+    held = data.get(key) or {}
+    if not isinstance(held, Mapping):
+        raise InputError(where, key, held, "expects a mapping of names to values")
+    return held
+
+
+def _matching(pattern: str, names: list[str], where: str, place: str) -> list[str]:
+    found = [name for name in names if fnmatchcase(name, pattern)]
+    if not found:
+        remedy = parameters.unknown(pattern, names).replace("such field", "such moving joint")
+        raise InputError(where, f"{place}.{pattern}", None, remedy)
+    return found
+
+
+def _leaf(value: Any, source: str) -> dict[str, Any]:
+    return {"value": value, "label": "vendor", "source": source}
+
+
+def _joint(joint: FileJoint, source: str, locked: bool) -> dict[str, Any]:
+    fixed = locked or joint.kind == "fixed"
+    made = {
+        "parent": joint.parent,
+        "child": joint.child,
+        "type": "fixed" if fixed else "revolute",
+        "position": _leaf(joint.position.tolist(), source),
+        "turn_deg": _leaf(np.rad2deg(joint.turn).tolist(), source),
+    }
+    if fixed:
+        return made
+    lower, upper = float(np.rad2deg(joint.lower)), float(np.rad2deg(joint.upper))
+    return made | {
+        "axis": _leaf(joint.axis.tolist(), source),
+        "lower_deg": _leaf(lower, source),
+        "upper_deg": _leaf(upper, source),
+        "default_deg": float(np.clip(0.0, lower, upper)),
+        "coulomb": _leaf(joint.coulomb, source),
+        "viscous": _leaf(joint.viscous, source),
+    }
+
+
+def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
+    """Where the limits that a file states contradict the motors and reductions of a design.
+
+    The motors can give a joint `sum |M| tau_peak` and turn it, alone, at the least `omega_0 / |M|`;
+    their rotors appear there with the diagonal of `M diag(J) M^T`.
+
+    Args:
+        robot: the file.
+        design: the design made of it.
+
+    Returns:
+        Findings: an error where the file promises more than the motors have, a warning where it
+        has less than they have, or another rotor inertia.
+    """
+    matrix = transmission.joint_from_motor(design)
+    torque = transmission.max_joint_torque(design)
+    speed = transmission.single_joint_speed(design)
+    rotors = np.diag(leg_reflected_inertia(design))
+    motors = list(design.actuator_sections)
+    found = []
+    for row, name in enumerate(design.joint_sections):
+        joint = robot.joints[name]
+        parts = []
+        for motor, ratio in zip(motors, matrix[row], strict=True):
+            if ratio:
+                parts.append(f"{design.actuator_sections[motor].motor} at {abs(ratio):.4g}:1")
+        driven = " and ".join(parts)
+        for field, stated, own, unit in (
+            ("effort", joint.effort, float(torque[row]), "Nm"),
+            ("velocity", joint.velocity, float(speed[row]), "rad/s"),
+        ):
+            if not np.isfinite(stated) or abs(stated / own - 1) <= AGREES:
+                continue
+            more = stated > own
+            found.append(
+                Finding(
+                    "error" if more else "warning",
+                    f"joint {name}",
+                    f"{field} is {stated:.4g} {unit}, {stated / own:.3g} times the {own:.4g} {unit}"
+                    f" of {driven}",
+                    f"set it to {own:.4g}, or name other motors and reductions"
+                    if more
+                    else f"raise it to {own:.4g} unless the rest is held back on purpose",
+                )
+            )
+        if np.isfinite(joint.armature) and abs(joint.armature / rotors[row] - 1) > AGREES:
+            found.append(
+                Finding(
+                    "warning",
+                    f"joint {name}",
+                    f"armature is {joint.armature:.4g} kg m^2, {joint.armature / rotors[row]:.3g} "
+                    f"times the rotors of {driven}",
+                    f"set it to {rotors[row]:.4g}",
+                )
+            )
+    return sorted(found, key=lambda f: f.severity != "error")
