@@ -316,8 +316,13 @@ def catalogue() -> dict[str, Motor]:
         InputError: a folder of the user's that is not there, a file in it that is no motor, or one
             with the name of another motor.
     """
-    motors = dict(_catalogue_at(resources.content_folder("motors")))
-    for text in filter(None, os.environ.get(FOLDERS, "").split(os.pathsep)):
+    return _joined(resources.content_folder("motors"), os.environ.get(FOLDERS, ""))
+
+
+@cache
+def _joined(shipped: Path, folders: str) -> dict[str, Motor]:
+    motors = dict(_catalogue_at(shipped))
+    for text in filter(None, folders.split(os.pathsep)):
         folder = Path(text)
         if not folder.is_dir():
             raise InputError("--motors", "", text, "is no folder; expects one with motor files")

@@ -320,17 +320,23 @@ def _lighter(own: Any, others: list[Any]) -> str:
 
 
 def sweeps(context: Context) -> Made:
-    """Every shipped sweep."""
+    """Every shipped sweep of sizing measures; those whose designs walk take hours and have pages of
+    their own.
+    """
     from hyperleg_design import resources
     from hyperleg_design.report.sweep.page import sweep_content
     from hyperleg_design.sweep.run import run_sweep
+    from hyperleg_design.sweep.space import load_sweep
 
     content: list[Any] = [
         "Thousands of designs at once, each with its masses, torques, speeds, reachable torque set and heat. Every table stands beside this page as Parquet, with the resolved configuration inside."
     ]
     designs = 0
     for name in sorted(resources.names("sweeps"), key=lambda n: (n == "combined", n)):
-        result = run_sweep(name, context.folder / "sweeps" / name, progress=False)
+        sweep = load_sweep(name)
+        if sweep.evaluated:
+            continue
+        result = run_sweep(sweep, context.folder / "sweeps" / name, progress=False)
         designs += result.summary["designs"]
         content += [
             Heading(name.replace("_", " ").capitalize()),
