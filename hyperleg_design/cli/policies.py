@@ -144,6 +144,8 @@ class Evaluate(Printing):
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
     logs: Path | None = None
     """Folder to write a log of every trial to, as `hyperleg gap` reads them; none by default."""
+    lerobot: Path | None = None
+    """Folder to write all trials to as a LeRobot dataset (v3.0); none by default."""
 
     def run(self) -> None:
         """Evaluate them."""
@@ -154,7 +156,7 @@ class Evaluate(Printing):
 
         if not self.policies:
             raise InputError("evaluate", "", None, "expects ONNX files")
-        for folder in (self.out, self.logs):
+        for folder in (self.out, self.logs, self.lerobot):
             if folder is not None:
                 check_output_folder(folder)
         overlay = None
@@ -168,7 +170,7 @@ class Evaluate(Printing):
             self.protocol or None,
             designs=[self._design(policy) for policy in self.policies],
             workers=self.workers,
-            kept=1 if self.logs is None else sys.maxsize,
+            kept=1 if self.logs is None and self.lerobot is None else sys.maxsize,
             alterations=alterations,
         )
         folder = write_results(self.out, found)
@@ -177,6 +179,10 @@ class Evaluate(Printing):
             from hyperleg_design.gap.logs.recording import write_logs
 
             written = write_logs(self.logs, found)
+        if self.lerobot is not None:
+            from hyperleg_design.evaluation.lerobot import write_lerobot
+
+            write_lerobot(self.lerobot, found)
         if overlay:
             write_overlay(folder / "overlay.yaml", overlay)
         rows = evaluation_rows(found)

@@ -1,0 +1,188 @@
+"""Evaluations as LeRobot datasets (codebase v3.0): one episode a trial, one frame a policy step.
+
+`observation.state`, `observation.velocity` and `observation.effort` are positions [rad], velocities
+[rad/s] and torques [Nm] of the joints before friction; `action` is what the joint controllers were
+asked for [rad]. The task of an episode is the name of its protocol.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.writing import output_folder, write_json
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.evaluation.rollout import Trial
+
+VERSION = "v3.0"
+"""Of LeRobot's dataset format."""
+TABLE = "chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
+SIGNALS = {
+    "observation.state": "joint_position",
+    "observation.velocity": "joint_velocity",
+    "observation.effort": "driven_joint_torque",
+    "action": "joint_target",
+}
+"""Signal of a trial by feature."""
+COUNTERS = ("frame_index", "episode_index", "index", "task_index")
+QUANTILES = {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}
+
+
+def write_lerobot(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]) -> Path:
+    """Write the trials of evaluations as one dataset.
+
+    Args:
+        folder: to write, whole or not at all.
+        evaluations: of robots with the same joints and policy rate, with the signals of their
+            trials; trials without a frame are left out.
+
+    Returns:
+        The folder.
+
+    Raises:
+        InputError: no trial with signals, or robots whose joints or rates differ.
+        OutputError: the folder is not ours, or cannot be written.
+    """
+    import pandas as pd
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    trials = [
+        (trial, str(one.protocol.name))
+        for one in evaluations
+        for trial in one.trials
+        if trial.samples and trial.joint_target is not None
+    ]
+    if not trials:
+        raise InputError("lerobot", "trials", 0, "expects trials with their signals")
+    joints, rate = trials[0][0].layout.joints, _rate(trials[0][0])
+    for trial, _ in trials:
+        if trial.layout.joints != joints or _rate(trial) != rate:
+            raise InputError(
+                "lerobot",
+                "joints",
+                list(trial.layout.joints),
+                f"differ between robots: expects {', '.join(joints)} at {rate} Hz in one dataset",
+            )
+    tasks = list(dict.fromkeys(task for _, task in trials))
+    columns, episodes, first = [], [], 0
+    for number, (trial, task) in enumerate(trials):
+        frames = _frames(trial, rate)
+        count = len(frames["timestamp"])
+        frames |= {
+            "frame_index": np.arange(count),
+            "episode_index": np.full(count, number),
+            "index": np.arange(first, first + count),
+            "task_index": np.full(count, tasks.index(task)),
+        }
+        columns.append(frames)
+        episodes.append(_episode(number, task, first, frames))
+        first += count
+    table = {name: np.concatenate([part[name] for part in columns]) for name in columns[0]}
+    with output_folder(folder) as place:
+        for sub in ("data", "meta/episodes"):
+            (place / sub / "chunk-000").mkdir(parents=True)
+        path = TABLE.format(chunk_index=0, file_index=0)
+        pq.write_table(pa.table({n: _arrow(v) for n, v in table.items()}), place / "data" / path)
+        pq.write_table(pa.Table.from_pylist(episodes), place / "meta/episodes" / path)
+        pd.DataFrame(
+            {"task_index": range(len(tasks))}, index=pd.Index(tasks, name="task")
+        ).to_parquet(place / "meta" / "tasks.parquet")
+        write_json(place / "meta" / "stats.json", {n: _statistics(v) for n, v in table.items()})
+        robot = evaluations[0].design
+        write_json(place / "meta" / "info.json", _info(robot, joints, rate, trials, tasks, first))
+    return Path(folder)
+
+
+def _rate(trial: Trial) -> int:
+    """Policy steps in a second."""
+    return round(1 / (trial.time_step * trial.substeps))
+
+
+def _frames(trial: Trial, rate: int) -> dict[str, np.ndarray]:
+    """Signals at the start of each policy step, and the time since the episode's start [s]."""
+    found = {
+        feature: np.asarray(getattr(trial, signal), np.float32)[:: trial.substeps]
+        for feature, signal in SIGNALS.items()
+    }
+    count = len(found["observation.state"])
+    return {**found, "timestamp": (np.arange(count) / rate).astype(np.float32)}
+
+
+def _episode(
+    number: int, task: str, first: int, frames: Mapping[str, np.ndarray]
+) -> dict[str, Any]:
+    count = len(frames["timestamp"])
+    row: dict[str, Any] = {
+        "episode_index": number,
+        "tasks": [task],
+        "length": count,
+        "data/chunk_index": 0,
+        "data/file_index": 0,
+        "dataset_from_index": first,
+        "dataset_to_index": first + count,
+        "meta/episodes/chunk_index": 0,
+        "meta/episodes/file_index": 0,
+    }
+    for name, values in frames.items():
+        row |= {f"stats/{name}/{key}": value for key, value in _statistics(values).items()}
+    return row
+
+
+def _statistics(values: np.ndarray) -> dict[str, list[float] | list[int]]:
+    """Statistics of a feature over its frames, one number a component."""
+    rows = np.asarray(values, float).reshape(len(values), -1)
+    found: dict[str, list[float] | list[int]] = {
+        "min": rows.min(0).tolist(),
+        "max": rows.max(0).tolist(),
+        "mean": rows.mean(0).tolist(),
+        "std": rows.std(0).tolist(),
+        "count": [len(rows)],
+    }
+    return found | {name: np.quantile(rows, q, axis=0).tolist() for name, q in QUANTILES.items()}
+
+
+def _arrow(values: np.ndarray) -> Any:
+    import pyarrow as pa
+
+    if values.ndim == 1:
+        return pa.array(values)
+    return pa.FixedSizeListArray.from_arrays(pa.array(values.ravel()), values.shape[1])
+
+
+def _info(
+    robot: str,
+    joints: tuple[str, ...],
+    rate: int,
+    trials: Sequence[Any],
+    tasks: Sequence[str],
+    frames: int,
+) -> dict[str, Any]:
+    features: dict[str, Any] = {
+        feature: {"dtype": "float32", "shape": [len(joints)], "names": list(joints)}
+        for feature in SIGNALS
+    }
+    features["timestamp"] = {"dtype": "float32", "shape": [1], "names": None}
+    features |= {name: {"dtype": "int64", "shape": [1], "names": None} for name in COUNTERS}
+    return {
+        "codebase_version": VERSION,
+        "robot_type": robot,
+        "total_episodes": len(trials),
+        "total_frames": frames,
+        "total_tasks": len(tasks),
+        "chunks_size": 1000,
+        "data_files_size_in_mb": 100,
+        "video_files_size_in_mb": 200,
+        "fps": rate,
+        "splits": {"train": f"0:{len(trials)}"},
+        "data_path": f"data/{TABLE}",
+        "video_path": None,
+        "features": features,
+    }
