@@ -44,7 +44,7 @@ class Search(Printing):
 
     def run(self) -> None:
         """Run it."""
-        from hyperleg_design.report.search_text import search_text
+        from hyperleg_design.report.sweep.search_text import search_text
         from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.search import found_designs, run_search, search_of
         from hyperleg_design.sweep.space import load_sweep

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.report.sizing import comparison
 from hyperleg_design.robot.design import load_design
 
@@ -45,3 +46,15 @@ def test_compare_puts_designs_beside_each_other(design):
 
 def test_compare_keeps_two_designs_of_one_name_apart(design):
     assert len(comparison.compare([design, design.with_values({"toe.mass": 0.4})])) == 2
+
+
+def test_designs_are_walked_by_the_policies_of_their_toe_layout(monkeypatch):
+    short = WalkProtocol(trials=2, distance=0.6, time_limit=0.8, steady=Steady(begin=0.3))
+    monkeypatch.setattr("hyperleg_design.evaluation.evaluate.load_protocol", lambda name: short)
+    designs = [load_design("toe", overrides={"toe.mass": 0.6}), load_design("toe_removed")]
+    found = comparison.compare_walks(designs, ["walk"], seeds=1, workers=1)["walk"]
+    assert [set(entry) for entry in found] == [{"policy", *comparison.MEASURED["walk"]}] * 2
+    assert "toe.mass" in found[0]["policy"]
+    assert "toe.mass" not in found[1]["policy"]
+    for entry in found:
+        assert entry["fell"]["low"] <= entry["fell"]["mean"] <= entry["fell"]["high"]
