@@ -20,6 +20,12 @@ VARIANT_COLOUR = {
 }
 """Colour of each ablation, told apart by colour-blind readers too."""
 
+
+def variant_colour(variant: str) -> str:
+    """Colour of an ablation; the active toe's for a robot without ablations."""
+    return VARIANT_COLOUR.get(variant, VARIANT_COLOUR["toe"])
+
+
 _STYLE: dict[str, Any] = {
     "font.size": 10,
     "axes.spines.top": False,

@@ -149,11 +149,17 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
     where = short_name(path)
     if path.resolve() in seen:
         raise InputError(where, "base", data.get("base"), "leads back to itself")
+    if data.get("family", "hyperleg") != "hyperleg":
+        remedy = (
+            "is of another family; this needs a design of HyperLeg's, such as hyperleg; read "
+            "others with load_robot"
+        )
+        raise InputError(where, "family", data["family"], remedy)
     variant = data.get("variant")
     if variant is not None and variant not in VARIANTS:
         raise InputError(where, "variant", variant, f"expects one of {', '.join(VARIANTS)}")
     name = data.get("name", re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem))
-    rest = {k: v for k, v in data.items() if k not in ("base", "variant", "name")}
+    rest = {k: v for k, v in data.items() if k not in ("base", "variant", "name", "family")}
     if "base" not in data:
         origins: dict[str, Origin] = {}
         return _build(rest, name, where, origins, variant or "toe"), None

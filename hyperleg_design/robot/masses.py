@@ -22,7 +22,6 @@ from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SEGMENTS
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.hyperleg import HyperLeg
-    from hyperleg_design.robot.sections import Actuator
 
 _REFERENCE_PART = {
     "hip_yaw": "hip",
@@ -109,7 +108,7 @@ def mass_table(design: HyperLeg) -> MassTable:
     return _LAWS[design.masses.law](design)
 
 
-def built_mass(design: HyperLeg, actuator: Actuator) -> Any:
+def built_mass(design: Any, actuator: Any) -> Any:
     """Mass of an actuator as the design builds it [kg]."""
     return actuator_mass(actuator.motor, actuator.gear, design.masses.gear_mass_per_torque)
 

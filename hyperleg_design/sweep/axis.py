@@ -12,7 +12,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import parameters
-from hyperleg_design.robot.design import Design
+from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.motors import catalogue, find_motor
 
 _KEYS = ("paths", "values", "low", "high", "steps", "log", "scale")
@@ -65,7 +65,7 @@ class Axis:
         )
         return np.clip(drawn, self.low, self.high)
 
-    def leaf_values(self, base: Design, values: np.ndarray) -> dict[str, Any]:
+    def leaf_values(self, base: RobotDesign, values: np.ndarray) -> dict[str, Any]:
         """What each leaf becomes, by path, for a batch of values of this axis."""
         if not self.scaled:
             return dict.fromkeys(self.paths, values)
@@ -83,7 +83,7 @@ class Axis:
         return {**plain, "low": self.low, "high": self.high, "log": self.log}
 
 
-def read_axis(name: str, data: Any, base: Design, where: str, *, grid: bool) -> Axis:
+def read_axis(name: str, data: Any, base: RobotDesign, where: str, *, grid: bool) -> Axis:
     """An axis as a sweep file describes it.
 
     Args:
@@ -137,9 +137,9 @@ def _refuse_unknown(
 
 
 def _paths(
-    name: str, data: Mapping[str, Any], base: Design, where: str, place: str
+    name: str, data: Mapping[str, Any], base: RobotDesign, where: str, place: str
 ) -> tuple[str, ...]:
-    rules = parameters.rules(Design)
+    rules = base.rules
     if "paths" not in data:
         if name not in rules:
             remedy = (
@@ -187,7 +187,7 @@ def _listed(
     paths: tuple[str, ...],
     data: Mapping[str, Any],
     scaled: bool,
-    base: Design,
+    base: RobotDesign,
     where: str,
     place: str,
 ) -> Axis:
@@ -266,11 +266,11 @@ def _number(value: Any, where: str, place: str) -> float:
     return found
 
 
-def _checked(axis: Axis, base: Design, where: str, place: str) -> Axis:
+def _checked(axis: Axis, base: RobotDesign, where: str, place: str) -> Axis:
     """The axis with its unit, after all its leaves have taken all its values (of a range, its
     ends).
     """
-    rules = parameters.rules(Design)
+    rules = base.rules
     if axis.scaled and any(rules[p].kind == "text" for p in axis.paths):
         raise InputError(
             where, place, list(axis.paths), "names a motor, which has nothing to scale; use values"

@@ -34,7 +34,7 @@ def evaluate_range(
     samples = sweep.samples() if samples is None else samples
     part = {name: values[start:stop] for name, values in samples.items()}
     count, variants = stop - start, len(sweep.variants)
-    names = measures.columns(sweep.measures)
+    names = measures.columns(sweep.measures, sweep.base)
     values = np.full((len(names), count, variants), np.nan)
     reasons = np.full((count, variants), "", dtype=object)
     for column, variant in enumerate(sweep.variants):
@@ -61,7 +61,7 @@ def evaluate_samples(
         Measures `(columns, n)`, and reasons of rejection `(n,)`, empty where there is none.
     """
     count = len(next(iter(samples.values())))
-    names = measures.columns(sweep.measures)
+    names = measures.columns(sweep.measures, sweep.base)
     values = np.full((len(names), count), np.nan)
     reasons = np.full(count, "", dtype=object)
     waiting = [np.arange(count)]

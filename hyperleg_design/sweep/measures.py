@@ -10,17 +10,19 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.reading import summary_line
-from hyperleg_design.robot import consistency, masses, transmission
+from hyperleg_design.robot import consistency, dimensions, masses, transmission
 from hyperleg_design.robot.bodies import Inertial
-from hyperleg_design.robot.design import Design
+from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.inertials import inertials
 from hyperleg_design.robot.models import leg_reflected_inertia
-from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
+from hyperleg_design.robot.names import JOINTS
+from hyperleg_design.robot.tree_design import TreeDesign
 from hyperleg_design.sizing import zonotope
 from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
 from hyperleg_design.sizing.inertia import LegInertia, leg_inertia
@@ -40,9 +42,11 @@ class Batch:
     once.
     """
 
-    def __init__(self, design: Design) -> None:
-        self.design = design
+    def __init__(self, design: RobotDesign) -> None:
+        self.design: Any = design
         self.size = (design.batch_shape or (1,))[0]
+        self.start = 0 if isinstance(design, TreeDesign) else 3
+        """First joint of those that `below_hip` holds."""
 
     @cached_property
     def masses(self) -> masses.MassTable:
@@ -80,8 +84,12 @@ class Batch:
         return reference_loads.push_off(self.design, self.inertials)
 
     def below_hip(self) -> tuple[np.ndarray, np.ndarray]:
-        """Matrix and peak torques of what lies below the hip, walking."""
-        return self.walking[..., 3:, 3:], self.envelope.peak_torque[..., 3:]
+        """Matrix and peak torques of what lies below the hip, walking; of a whole limb in a design
+        that writes its tree out.
+        """
+        return self.walking[..., self.start :, self.start :], self.envelope.peak_torque[
+            ..., self.start :
+        ]
 
 
 @dataclass(frozen=True)
@@ -97,11 +105,19 @@ class Measure:
     """Suffixes of its columns; empty for one column named after it."""
     doc: str
     compute: Callable[[Batch], np.ndarray]
+    trees: bool = False
+    """Whether a design that writes its tree out has it; its parts are then that design's joints."""
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of its columns."""
-        return tuple(f"{self.name}.{part}" for part in self.parts) or (self.name,)
+        """Names of its columns for HyperLeg."""
+        return self.columns_of(None)
+
+    def columns_of(self, design: RobotDesign | None) -> tuple[str, ...]:
+        """Names of its columns for a design; HyperLeg's where there is none."""
+        tree = self.parts and isinstance(design, TreeDesign)
+        parts = transmission.joint_names(design) if tree and design else self.parts
+        return tuple(f"{self.name}.{part}" for part in parts) or (self.name,)
 
 
 MEASURES: dict[str, Measure] = {}
@@ -109,7 +125,7 @@ MEASURES: dict[str, Measure] = {}
 
 
 def measure(
-    unit: str, better: str, parts: tuple[str, ...] = ()
+    unit: str, better: str, parts: tuple[str, ...] = (), *, trees: bool = False
 ) -> Callable[[Callable[[Batch], np.ndarray]], Callable[[Batch], np.ndarray]]:
     """Register a function as the measure of its name; its docstring is the measure's."""
 
@@ -119,15 +135,21 @@ def measure(
             raise ValueError(
                 f"measure {name} is there already, or lacks a docstring or a direction"
             )
-        MEASURES[name] = Measure(name, unit, better, parts, summary_line(function), function)
+        MEASURES[name] = Measure(name, unit, better, parts, summary_line(function), function, trees)
         return function
 
     return register
 
 
-def columns(names: Iterable[str]) -> tuple[str, ...]:
-    """Table columns of some measures."""
-    return tuple(c for name in names for c in MEASURES[name].columns)
+def columns(names: Iterable[str], design: RobotDesign | None = None) -> tuple[str, ...]:
+    """Table columns of some measures, of a design or of HyperLeg."""
+    return tuple(c for name in names for c in MEASURES[name].columns_of(design))
+
+
+def measures_of(design: RobotDesign) -> tuple[str, ...]:
+    """Names of the measures that a design has."""
+    tree = isinstance(design, TreeDesign)
+    return tuple(name for name, entry in MEASURES.items() if entry.trees or not tree)
 
 
 def measure_of(column: str) -> Measure:
@@ -142,7 +164,7 @@ def label(column: str) -> str:
     return f"{name} [{found.unit.replace('^2', '²')}]" if found.unit else name
 
 
-def evaluate(design: Design, names: Iterable[str] | None = None) -> dict[str, np.ndarray]:
+def evaluate(design: RobotDesign, names: Iterable[str] | None = None) -> dict[str, np.ndarray]:
     """Measures of a design or batch of one variant.
 
     Args:
@@ -157,29 +179,30 @@ def evaluate(design: Design, names: Iterable[str] | None = None) -> dict[str, np
     """
     batch = Batch(design)
     found: dict[str, np.ndarray] = {}
-    for name in MEASURES if names is None else names:
+    for name in measures_of(design) if names is None else names:
         entry = MEASURES[name]
         values = np.asarray(entry.compute(batch), float)
         if not entry.parts:
             found[name] = np.array(np.broadcast_to(values, (batch.size,)))
             continue
         # joints or motors that this variant lacks come last in their order
-        padded = np.full((batch.size, len(entry.parts)), np.nan)
+        own = entry.columns_of(design)
+        padded = np.full((batch.size, len(own)), np.nan)
         padded[:, : values.shape[-1]] = values
-        found |= {column: padded[:, i].copy() for i, column in enumerate(entry.columns)}
+        found |= {column: padded[:, i].copy() for i, column in enumerate(own)}
     return found
 
 
-@measure("kg", "low")
+@measure("kg", "low", trees=True)
 def total_mass(batch: Batch) -> np.ndarray:
     """Mass of the robot."""
-    return batch.masses.total
+    return np.asarray(dimensions.total_mass(batch.design))
 
 
-@measure("kg", "low")
+@measure("kg", "low", trees=True)
 def leg_mass(batch: Batch) -> np.ndarray:
     """Mass of one leg."""
-    return batch.masses.leg
+    return np.asarray(dimensions.limb_mass(batch.design))
 
 
 @measure("m", "high")
@@ -214,20 +237,19 @@ def gyration_over_length(batch: Batch) -> np.ndarray:
     return batch.leg.gyration_over_length
 
 
-@measure("kg", "low")
+@measure("kg", "low", trees=True)
 def actuator_mass(batch: Batch) -> np.ndarray:
     """Motors and gears of one leg."""
-    installed = ACTUATOR_OF_MOTOR[: len(transmission.motor_names(batch.design))]
     return sum(
         (
-            np.asarray(masses.built_mass(batch.design, getattr(batch.design.actuators, name)))
-            for name in installed
+            np.asarray(masses.built_mass(batch.design, actuator))
+            for actuator in batch.design.actuator_sections.values()
         ),
         start=np.zeros(()),
     )
 
 
-@measure("Nm", "high", JOINTS)
+@measure("Nm", "high", JOINTS, trees=True)
 def max_joint_torque(batch: Batch) -> np.ndarray:
     """Largest torque of each joint whatever the others do, standing, derated, as Table I of the
     paper.
@@ -235,7 +257,7 @@ def max_joint_torque(batch: Batch) -> np.ndarray:
     return transmission.max_joint_torque(batch.design, "standing")
 
 
-@measure("Nm", "high", BELOW_HIP)
+@measure("Nm", "high", BELOW_HIP, trees=True)
 def torque_alone(batch: Batch) -> np.ndarray:
     """Largest torque of each joint below the hip while the others there have none, walking, at
     standstill, not derated.
@@ -246,20 +268,20 @@ def torque_alone(batch: Batch) -> np.ndarray:
     )
 
 
-@measure("Nm", "low", JOINTS)
+@measure("Nm", "low", JOINTS, trees=True)
 def coulomb_friction(batch: Batch) -> np.ndarray:
     """Coulomb friction of each joint by the design's law of friction."""
     moving = len(transmission.joint_names(batch.design))
     return joint_friction(batch.design)[0][..., :moving]
 
 
-@measure("rad/s", "high", JOINTS)
+@measure("rad/s", "high", JOINTS, trees=True)
 def single_joint_speed(batch: Batch) -> np.ndarray:
     """No-load speed of each joint while the others stand still, walking."""
     return transmission.single_joint_speed(batch.design, "walking")
 
 
-@measure("Nm", "high")
+@measure("Nm", "high", trees=True)
 def zonotope_size(batch: Batch) -> np.ndarray:
     """Edge of the cube whose volume is that of the torques which the joints below the hip can have
     together, walking.
@@ -268,7 +290,7 @@ def zonotope_size(batch: Batch) -> np.ndarray:
     return zonotope.volume(matrix, -peak, peak) ** (1.0 / matrix.shape[-2])
 
 
-@measure("", "high")
+@measure("", "high", trees=True)
 def zonotope_to_box_volume(batch: Batch) -> np.ndarray:
     """Share of the box of single-joint maxima that the joints below the hip can reach together,
     walking.
@@ -277,18 +299,19 @@ def zonotope_to_box_volume(batch: Batch) -> np.ndarray:
     return zonotope.zonotope_to_box_volume(matrix, -peak, peak)
 
 
-@measure("kg m^2", "low", JOINTS)
+@measure("kg m^2", "low", JOINTS, trees=True)
 def reflected_inertia(batch: Batch) -> np.ndarray:
     """Rotor inertia at each joint, the diagonal of M diag(J) M^T, walking."""
     return np.diagonal(leg_reflected_inertia(batch.design, "walking"), axis1=-2, axis2=-1)
 
 
-@measure("kg m^2", "low")
+@measure("kg m^2", "low", trees=True)
 def reflected_inertia_norm(batch: Batch) -> np.ndarray:
     """Rotor inertia of the joints below the hip in its worst direction, the spectral norm of M
     diag(J) M^T, walking.
     """
-    return np.linalg.eigvalsh(leg_reflected_inertia(batch.design, "walking")[..., 3:, 3:])[..., -1]
+    whole = leg_reflected_inertia(batch.design, "walking")
+    return np.linalg.eigvalsh(whole[..., batch.start :, batch.start :])[..., -1]
 
 
 def _holding_heat(batch: Batch, load: StaticLoad) -> np.ndarray:

@@ -312,7 +312,7 @@ def _evaluate(
             continue
         values = {a.name: np.array([points[i][1][a.name] for i in own]) for a in sweep.axes}
         numbers, refused = evaluate_samples(sweep, values, variant)
-        columns = measures.columns(sweep.measures)
+        columns = measures.columns(sweep.measures, sweep.base)
         for k, i in enumerate(own):
             rows[i] = {"sample": asked[i].number, "variant": variant, **points[i][1]}
             rows[i] |= dict(zip(columns, numbers[:, k].tolist(), strict=True))

@@ -33,12 +33,17 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import parameters
 from hyperleg_design.robot.ablation import ablate
-from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.design import Design
+from hyperleg_design.robot.load import load_robot, walker
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.names import VARIANTS
+from hyperleg_design.robot.parameters import leaves
 from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.axis import Axis, read_axis
 
+AS_DESCRIBED = "as_described"
+"""The one variant of a design that has no ablations."""
 SAMPLINGS = ("grid", "random", "sobol", "latin_hypercube")
 MAX_DESIGNS = 10_000_000
 """Above this a definition is taken for a mistake."""
@@ -76,7 +81,7 @@ class Sweep:
 
     name: str
     description: str
-    base: Design
+    base: RobotDesign
     """With `set` applied and the active toe; variants are made of it after the axes are set."""
     variants: tuple[str, ...]
     sampling: str
@@ -116,7 +121,11 @@ class Sweep:
         )
         return {axis.name: axis.at(positions[:, i]) for i, axis in enumerate(self.axes)}
 
-    def design(self, samples: Mapping[str, np.ndarray], variant: str) -> Design:
+    def made(self, design: RobotDesign, variant: str) -> RobotDesign:
+        """A design as one of the sweep's variants; of a design that writes its tree out, itself."""
+        return ablate(design, variant) if isinstance(design, Design) else design
+
+    def design(self, samples: Mapping[str, np.ndarray], variant: str) -> RobotDesign:
         """The batch of designs of some samples.
 
         Raises:
@@ -125,17 +134,17 @@ class Sweep:
         values: dict[str, Any] = {}
         for axis in self.axes:
             values |= axis.leaf_values(self.base, np.asarray(samples[axis.name]))
-        return ablate(self.base.with_values(values, self.name), variant)
+        return self.made(self.base.with_values(values, self.name), variant)
 
     def to_mapping(self) -> dict[str, Any]:
         """All that decides the numbers in the table, as plain values."""
-        used = {
-            str(getattr(self.base.actuators, a).motor)
-            for a in ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle", "toe")
-        }
-        used |= {
-            str(getattr(self.base.reference, f"{p}_motor")) for p in ("hip", "knee", "ankle", "toe")
-        }
+        used = {str(actuator.motor) for actuator in self.base.every_actuator}
+        if isinstance(self.base, Design):
+            parts = ("hip", "knee", "ankle", "toe")
+            used |= {str(getattr(self.base.reference, f"{p}_motor")) for p in parts}
+        else:
+            references = {p: v for p, v in leaves(self.base).items() if p.startswith("reference.")}
+            used |= {str(v) for p, v in references.items() if p.endswith(".motor")}
         used |= {str(v) for axis in self.axes if not axis.numeric for v in axis.levels}
         return {
             "name": self.name,
@@ -227,10 +236,12 @@ def sweep_from_mapping(
     sampling = data.get("sampling", "grid")
     if sampling not in SAMPLINGS:
         raise InputError(where, "sampling", sampling, f"expects one of {', '.join(SAMPLINGS)}")
-    variants = _variants(data.get("variants", ["toe"]), where)
+    variants = _variants(data.get("variants"), base, where)
     axes = _axes(data["axes"], base, where, grid=sampling == "grid")
-    chosen = _measures(data.get("measures"), where)
+    chosen = _measures(data.get("measures"), base, where)
     evaluated = _evaluated(data.get("evaluate", []), where)
+    if evaluated:
+        walker(base, f"{where}: evaluate")
     objectives = _columns(data.get("objectives", []), chosen, evaluated, where, "objectives")
     maps = _maps(data.get("maps", []), axes, chosen, evaluated, where)
     return Sweep(
@@ -252,7 +263,7 @@ def sweep_from_mapping(
     )
 
 
-def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> Design:
+def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> RobotDesign:
     changes = data.get("set", {})
     if not isinstance(changes, Mapping):
         raise InputError(
@@ -262,8 +273,8 @@ def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> 
         raise InputError(
             where, "design", data["design"], "expects the name of a design or its file"
         )
-    base = load_design(data["design"])
-    if base.variant != "toe":
+    base = load_robot(data["design"])
+    if isinstance(base, Design) and base.variant != "toe":
         raise InputError(
             where,
             "design",
@@ -275,7 +286,13 @@ def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> 
     return base.with_values(overrides, "--set") if overrides else base
 
 
-def _variants(found: Any, where: str) -> tuple[str, ...]:
+def _variants(found: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
+    if not isinstance(base, Design):
+        if found is not None:
+            remedy = f"{base.name} has none; leave it out"
+            raise InputError(where, "variants", found, remedy)
+        return (AS_DESCRIBED,)
+    found = ["toe"] if found is None else found
     if not isinstance(found, list) or not found or len(set(map(str, found))) < len(found):
         raise InputError(
             where, "variants", found, f"expects a list of different ones of {', '.join(VARIANTS)}"
@@ -293,7 +310,7 @@ def _variants(found: Any, where: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _axes(data: Any, base: Design, where: str, *, grid: bool) -> tuple[Axis, ...]:
+def _axes(data: Any, base: RobotDesign, where: str, *, grid: bool) -> tuple[Axis, ...]:
     if not isinstance(data, Mapping) or not data:
         raise InputError(
             where,
@@ -359,8 +376,8 @@ def _whole(value: Any, low: int, high: int, where: str, field: str) -> int:
     return value
 
 
-def _measures(found: Any, where: str) -> tuple[str, ...]:
-    known = list(measures.MEASURES)
+def _measures(found: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
+    known = list(measures.measures_of(base))
     chosen = known if found is None else found
     if not isinstance(chosen, list) or not chosen:
         raise InputError(where, "measures", chosen, f"expects a list of some of {', '.join(known)}")

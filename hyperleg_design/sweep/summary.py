@@ -43,7 +43,8 @@ def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
         "base": {name: base_values(sweep, name) for name in sweep.variants},
         "range": {name: {} for name in sweep.variants},
     }
-    for column in measures.columns(sweep.measures):  # one at a time, to hold little in memory
+    # one at a time, to hold little in memory
+    for column in measures.columns(sweep.measures, sweep.base):
         values = table.read(path, [column])[column]
         for name in sweep.variants:
             real = values[(variant == name) & ~np.isnan(values)]
@@ -73,7 +74,5 @@ def base_values(sweep: Sweep, variant: str) -> dict[str, float]:
     """Measures of the sweep's unchanged design as one variant, by column; those it lacks are left
     out.
     """
-    from hyperleg_design.robot.ablation import ablate
-
-    values = measures.evaluate(ablate(sweep.base, variant), sweep.measures)
+    values = measures.evaluate(sweep.made(sweep.base, variant), sweep.measures)
     return {column: float(v[0]) for column, v in values.items() if np.isfinite(v[0])}

@@ -43,7 +43,7 @@ def schema(sweep: Sweep) -> pa.Schema:
             field(axis.name, pa.float64() if axis.numeric else pa.string(), doc, axis.unit)
         )
     fields.append(field("rejected", pa.string(), "why this makes no design; empty where it does"))
-    for column in measures.columns(sweep.measures):
+    for column in measures.columns(sweep.measures, sweep.base):
         found = measures.measure_of(column)
         fields.append(field(column, pa.float64(), found.doc, found.unit))
     return pa.schema(fields)

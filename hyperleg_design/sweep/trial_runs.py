@@ -32,6 +32,7 @@ from hyperleg_design.evaluation.protocol import (
     protocol_mapping,
 )
 from hyperleg_design.evaluation.shipped import Shipped, policies_for
+from hyperleg_design.robot.load import walker
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.sweep.jobs import completed
 from hyperleg_design.sweep.space import Sweep
@@ -206,7 +207,8 @@ def evaluate_values(
         policy: ONNX file.
         threads: of the simulation.
     """
-    designs = sweep.design(values, variant).rows(np.arange(len(samples)))
+    batch = walker(sweep.design(values, variant), f"{sweep.name}: trials")
+    designs = batch.rows(np.arange(len(samples)))
     run = protocol_from_mapping(protocol, "protocol")
     found, rejected = evaluate_all(load_policy(policy), designs, run, threads)
     return trial_rows(found, rejected, samples, variant, run, policy)

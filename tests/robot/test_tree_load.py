@@ -11,6 +11,7 @@ import yaml
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.load import load_robot, robot_from_mapping
 from tests.robot.tree_files import leg, leg_file
 
@@ -196,3 +197,8 @@ def test_designs_travel_to_other_processes_and_back_from_mappings():
     assert again.origins == design.origins
     one = design.take(1)
     assert robot_from_mapping(one.to_mapping(), "here").to_mapping() == one.to_mapping()
+
+
+def test_what_needs_hyperleg_refuses_another_family_and_says_so():
+    with pytest.raises(InputError, match=r"mini_cheetah\.yaml.*family.*another family.*load_robot"):
+        load_design("mini_cheetah")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.report.style import VARIANT_COLOUR, figure_style, save
+from hyperleg_design.report.style import figure_style, save, variant_colour
 from hyperleg_design.report.sweep.parallel_figure import parallel_figure
 from hyperleg_design.report.sweep.rows import (
     axis_of,
@@ -220,7 +220,7 @@ def curve_figure(result: SweepResult, chosen: Map) -> Figure:
             panel.plot(
                 part[chosen.x][order],
                 part[chosen.measure][order],
-                color=VARIANT_COLOUR[variant],
+                color=variant_colour(variant),
                 label=variant_title(variant),
                 **look,
             )
@@ -236,7 +236,7 @@ def curve_figure(result: SweepResult, chosen: Map) -> Figure:
                 panel.plot(
                     base_value(axis, sweep),
                     base[chosen.measure],
-                    color=VARIANT_COLOUR[variant],
+                    color=variant_colour(variant),
                     **star,
                 )
         panel.set(xlabel=_axis_label(axis, sweep), ylabel=measures.label(chosen.measure))
@@ -275,7 +275,7 @@ def pareto_figure(result: SweepResult) -> Figure:
             panel.set_visible(False)
         for panel, (first, second) in zip(panels.ravel(), pairs, strict=False):
             for variant, front in fronts.items():
-                colour = VARIANT_COLOUR[variant]
+                colour = variant_colour(variant)
                 rows = np.flatnonzero(table["variant"] == variant)
                 cloud = rows[thinned(rows.size, _POINTS)]
                 panel.scatter(

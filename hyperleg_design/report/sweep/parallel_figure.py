@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.report.style import VARIANT_COLOUR, figure_style
+from hyperleg_design.report.style import figure_style, variant_colour
 from hyperleg_design.report.sweep.rows import base_row, fronts_of, thinned, variant_title
 from hyperleg_design.sweep import measures
 from hyperleg_design.sweep.run import SweepResult
@@ -62,13 +62,13 @@ def parallel_figure(result: SweepResult) -> Figure:
         for variant, front in fronts.items():
             lines(
                 front[thinned(front.size, _FRONT_LINES)],
-                colors=VARIANT_COLOUR[variant],
+                colors=variant_colour(variant),
                 linewidths=0.9,
                 alpha=0.55,
                 zorder=2,
             )
             panel.plot(
-                [], [], color=VARIANT_COLOUR[variant], label=f"front, {variant_title(variant)}"
+                [], [], color=variant_colour(variant), label=f"front, {variant_title(variant)}"
             )
         base = base_row(sweep)
         level = [

@@ -1,0 +1,65 @@
+"""Sweeps of robots that write their tree out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.dimensions import total_mass
+from hyperleg_design.robot.load import load_robot
+from hyperleg_design.sweep import measures
+from hyperleg_design.sweep.run import run_sweep
+from hyperleg_design.sweep.space import sweep_from_mapping
+
+SWEEP = {
+    "design": "parallel_ankle",
+    "axes": {
+        "actuators.knee.gear": {"low": 20, "high": 30, "steps": 3},
+        "actuators.ankle_outer.motor": {"values": ["RI80", "RI70"]},
+    },
+}
+
+
+def test_each_row_is_the_robot_with_these_values(tmp_path):
+    sweep = sweep_from_mapping(SWEEP)
+    result = run_sweep(sweep, tmp_path / "out", progress=False)
+    names = ("actuators.knee.gear", "actuators.ankle_outer.motor", "total_mass")
+    table = result.columns([*names, "max_joint_torque.knee", "torque_alone.ankle_roll"])
+    assert len(table["total_mass"]) == 6
+    for row in range(6):
+        values = {name: table[name][row] for name in names[:2]}
+        design = load_robot("parallel_ankle", overrides=values)
+        assert table["total_mass"][row] == pytest.approx(float(total_mass(design)))
+        torque = transmission.max_joint_torque(design)
+        assert table["max_joint_torque.knee"][row] == pytest.approx(torque[3])
+    assert np.all(table["torque_alone.ankle_roll"] > 0)
+
+
+def test_measures_that_need_hyperleg_are_refused_by_name():
+    design = load_robot("mini_cheetah")
+    assert "push_off_power" not in measures.measures_of(design)
+    assert set(measures.measures_of(design)) < set(measures.MEASURES)
+    with pytest.raises(InputError, match="push_off_power"):
+        sweep_from_mapping(SWEEP | {"measures": ["push_off_power"]})
+
+
+def test_a_tree_has_no_variants():
+    with pytest.raises(InputError, match=r"variants.*has none"):
+        sweep_from_mapping(SWEEP | {"variants": ["toe"]})
+
+
+def test_trials_of_a_tree_are_refused_before_anything_is_written():
+    with pytest.raises(InputError, match=r"evaluate.*parallel_ankle.*HyperLeg's family"):
+        sweep_from_mapping(SWEEP | {"evaluate": ["walk"]})
+
+
+def test_an_impossible_sample_is_rejected_and_says_why(tmp_path):
+    axes = {"joints.knee.default_deg": {"low": 40, "high": 200, "steps": 2}}
+    sweep = sweep_from_mapping(SWEEP | {"axes": axes})
+    result = run_sweep(sweep, tmp_path / "out", progress=False)
+    table = result.columns(["rejected", "total_mass"])
+    assert table["rejected"][0] == ""
+    assert "default_deg" in table["rejected"][1]
+    assert np.isnan(table["total_mass"][1])
