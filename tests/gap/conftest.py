@@ -89,7 +89,7 @@ def judged(robot_files):
     ready = diagnosed.prepared(
         robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1))
     )
-    subject = ready.base.samples.sieves[0].signals.subject
+    subject = ready.base.samples.filtered_logs[0].signals.subject
     friction = ("viscous_friction", "coulomb_friction", "stribeck_friction", "torque_constant")
     return decide(ready.base, load_thresholds(), places(subject, friction))
 

@@ -93,12 +93,12 @@ def prepared(robot, *logs, references=()):
     return prepare(signals[: len(logs)], signals[len(logs) :], load_thresholds())
 
 
-def in_episodes(share, *balances):
+def in_episodes(share, *residual_names):
     """Rows of 1000 samples each in two groups, the second their episodes."""
-    balances = balances or ("drive",)
-    group = np.tile((np.arange(1000) < 1000 * share).astype(int), len(balances))
-    rows = tuple(SimpleNamespace(balance=balance) for balance in balances)
-    row = np.repeat(np.arange(len(balances)), 1000)
+    residual_names = residual_names or ("drive",)
+    group = np.tile((np.arange(1000) < 1000 * share).astype(int), len(residual_names))
+    rows = tuple(SimpleNamespace(residual_name=residual_name) for residual_name in residual_names)
+    row = np.repeat(np.arange(len(residual_names)), 1000)
     return SimpleNamespace(
         rows=rows,
         row=row,

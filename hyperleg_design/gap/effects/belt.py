@@ -104,7 +104,7 @@ def frictionless(signals: Signals, motor: int) -> np.ndarray:
 def _friction(signals: Signals, motor: int) -> np.ndarray:
     """Nominal friction of the joints at a motor `(t,)` [Nm]."""
     subject = signals.subject
-    swing = None if signals.chatter is None else signals.chatter.speed
+    swing = None if signals.limit_cycle is None else signals.limit_cycle.speed
     return applied(
         subject.motor_from_joint[motor : motor + 1],
         friction.rubbing_torque(subject, signals.velocity, swing),
@@ -328,14 +328,14 @@ def trace(
     seen: np.ndarray | None = None,
     behind: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
-    """What stretch leaves in the balances of motion and transmission, see above.
+    """What stretch leaves in the residuals of motion and transmission, see above.
 
     Args:
         signals: a conditioned log.
         motor: place of the motor.
         moved: stretch `(k, t)` [rad].
         side: on which the positions were logged `(k,)`.
-        seen: stretch in the balance of transmission, as the rotor's side tells it `(k, t)` [rad];
+        seen: stretch in the residual of transmission, as the rotor's side tells it `(k, t)` [rad];
             by default the same.
         behind: whether joints rub behind the belt, with positions logged on side 1 `(k,)`; by
             default not.

@@ -39,7 +39,7 @@ class CommandDelay(Effect):
     is: the torque is that of the targets and of the measured state of then. Or it is the targets
     alone (1), on the way to controllers that know their own joints' state at once. Trace, by the
     rule of `placing`: the command with what is late less that of now, within the nominal limits. Of
-    motors whose commands are logged, late targets show in the balance of the control instead.
+    motors whose commands are logged, late targets show in the residual of the control instead.
     """
 
     identifier: ClassVar[str] = "command_delay"

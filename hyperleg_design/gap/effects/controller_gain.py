@@ -29,7 +29,7 @@ class ControllerGain(Effect):
     Its torque K (target - q) - D q_dot changes by ((scale_K - 1) K (target - q) - (scale_D - 1) D
     q_dot), and with it those of the motors. Trace, by the rule of `placing`: what that changes
     within the nominal limits. Of motors whose commands are logged, and so known to be what the
-    controller asked for, it shows in the balance of the control instead.
+    controller asked for, it shows in the residual of the control instead.
     """
 
     identifier: ClassVar[str] = "controller_gain"

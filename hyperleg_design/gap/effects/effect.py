@@ -1,4 +1,4 @@
-"""What every effect of the catalogue is: identifier, places, parameters, its trace in the balances
+"""What every effect of the catalogue is: identifier, places, parameters, its trace in the residuals
 and its way into the simulation.
 """
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 """Where an effect can sit."""
-BALANCES = ("motion", "drive", "control", "base", "ground")
+RESIDUALS = ("motion", "drive", "control", "base", "ground")
 """Rows that a trace can fill; `gap/signals/signals.py` says what each compares."""
 
 Change = Mapping[tuple[str, str], Mapping[str, float]]
@@ -54,7 +54,7 @@ class Parameter:
 class Effect(ABC):
     """One unmodelled effect; a class without state.
 
-    Residuals of all balances are what the log shows minus what the model explains, so that a log
+    Residuals of all residuals are what the log shows minus what the model explains, so that a log
     made with the effect at `values` has, apart from noise, the residual `trace(signals, location,
     values)`; at the nulls the trace is zero.
     """
@@ -96,7 +96,7 @@ class Effect(ABC):
 
     @abstractmethod
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Residual that it leaves in each balance.
+        """Residual that it leaves in each residual.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -104,8 +104,8 @@ class Effect(ABC):
             values: `(k, parameters)`, k settings at once.
 
         Returns:
-            By name of the balance `(k, t, rows)` [Nm; N in the ground balance], before any
-            filtering; balances that it leaves alone are missing. Unknown ticks are NaN.
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual], before any
+            filtering; residuals that it leaves alone are missing. Unknown ticks are NaN.
         """
 
     @abstractmethod

@@ -63,10 +63,10 @@ class EncoderOffset(Effect):
         if joint not in kept:
             kept[joint] = _basis(signals, joint)
         found = {}
-        for balance, (rows, parts) in kept[joint].items():
-            count = len(signals.subject.joints) if balance == "motion" else 6
-            found[balance] = np.zeros((len(offset), len(signals.time), count))
-            found[balance][..., rows] = np.tensordot(powers, parts, 1)
+        for residual_name, (rows, parts) in kept[joint].items():
+            count = len(signals.subject.joints) if residual_name == "motion" else 6
+            found[residual_name] = np.zeros((len(offset), len(signals.time), count))
+            found[residual_name][..., rows] = np.tensordot(powers, parts, 1)
         found["motion"][..., joint] -= signals.subject.spring[joint] * offset[:, None]
         return found
 
@@ -83,8 +83,8 @@ def _waves(offset: np.ndarray) -> np.ndarray:
 
 
 def _basis(signals: Signals, joint: int) -> Basis:
-    """By balance: rows that an offset changes, and how, in the functions of the offset `(functions,
-    t, rows)`.
+    """By residual: rows that an offset changes, and how, in the functions of the offset
+    `(functions, t, rows)`.
     """
     hinge = bool(signals.subject.tree.hinge[joint])
     nodes = 2 * np.pi / NODES * np.arange(1, NODES) if hinge else np.array([-0.1, 0.1])
@@ -95,12 +95,14 @@ def _basis(signals: Signals, joint: int) -> Basis:
         position = signals.position.copy()
         position[:, joint] -= node
         there = needed(signals, position, rotors=False)
-        shifts.append({balance: there[balance] - here[balance] for balance in here})
+        shifts.append(
+            {residual_name: there[residual_name] - here[residual_name] for residual_name in here}
+        )
     found = {}
-    for balance in here:
-        differences = np.stack([shift[balance] for shift in shifts])
+    for residual_name in here:
+        differences = np.stack([shift[residual_name] for shift in shifts])
         rows = np.flatnonzero(np.nanmax(np.abs(differences), (0, 1)) > 1e-12)
-        found[balance] = (rows, np.tensordot(matrix, differences[..., rows], 1))
+        found[residual_name] = (rows, np.tensordot(matrix, differences[..., rows], 1))
     return found
 
 

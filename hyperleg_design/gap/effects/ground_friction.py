@@ -75,7 +75,7 @@ def ground_trace(
     compliance: np.ndarray,
     damping: np.ndarray,
 ) -> dict[str, np.ndarray]:
-    """What a changed ground under one foot leaves in the ground balance; scales `(k,)` as of
+    """What a changed ground under one foot leaves in the ground residual; scales `(k,)` as of
     `ground.Footing.ground`.
     """
     feet = ground.footings(signals)

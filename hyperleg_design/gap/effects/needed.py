@@ -25,7 +25,7 @@ def needed(
     *,
     rotors: bool = True,
 ) -> dict[str, np.ndarray]:
-    """Torque that a motion needs, less what contact gives, by balance: `motion` `(t, n)` [Nm], and
+    """Torque that a motion needs, less what contact gives, by residual: `motion` `(t, n)` [Nm], and
     the `base`'s wrench `(t, 6)`.
 
     Args:

@@ -4,10 +4,10 @@ share to apply it.
     command --(gains, delay, bandwidth, limits, voltage)--> measured torque --(constant, cogging,
     friction, gears)--> joints
 
-What lies after the measurement shows in the balance of motion. What lies before it, a change `d` of
-the torque that the drive gives, shows in the balance of the drive as `+d` and leaves that of motion
-alone, which trusts the measurement. Of motors whose torque nobody measured, motion trusts the
-command, and the same change shows there, as `-M d`.
+What lies after the measurement shows in the residual of motion. What lies before it, a change `d`
+of the torque that the drive gives, shows in the residual of the drive as `+d` and leaves that of
+motion alone, which trusts the measurement. Of motors whose torque nobody measured, motion trusts
+the command, and the same change shows there, as `-M d`.
 
 A measured torque counts as what the drive takes itself to give, as current times a declared
 constant is; so do joint torques.
@@ -90,11 +90,11 @@ def before_measurement(
                 motor,
                 -change,
             )
-    return {balance: values.swapaxes(1, 2) for balance, values in rows.items()}
+    return {residual_name: values.swapaxes(1, 2) for residual_name, values in rows.items()}
 
 
 def is_measured(signals: Signals, motor: int) -> bool:
-    """Whether the balance of motion trusts a measurement of this motor."""
+    """Whether the residual of motion trusts a measurement of this motor."""
     return signals.measured is not None and bool(np.isfinite(signals.measured[:, motor]).any())
 
 
@@ -122,7 +122,7 @@ def given(signals: Signals, motor: int) -> np.ndarray:
     """Torque believed of a motor `(t,)` [Nm].
 
     One that gains and targets alone tell, from smoothed motion: noise of the sensors is in the
-    balance already, and no effect scales it.
+    residual already, and no effect scales it.
     """
     believed = signals.believed[:, motor]
     if signals.target is None or is_measured(signals, motor) or is_logged(signals, motor):

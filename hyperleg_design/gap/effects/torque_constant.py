@@ -29,7 +29,7 @@ class TorqueConstant(Effect):
 
     Either the motor is another one, and its drive knows no more of it than the log (`reading` 0);
     or the constant by which the log's currents are read is wrong, and the drive gives what it was
-    asked for (1). Trace: (1 - scale) times the believed torque, in the balance of motion, and with
+    asked for (1). Trace: (1 - scale) times the believed torque, in the residual of motion, and with
     a wrong reading in that of the drive.
     """
 

@@ -76,9 +76,9 @@ class TransmissionRatio(Effect):
         found["motion"] = found["motion"] + _other_friction(signals, motor, side * (1 / scale - 1))
         farther = (1 / scale - 1)[:, 0]
         powers = side * np.stack([farther, farther**2], -1)
-        for balance, parts in _elsewhere(signals, motor).items():
+        for residual_name, parts in _elsewhere(signals, motor).items():
             more = np.tensordot(powers, parts, 1)
-            found[balance] = found[balance] + more if balance in found else more
+            found[residual_name] = found[residual_name] + more if residual_name in found else more
         return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
@@ -97,7 +97,7 @@ def _other_friction(signals: Signals, motor: int, farther: np.ndarray) -> np.nda
     """
     subject, velocity = signals.subject, signals.velocity
     own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
-    swing = None if signals.chatter is None else signals.chatter.speed
+    swing = None if signals.limit_cycle is None else signals.limit_cycle.speed
     moved = velocity + farther[..., None] * (velocity @ own)
     return np.asarray(
         friction.friction_torque(subject, signals.position, moved, swing)
@@ -112,7 +112,7 @@ _MOVED: WeakKeyDictionary[Signals, dict[int, dict[str, np.ndarray]]] = WeakKeyDi
 
 def _elsewhere(signals: Signals, motor: int) -> dict[str, np.ndarray]:
     """What the motion needs more where a motor's share of it is larger, in that share and its
-    square `(2, t, rows)`, by balance.
+    square `(2, t, rows)`, by residual.
     """
     kept = _MOVED.setdefault(signals, {})
     if motor not in kept:
@@ -129,9 +129,9 @@ def _elsewhere(signals: Signals, motor: int) -> dict[str, np.ndarray]:
                 there[-1]["motion"] + node * (signals.position @ own) * subject.spring
             )
         kept[motor] = {}
-        for balance, now in here.items():
-            more, less = there[0][balance] - now, there[1][balance] - now
-            kept[motor][balance] = np.stack(
+        for residual_name, now in here.items():
+            more, less = there[0][residual_name] - now, there[1][residual_name] - now
+            kept[motor][residual_name] = np.stack(
                 [(more - less) / (2 * NODE), (more + less) / (2 * NODE**2)]
             )
     return kept[motor]

@@ -132,7 +132,7 @@ def design_experiment(
     Args:
         subject: with its base fixed.
         rate: of the targets [Hz].
-        noise: standard deviation of the balances over the strength of joints and motors [-].
+        noise: standard deviation of the residuals over the strength of joints and motors [-].
         torque: whether motor torque or current is measured.
         seed: of the Fourier series' phases.
         progress: show a bar.
@@ -486,7 +486,7 @@ def excite(
         out: folder, which exists.
         base: must be `fixed`.
         rate: of the targets [Hz].
-        noise: of the balances over the strength of joints and motors [-].
+        noise: of the residuals over the strength of joints and motors [-].
         torque: whether motor torque or current is measured.
         kinds: one of `FORMATS`.
         seed: of the Fourier series' phases.

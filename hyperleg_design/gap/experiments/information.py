@@ -3,7 +3,7 @@ which pairs look alike.
 
 Around an effect at its usual size, its trace is taken as linear in its parameters: the block of an
 (effect, place) holds the derivative of the trace by each parameter, and the trace itself. With
-noise of standard deviation s, correlated over a time T, in each row of the balances, the
+noise of standard deviation s, correlated over a time T, in each row of the residuals, the
 information of all blocks together is the Gram matrix
 
     F = sum over rows and ticks of  J^T J  step / (2 T s^2),
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
 
 NOISE = 0.01
-"""Noise of a balance over the strength of its joint or motor [-]; assumed, of the order of torque
+"""Noise of a residual over the strength of its joint or motor [-]; assumed, of the order of torque
 estimates from currents."""
 NOISE_TIME = 0.05
 """Over which that noise is correlated [s]; assumed: residuals of robots are not white."""
@@ -104,31 +104,40 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
         "motion": noise * joint_strength(subject),
         "drive": noise * np.array([motor_strength(subject, m) for m in range(len(subject.motors))]),
     }
-    scales = {balance: scale for balance, scale in scales.items() if balance in signals.residual}
+    scales = {
+        residual_name: scale
+        for residual_name, scale in scales.items()
+        if residual_name in signals.residual
+    }
     every = max(int(0.5 / (2 * BAND * signals.step)), 1)
     known = {
-        balance: np.isfinite(signals.residual[balance]) & signals.valid[:, None]
-        for balance in scales
+        residual_name: np.isfinite(signals.residual[residual_name]) & signals.valid[:, None]
+        for residual_name in scales
     }
     shape = (len(signals.time[::every]), blocks.columns)
     rows = {
-        balance: np.zeros((scale.size, *shape), np.float32) for balance, scale in scales.items()
+        residual_name: np.zeros((scale.size, *shape), np.float32)
+        for residual_name, scale in scales.items()
     }
     for at, (identifier, location) in enumerate(blocks.places):
-        for balance, found in _block(
+        for residual_name, found in _block(
             EFFECTS[identifier], signals, location, blocks.values[at]
         ).items():
-            if balance not in scales:
+            if residual_name not in scales:
                 continue
             for row in np.flatnonzero(np.any(found != 0, (0, 1))):
                 values = np.where(
-                    known[balance][:, row] & np.isfinite(found[..., row]), found[..., row], 0.0
+                    known[residual_name][:, row] & np.isfinite(found[..., row]),
+                    found[..., row],
+                    0.0,
                 )
                 kept = np.where(
-                    known[balance][::every, row], _filtered(values, signals.step)[:, ::every], 0.0
+                    known[residual_name][::every, row],
+                    _filtered(values, signals.step)[:, ::every],
+                    0.0,
                 )
-                rows[balance][row, :, blocks.start[at] : blocks.start[at] + len(found)] = (
-                    kept.T / scales[balance][row]
+                rows[residual_name][row, :, blocks.start[at] : blocks.start[at] + len(found)] = (
+                    kept.T / scales[residual_name][row]
                 )
     total = np.zeros((blocks.columns, blocks.columns))
     for part in rows.values():
@@ -141,7 +150,7 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
 def _block(
     one: Effect, signals: Signals, location: str, values: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """By balance, derivatives by each parameter times its scale, and the trace at the values
+    """By residual, derivatives by each parameter times its scale, and the trace at the values
     `(parameters + 1, t, rows)`.
     """
     subject = signals.subject
@@ -158,9 +167,9 @@ def _block(
     )
     scale = np.divide(size, width, out=np.zeros(count), where=width > 0)
     out = {}
-    for balance, traces in one.trace(signals, location, tried).items():
+    for residual_name, traces in one.trace(signals, location, tried).items():
         slopes = (traces[0 : 2 * count : 2] - traces[1 : 2 * count : 2]) * scale[:, None, None]
-        out[balance] = np.concatenate([slopes, traces[-1:]])
+        out[residual_name] = np.concatenate([slopes, traces[-1:]])
     return out
 
 
@@ -218,7 +227,7 @@ def distinction(gram: np.ndarray, blocks: Blocks, place: Place, rivals: Sequence
 
 
 def principal_angle(gram: np.ndarray, blocks: Blocks, place: Place, rival: Place) -> float:
-    """Smallest angle between what two effects can leave in the balances [rad]; pi/2 where either
+    """Smallest angle between what two effects can leave in the residuals [rad]; pi/2 where either
     leaves nothing.
     """
     a, b = _basis(gram, blocks.span(place)), _basis(gram, blocks.span(rival))

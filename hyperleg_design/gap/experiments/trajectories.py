@@ -1,7 +1,7 @@
 """Shapes of excitation of `n` joints over `t` ticks, each starting and ending at rest in the centre
 of the room.
 
-All joints move at once, out of step with each other: each has its own row in the balances, and
+All joints move at once, out of step with each other: each has its own row in the residuals, and
 coupled inertia shows as well.
 """
 

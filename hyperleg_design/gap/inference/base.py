@@ -1,4 +1,4 @@
-"""What causes are fitted beside: residual and calibration errors of all samples, priors of the
+"""What causes are fitted beside: residual and nuisance parameters of all samples, priors of the
 errors, and the sums of their products.
 """
 
@@ -14,12 +14,12 @@ from hyperleg_design.gap.inference.samples import BLOCKS, Packed, Samples, pack
 from hyperleg_design.gap.inference.sums import Layout, Sums, layout_of
 
 LIMIT = 2.5
-"""Calibration errors are small: none goes beyond so many of its standard deviations."""
+"""Nuisance parameters are small: none goes beyond so many of its standard deviations."""
 
 
 @dataclass(frozen=True, eq=False)
 class Prior:
-    """Of the calibration errors of a session, in usual sizes."""
+    """Of the nuisance parameters of a session, in usual sizes."""
 
     mean: np.ndarray
     """`(p,)`"""
@@ -41,11 +41,11 @@ class Prior:
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """Residual and calibration errors of all samples, with their sums of products."""
+    """Residual and nuisance parameters of all samples, with their sums of products."""
 
     samples: Samples
     errors: np.ndarray
-    """Columns of the p calibration errors, weighted `(p, S)`."""
+    """Columns of the p nuisance parameters, weighted `(p, S)`."""
     value: np.ndarray
     """Residual less the prior mean's share, weighted `(S,)`."""
     prior: Prior

@@ -59,7 +59,8 @@ SAGGED = 0.03
 """Share of the voltage that must be missing for a weak battery where reference logs tell what it is
 when all is well."""
 DECISIVE = 30.0
-"""Log-likelihood by which balances must tell a soft belt from play to be believed more than what is
+"""Log-likelihood by which residuals must tell a soft belt from play to be believed more than what
+is
 heard: they hardly see its harmonics."""
 SEVERAL = 2
 """Joints that must be off at times for it to be a gap where nobody measured drives: one alone may
@@ -89,7 +90,7 @@ class Decision:
     together: float
     """Share of the time in which most drives at once do not do what they were told, beside the
     causes; 0 where that is little."""
-    chatter: tuple[str, ...]
+    limit_cycle: tuple[str, ...]
     """Joints that chatter though none of the causes can make them, nor what is heard beside causes
     that explain the rest."""
     heard: Heard | None
@@ -110,7 +111,7 @@ def decide(
     """Name the causes.
 
     Args:
-        base: residual and calibration errors.
+        base: residual and nuisance parameters.
         thresholds: fixed rules.
         wanted: effects and locations that are tried.
         threads: that share the work.
@@ -144,7 +145,7 @@ def decide(
     swung += [
         screen.NotJudged(*name, "its voltage is that of the reference logs") for name in supplied
     ]
-    signals = [sieve.signals for sieve in base.samples.sieves]
+    signals = [filtered_log.signals for filtered_log in base.samples.filtered_logs]
     heard = (loose(signals) or unstable(signals)) if shaken else None
     if (
         heard is not None
@@ -231,7 +232,7 @@ def _elsewhere(chosen: Model, heard: Heard, subject: Subject) -> tuple[Cause, ..
 
 
 def _told_apart(chosen: Model, singles: Sequence[Model], heard: Heard) -> bool:
-    """Whether balances alone tell that it is the belt that is heard, and by far whether it is soft
+    """Whether residuals alone tell that it is the belt that is heard, and by far whether it is soft
     or has play.
     """
     belt = chosen.causes[0]
@@ -248,7 +249,7 @@ def _told_apart(chosen: Model, singles: Sequence[Model], heard: Heard) -> bool:
 
 
 def _motion(model: Model, signals: Signals) -> np.ndarray:
-    """What causes leave in a log's balance of motion `(t, n)` [Nm]."""
+    """What causes leave in a log's residual of motion `(t, n)` [Nm]."""
     found = np.zeros_like(signals.position)
     for place, cause in enumerate(model.causes):
         trace = EFFECTS[cause.effect].trace(signals, cause.location, model.values(place)[None])
@@ -357,22 +358,24 @@ def _fails(samples: Samples, rules: Thresholds) -> dict[int, float]:
 
     Where nobody measured what drives give, of joints, if several are so often off.
     """
-    balance = "drive" if any(row.balance == "drive" for row in samples.rows) else "motion"
+    residual_name = (
+        "drive" if any(row.residual_name == "drive" for row in samples.rows) else "motion"
+    )
     shares = {
         place: of_time(samples, place)
         for place, row in enumerate(samples.rows)
-        if row.balance == balance
+        if row.residual_name == residual_name
     }
     found = {place: share for place, share in shares.items() if share > rules.failing}
-    return found if balance == "drive" or len(found) >= SEVERAL else {}
+    return found if residual_name == "drive" or len(found) >= SEVERAL else {}
 
 
 def _as_healthy(samples: Samples) -> bool:
     """Whether all logs tell the battery's voltage, and reference logs that it is what it was when
     all was well.
     """
-    voltages = [s.signals.voltage for s in samples.sieves]
-    nominal = samples.sieves[0].signals.subject.voltage
+    voltages = [s.signals.voltage for s in samples.filtered_logs]
+    nominal = samples.filtered_logs[0].signals.subject.voltage
     return bool(np.isfinite(nominal)) and all(
         v is not None and float(np.nanpercentile(v, 100 - FULL)) > (1 - SAGGED) * nominal
         for v in voltages
@@ -468,8 +471,8 @@ def _leaves_nothing(judge: Judge, chosen: Model) -> bool:
 def _lost(samples: Samples, left: np.ndarray, rules: Thresholds) -> float:
     """Share of the time in which commands get lost, if it is one that counts."""
     share, least = together(samples, left), rules.together
-    subject = samples.sieves[0].signals.subject
-    if subject.one_to_one and not any(row.balance == "drive" for row in samples.rows):
+    subject = samples.filtered_logs[0].signals.subject
+    if subject.one_to_one and not any(row.residual_name == "drive" for row in samples.rows):
         share, least = together(samples, left, "motion"), rules.together_joints
     return share if share > least else 0.0
 

@@ -1,4 +1,4 @@
-"""Effects that scale the torque which the balance itself is made of, and what keeps them from
+"""Effects that scale the torque which the residual itself is made of, and what keeps them from
 explaining noise away.
 
 A closed loop gives whatever torque is needed, model errors e included. An effect that takes a share
@@ -8,7 +8,7 @@ always rather scale torques down. The density of the believed torque has the mis
 phi). A joint whose torque is less than the floor gains nothing so: that would only tell that the
 floor is high.
 
-Noise of accelerations is in the balance, and in the load that stretches a belt, too: with encoders
+Noise of accelerations is in the residual, and in the load that stretches a belt, too: with encoders
 at the joints a belt's trace takes the share x = J compliance omega^2 of it along, all of it where
 the rotor would ring. Noise of which a share f is that of accelerations shrinks to f (1 - x)^2 + 1 -
 f, and least squares would find a belt in any noise, that rings just below the smoother's crossover.
@@ -24,7 +24,7 @@ import numpy as np
 from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.placing import is_measured
 from hyperleg_design.gap.effects.thermal_derating import rise
-from hyperleg_design.gap.inference import floor
+from hyperleg_design.gap.inference import noise_model
 from hyperleg_design.gap.model import machine
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.sliding import sliding
@@ -109,9 +109,9 @@ def factor(
     values: np.ndarray | None = None,
 ) -> Factor | Shrinking | None:
     """Of an effect at a place, at its values where they matter; None where it scales no torque that
-    the balance trusts.
+    the residual trusts.
     """
-    subject = samples.sieves[0].signals.subject
+    subject = samples.filtered_logs[0].signals.subject
     if effect == BELT and values is not None:
         return _shrinking(samples, subject.motors.index(location), usual, values)
     if effect in ("torque_constant", "transmission_ratio", "thermal_derating"):
@@ -122,14 +122,19 @@ def factor(
         motor = int(np.argmax(np.abs(subject.joint_from_motor[joint])))
     else:
         return None
-    rows = [i for i, r in enumerate(samples.rows) if r.balance == "motion" and r.column == joint]
+    rows = [
+        i for i, r in enumerate(samples.rows) if r.residual_name == "motion" and r.column == joint
+    ]
     if not rows:
         return None
-    if effect == "controller_gain" and any(is_measured(s.signals, motor) for s in samples.sieves):
+    if effect == "controller_gain" and any(
+        is_measured(s.signals, motor) for s in samples.filtered_logs
+    ):
         return None
     number = float(samples.share[samples.row == rows[0]].sum())
     slopes = (
-        np.concatenate([_slope(s.signals, effect, motor, joint) for s in samples.sieves]) * usual[0]
+        np.concatenate([_slope(s.signals, effect, motor, joint) for s in samples.filtered_logs])
+        * usual[0]
     )
     return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint), rows[0])
 
@@ -138,18 +143,20 @@ def _shrinking(
     samples: Samples, motor: int, usual: np.ndarray, values: np.ndarray
 ) -> Shrinking | None:
     """Of a belt; None where encoders are at the rotors, or its joint has no row."""
-    subject = samples.sieves[0].signals.subject
+    subject = samples.filtered_logs[0].signals.subject
     moves = subject.joint_from_motor[:, motor]
     joint = int(np.argmax(np.abs(moves)))
-    rows = [i for i, r in enumerate(samples.rows) if r.balance == "motion" and r.column == joint]
+    rows = [
+        i for i, r in enumerate(samples.rows) if r.residual_name == "motion" and r.column == joint
+    ]
     if not rows or values[SIDE] >= belt.CHOSEN:
         return None
     own = np.flatnonzero(samples.row == rows[0])
     part, slope = np.zeros(len(samples.row)), np.zeros(len(samples.row))
-    for one, places in zip(samples.sieves, samples.where, strict=True):
+    for one, places in zip(samples.filtered_logs, samples.where, strict=True):
         for place, row in enumerate(one.rows):
-            if (row.balance, row.column) == ("motion", joint):
-                feigned, rate = floor.of_acceleration(one, place)
+            if (row.residual_name, row.column) == ("motion", joint):
+                feigned, rate = noise_model.of_acceleration(one, place)
                 part[places[place]] = feigned
                 slope[places[place]] = rate * _carried(one.signals, motor, joint)
     part = np.minimum(part / samples.floor**2, 1.0)
@@ -158,13 +165,13 @@ def _shrinking(
 
 
 def _carried(signals: Signals, motor: int, joint: int) -> float:
-    """Share of the noise of accelerations in a joint's balance that is in the load of its motor's
+    """Share of the noise of accelerations in a joint's residual that is in the load of its motor's
     belt, too, through which it comes back.
     """
     if signals.noise is None:
         return 0.0
     level = np.nan_to_num(signals.noise) ** 2
-    whole = floor.inertias(signals)
+    whole = noise_model.inertias(signals)
     load = np.tensordot(
         signals.subject.motor_from_joint[motor], whole - signals.subject.armature[:, None], 1
     )

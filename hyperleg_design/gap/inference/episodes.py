@@ -27,7 +27,7 @@ MOST_EPISODES = 0.3
 def episodes(base: Base) -> np.ndarray:
     """Samples in rare episodes of residuals much larger than the rest of their row `(S,)` of bool.
 
-    They are found after a fit of the calibration errors with Student weights, which such episodes
+    They are found after a fit of the nuisance parameters with Student weights, which such episodes
     do not bend.
     """
     from scipy.linalg import cho_factor, cho_solve
@@ -92,7 +92,7 @@ BIN = 0.05
 """Time within which what happens is together [s]."""
 
 
-def together(samples: Samples, left: np.ndarray, balance: str = "drive") -> float:
+def together(samples: Samples, left: np.ndarray, residual_name: str = "drive") -> float:
     """Share of the time in which at least two, and half of all drives do not do what they were
     told, all at once.
 
@@ -101,10 +101,10 @@ def together(samples: Samples, left: np.ndarray, balance: str = "drive") -> floa
     Args:
         samples: of all logs.
         left: what a model leaves of every sample, weighted `(S,)`.
-        balance: whose rows tell; of `motion`, what joints do where nobody measured what their
+        residual: whose rows tell; of `motion`, what joints do where nobody measured what their
             drives give.
     """
-    drives = [i for i, row in enumerate(samples.rows) if row.balance == balance]
+    drives = [i for i, row in enumerate(samples.rows) if row.residual_name == residual_name]
     if len(drives) < 2:
         return 0.0
     plain = np.abs(left) / np.sqrt(samples.share)

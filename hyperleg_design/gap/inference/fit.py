@@ -1,4 +1,4 @@
-"""Fits by generalised least squares: causes linearised, calibration errors of each session as
+"""Fits by generalised least squares: causes linearised, nuisance parameters of each session as
 random effects, noise scaled by group.
 
 With samples over their floor, y = c + X phi + Z z_s + e, phi ~ N(0, WIDTH^2) in usual sizes, z_s ~
@@ -27,7 +27,7 @@ wide)."""
 ROUNDS = 3
 """Fits between which the noise's scales are set anew."""
 CLAMPS = 4
-"""Fits in which calibration errors that would leave their limits are set to them."""
+"""Fits in which nuisance parameters that would leave their limits are set to them."""
 SINGULAR = 1e-13
 """Least eigenvalue, over the diagonal, of normal equations that are solved within bounds: less is
 rounding."""
@@ -61,7 +61,7 @@ class Cause:
     declared: float = 0.0
     """Payload that the logs declare at its place [kg]."""
     factor: Factor | Shrinking | None = None
-    """How it scales the torque that the balance trusts, or noise of accelerations."""
+    """How it scales the torque that the residual trusts, or noise of accelerations."""
     unseen: bool = False
     """Whether no log has the signal that drives it, a voltage or a temperature, so that it is
     modelled."""
@@ -72,7 +72,7 @@ class Cause:
     beyond: int = 1
     """Joints in a row that its link carries, see `Mechanism.beyond`."""
     odds: float = 0.0
-    """Log odds for it by what logs tell beside their balances, see `telling`, and by its values,
+    """Log odds for it by what logs tell beside their residuals, see `telling`, and by its values,
     see `Effect.odds`."""
 
     @property
@@ -103,7 +103,7 @@ class Fit:
     phi: np.ndarray
     """Of all causes one after the other."""
     covariance: np.ndarray
-    """Of phi, calibration errors and noise's scale included."""
+    """Of phi, nuisance parameters and noise's scale included."""
     errors: np.ndarray
     """Of each session `(sessions, p)`."""
     scale: np.ndarray
@@ -113,14 +113,14 @@ class Fit:
     rss: np.ndarray
     """`(G,)`, over the floor."""
     implausible: float
-    """Half the calibration errors' square in their own priors: what they cost."""
+    """Half the nuisance parameters' square in their own priors: what they cost."""
 
 
 class Design:
     """Columns of some causes beside a base, ready for fits.
 
     Args:
-        base: residual and calibration errors.
+        base: residual and nuisance parameters.
         causes: linearised.
         ridge: columns that belong to no cause, weighted `(k, S)`, with unit prior variance.
     """
@@ -343,7 +343,7 @@ class Design:
         base = self.base
         number = number_of(base, way, without, False)
         if scale is None:
-            # from large noise to small: calibration errors first take what their priors allow, not
+            # from large noise to small: nuisance parameters first take what their priors allow, not
             # all that they could
             scale, rounds = base.raw, 2 * rounds
         phi = np.zeros(self.count)

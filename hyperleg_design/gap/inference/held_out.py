@@ -39,7 +39,7 @@ class Held:
     small.
     """
     bare: np.ndarray
-    """As `square`, had the causes not been there: the same calibration errors, without the causes'
+    """As `square`, had the causes not been there: the same nuisance parameters, without the causes'
     traces `(B, G)`."""
 
     @property
@@ -134,7 +134,7 @@ def _student(square: np.ndarray, size: np.ndarray, nu: np.ndarray, scale: np.nda
 
 
 def doubt(base: Base, way: int = BLOCKS) -> np.ndarray:
-    """How far the calibration errors of the other folds leave each sample open, without any cause:
+    """How far the nuisance parameters of the other folds leave each sample open, without any cause:
     variance over the floor's `(S,)`.
 
     A joint that hardly slides in any other block is foretold by the usual size of its errors alone.

@@ -61,7 +61,7 @@ the gap."""
 OWN_ROWS = 0.3
 """Rows are a cause's own where its trace has this share of its largest square over the floor."""
 EXPLAINED = 0.5
-"""Share of the squares in episodes that a model leaves at most, also of what calibration errors
+"""Share of the squares in episodes that a model leaves at most, also of what nuisance parameters
 alone leave, if they are to count."""
 
 
@@ -80,7 +80,7 @@ class Judge:
 
     @cached_property
     def nothing(self) -> Model:
-        """Calibration errors alone."""
+        """Nuisance parameters alone."""
         design = Design(self.base)
         fit = design.fit()
         return Model((), fit, predict(design, fit=fit), 0.0)
@@ -137,10 +137,10 @@ class Judge:
         """Rows that are known for long enough to count for the gap `(rows,)` of bool."""
         samples = self.base.samples
         known = np.zeros(len(samples.rows))
-        keys = [(r.balance, r.column) for r in samples.rows]
-        for sieve in samples.sieves:
-            for row, mask in zip(sieve.rows, sieve.mask, strict=True):
-                known[keys.index((row.balance, row.column))] += mask.sum()
+        keys = [(r.residual_name, r.column) for r in samples.rows]
+        for filtered_log in samples.filtered_logs:
+            for row, mask in zip(filtered_log.rows, filtered_log.mask, strict=True):
+                known[keys.index((row.residual_name, row.column))] += mask.sum()
         return known >= PRESENT * known.max(initial=0.0)
 
     @cached_property
@@ -168,7 +168,10 @@ class Judge:
         kept = self._shares.setdefault(model, {})
         if joint not in kept:
             kept[joint] = share(
-                model, joint, self.holds[joint], [s.signals for s in self.base.samples.sieves]
+                model,
+                joint,
+                self.holds[joint],
+                [s.signals for s in self.base.samples.filtered_logs],
             )
         return kept[joint]
 

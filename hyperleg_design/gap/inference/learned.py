@@ -16,7 +16,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
-from hyperleg_design.gap.inference.nuisance import Usual
+from hyperleg_design.gap.inference.nuisance import NuisanceParameter
 from hyperleg_design.gap.inference.screen import linearise
 
 if TYPE_CHECKING:
@@ -52,10 +52,10 @@ class Learned:
             f"robot's own"
         )
 
-    def errors(self) -> list[Usual]:
-        """What is left open of it, as calibration errors."""
+    def errors(self) -> list[NuisanceParameter]:
+        """What is left open of it, as nuisance parameters."""
         return [
-            Usual(self.effect, self.location, i, float(max(d, 1e-9 * u)))
+            NuisanceParameter(self.effect, self.location, i, float(max(d, 1e-9 * u)))
             for i, (d, u) in enumerate(zip(self.deviation, self.usual, strict=True))
         ]
 

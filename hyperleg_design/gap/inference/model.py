@@ -19,7 +19,7 @@ class Model:
     held: Held
     gain: float
     """Log-likelihood of held-out blocks over that of no cause, and how much more plausible the
-    calibration errors are."""
+    nuisance parameters are."""
     below: float = 0.0
     """Part of `gain` that is noise less than its floor."""
 

@@ -22,7 +22,7 @@ OWN_WORTH = 0.5
 """Least share of the excess squares, in the rows where it shows, that the first cause closes where
 it closes little of all."""
 CLEARER = 0.8
-"""Share of the squares that calibration errors leave of a small gap which its cause leaves at
+"""Share of the squares that nuisance parameters leave of a small gap which its cause leaves at
 most."""
 AT_LIMITS, AT_LIMITS_WORTH = ("torque_saturation", SAG), 0.95
 """Effects that must close nearly all of their episodes: healthy drives reach limits too, which
@@ -33,7 +33,7 @@ CHATTERING = 0.5
 """Share of the evidence that what can make loops unstable needs where one chatters."""
 PLAIN = 2.0
 """Times the evidence that a further cause needs from which it need only be as large as the floor to
-stand for large calibration errors."""
+stand for large nuisance parameters."""
 APART = 0.2
 """Share by which a further cause's evidence alone and beside the others may differ, where it has
 its own."""
@@ -76,7 +76,7 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
     """Whether one more cause is worth its name beside those before it: in the rows where it shows,
     over what they leave.
 
-    Or instead of calibration errors that are much larger than usual.
+    Or instead of nuisance parameters that are much larger than usual.
     """
     rules, already = judge.thresholds, len(before.causes)
     gain = model.gain - before.gain
@@ -95,7 +95,7 @@ def worth_adding(judge: Judge, model: Model, before: Model) -> bool:
         and _closes_own(judge, model, before, rules.second_worth, 1.0)
     ):
         return True
-    # Large calibration errors may hide what it leaves; then it must show clearly, away from
+    # Large nuisance parameters may hide what it leaves; then it must show clearly, away from
     # episodes, and be likelier than they are.
     likely = own or gain >= rules.second_instead * already
     if not likely or model.causes[-1].effect in AT_LIMITS or not _kept(model, before):
@@ -183,7 +183,7 @@ def unshown(judge: Judge, model: Model) -> bool:
         return False
     if last.unseen and bool((model.values(len(model.causes) - 1) >= last.high)[~last.shape].any()):
         return True
-    if np.isfinite(samples.sieves[0].signals.subject.stall_torque).all():
+    if np.isfinite(samples.filtered_logs[0].signals.subject.stall_torque).all():
         return False
     if last.unseen and rules.seldom > 0:  # healthy drives have such limits, too
         return True
@@ -195,7 +195,7 @@ def unshown(judge: Judge, model: Model) -> bool:
 
 def stands_out(judge: Judge, model: Model) -> bool:
     """Whether a lone cause, however small over the floor, makes up half of what there is where it
-    shows, even beside calibration errors.
+    shows, even beside nuisance parameters.
     """
     if model.causes[0].effect in AT_LIMITS:
         return False
@@ -218,7 +218,7 @@ def _unsure_afoot(judge: Judge, model: Model) -> bool:
 
 
 def _floating(judge: Judge) -> bool:
-    return judge.base.samples.sieves[0].signals.subject.floating
+    return judge.base.samples.filtered_logs[0].signals.subject.floating
 
 
 def _kept(model: Model, before: Model) -> bool:

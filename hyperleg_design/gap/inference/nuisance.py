@@ -1,4 +1,4 @@
-"""The usual small calibration errors, which are no causes: priors of each, fitted anew for every
+"""The usual small nuisance parameters, which are no causes: priors of each, fitted anew for every
 recording session.
 
 Each is one parameter of an effect of the catalogue at one place, so that its trace is the effect's
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.filtering import Sieve
+    from hyperleg_design.gap.signals.filtering import FilteredLog
     from hyperleg_design.gap.signals.signals import Signals
 
 TORQUE_CONSTANT = 0.02
@@ -115,9 +115,9 @@ DAY = {
 TURNOVER, SWUNG = "friction_turnover", "friction_in_chatter"
 """Friction of models turns over with speed, as tanh(v / v_s); that of robots at once, or over a way
 on which bristles bend. By how much of these differences, nobody knows: no effect of the catalogue,
-and no calibration error that is small."""
+and no nuisance parameter that is small."""
 GEARED, TOLD_LATE, GIVING = "speed_ratio", "speed_told_late", "stiff_belt"
-"""Of motors whose speed is logged beside that of their joints, which shows what no other balance
+"""Of motors whose speed is logged beside that of their joints, which shows what no other residual
 does: a share of it, the time between both sensors' samples, and belts and gears as stiff as they
 are, which give a little."""
 SPEEDS = (GEARED, TOLD_LATE, GIVING)
@@ -160,8 +160,8 @@ LEAST = 1e-3
 
 
 @dataclass(frozen=True)
-class Usual:
-    """One calibration error."""
+class NuisanceParameter:
+    """One nuisance parameter."""
 
     effect: str
     location: str
@@ -182,8 +182,10 @@ class Usual:
         return f"{self.effect} at {self.location}: {parameter}"
 
 
-def usual_errors(subject: Subject, step: float, calibrated: bool = False) -> list[Usual]:
-    """Calibration errors of a robot.
+def nuisance_parameters(
+    subject: Subject, step: float, calibrated: bool = False
+) -> list[NuisanceParameter]:
+    """Nuisance parameters of a robot.
 
     Args:
         subject: the robot.
@@ -192,46 +194,53 @@ def usual_errors(subject: Subject, step: float, calibrated: bool = False) -> lis
             turns over as the model's does.
     """
     strength, inertia = joint_strength(subject), joint_inertia(subject)
-    found: list[Usual] = []
+    found: list[NuisanceParameter] = []
     for j, joint in enumerate(subject.joints):
         if subject.coulomb[j] > 0:
             found += [
-                Usual(TURNOVER, joint, i, OF_WAY if i else AT_ONCE) for i in range(1 + len(WAYS))
+                NuisanceParameter(TURNOVER, joint, i, OF_WAY if i else AT_ONCE)
+                for i in range(1 + len(WAYS))
             ]
-            found += [Usual(SWUNG, joint, i, OF_SWING) for i in range(len(SWINGS))]
+            found += [NuisanceParameter(SWUNG, joint, i, OF_SWING) for i in range(len(SWINGS))]
         elif calibrated:  # what is calibrated turns over at once already
-            found += [Usual(TURNOVER, joint, 1 + i, OF_WAY) for i in range(len(WAYS))]
+            found += [NuisanceParameter(TURNOVER, joint, 1 + i, OF_WAY) for i in range(len(WAYS))]
         coulomb = COULOMB * subject.coulomb[j] + COULOMB_LEAST * strength[j]
         found += [
-            Usual("coulomb_friction", joint, 0, coulomb),
-            Usual(
+            NuisanceParameter("coulomb_friction", joint, 0, coulomb),
+            NuisanceParameter(
                 "viscous_friction",
                 joint,
                 0,
                 VISCOUS * subject.viscous[j] + VISCOUS_LEAST * strength[j],
             ),
-            Usual(
+            NuisanceParameter(
                 "stribeck_friction",
                 joint,
                 0,
                 BREAKAWAY * subject.coulomb[j] + 0.3 * COULOMB_LEAST * strength[j],
             ),
-            Usual("load_dependent_friction", joint, 0, LOAD_FRICTION),
-            Usual("encoder_offset", joint, 0, OFFSET),
-            Usual("joint_spring", joint, 0, SPRING * strength[j]),
-            Usual("joint_spring", joint, 1, TORQUE_OFFSET * strength[j]),
-            Usual("controller_gain", joint, 0, GAIN),
-            Usual("controller_gain", joint, 1, GAIN),
+            NuisanceParameter("load_dependent_friction", joint, 0, LOAD_FRICTION),
+            NuisanceParameter("encoder_offset", joint, 0, OFFSET),
+            NuisanceParameter("joint_spring", joint, 0, SPRING * strength[j]),
+            NuisanceParameter("joint_spring", joint, 1, TORQUE_OFFSET * strength[j]),
+            NuisanceParameter("controller_gain", joint, 0, GAIN),
+            NuisanceParameter("controller_gain", joint, 1, GAIN),
         ]
     late, driven = LATE + LATE_TICKS * step, set(driven_motors(subject))
     found += [
-        Usual(effect, "robot", 0, late) for effect in ("command_delay", TORQUES_LATE, FORCES_LATE)
+        NuisanceParameter(effect, "robot", 0, late)
+        for effect in ("command_delay", TORQUES_LATE, FORCES_LATE)
     ]
-    found += [Usual(STEPPED, "robot", 0, OF_STEPPED), Usual(FILTERED, "robot", 0, OF_FILTER)]
     found += [
-        Usual(effect, foot, 0, SOLES) for foot in subject.feet for effect in (SOLE, SOLE_GIVES)
+        NuisanceParameter(STEPPED, "robot", 0, OF_STEPPED),
+        NuisanceParameter(FILTERED, "robot", 0, OF_FILTER),
     ]
-    found += [Usual(FORCES_SCALED, foot, 0, OF_FORCES) for foot in subject.feet]
+    found += [
+        NuisanceParameter(effect, foot, 0, SOLES)
+        for foot in subject.feet
+        for effect in (SOLE, SOLE_GIVES)
+    ]
+    found += [NuisanceParameter(FORCES_SCALED, foot, 0, OF_FORCES) for foot in subject.feet]
     for m, motor in enumerate(subject.motors):
         column = np.abs(subject.joint_from_motor[:, m])
         main = int(np.argmax(column))
@@ -240,28 +249,31 @@ def usual_errors(subject: Subject, step: float, calibrated: bool = False) -> lis
             + OWN_INERTIA * inertia[main] / max(float(column[main]), 1e-9) ** 2
         )
         found += [
-            Usual("torque_constant", motor, 0, TORQUE_CONSTANT),
-            Usual("torque_constant", motor, READING, CURRENT),
-            Usual("rotor_inertia", motor, 0, rotor),
-            Usual("actuator_bandwidth", motor, 0, 0.5 * late),
-            Usual(GEARED, motor, 0, OF_SPEED),
-            Usual(TOLD_LATE, motor, 0, late),
+            NuisanceParameter("torque_constant", motor, 0, TORQUE_CONSTANT),
+            NuisanceParameter("torque_constant", motor, READING, CURRENT),
+            NuisanceParameter("rotor_inertia", motor, 0, rotor),
+            NuisanceParameter("actuator_bandwidth", motor, 0, 0.5 * late),
+            NuisanceParameter(GEARED, motor, 0, OF_SPEED),
+            NuisanceParameter(TOLD_LATE, motor, 0, late),
         ]
         if motor in driven:
-            found.append(Usual(GIVING, motor, 0, _give(subject, m)))
+            found.append(NuisanceParameter(GIVING, motor, 0, _give(subject, m)))
     for link in EFFECTS["link_mass"].locations(subject):
         own = subject.tree.link_inertial[subject.tree.link(link)]
         arm = max(float(np.linalg.norm(own[1:4] / own[0])), SHORTEST)
-        found.append(Usual("link_mass", link, 0, MASS * own[0]))
-        found += [Usual("link_com", link, axis, CENTRE * arm) for axis in range(3)]
+        found.append(NuisanceParameter("link_mass", link, 0, MASS * own[0]))
+        found += [NuisanceParameter("link_com", link, axis, CENTRE * arm) for axis in range(3)]
     if subject.floating:
-        found += [Usual("imu_bias", "imu", i, GYRO if i < 3 else ACCELEROMETER) for i in range(6)]
+        found += [
+            NuisanceParameter("imu_bias", "imu", i, GYRO if i < 3 else ACCELEROMETER)
+            for i in range(6)
+        ]
         for foot in subject.feet:
             found += [
-                Usual("ground_friction", foot, 0, GROUND),
-                Usual("ground_compliance", foot, 0, BEARING),
+                NuisanceParameter("ground_friction", foot, 0, GROUND),
+                NuisanceParameter("ground_compliance", foot, 0, BEARING),
             ]
-            found.append(Usual("ground_compliance", foot, 1, BEARING))
+            found.append(NuisanceParameter("ground_compliance", foot, 1, BEARING))
     places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
     places |= {name: set(subject.feet) for name in (SOLE, SOLE_GIVES, FORCES_SCALED)}
     places |= {name: {ROBOT} for name in (FORCES_LATE, TORQUES_LATE, STEPPED, FILTERED)}
@@ -272,9 +284,9 @@ def usual_errors(subject: Subject, step: float, calibrated: bool = False) -> lis
 
 
 def traces(
-    signals: Signals, errors: Sequence[Usual], calibrated: bool = False
+    signals: Signals, errors: Sequence[NuisanceParameter], calibrated: bool = False
 ) -> list[dict[str, np.ndarray]]:
-    """Trace of each error at one spread from its null, by balance `(t, columns)`.
+    """Trace of each error at one spread from its null, by residual `(t, columns)`.
 
     Torque constants scale the torque that the motion needs, not the measured one, and so do gains
     where nobody measured any: else all of them together could scale the noise away, masses and
@@ -328,7 +340,7 @@ def traces(
 
 def _steered(signals: Signals) -> Signals:
     """With targets by which the controllers would ask for just what the motion needs, where its
-    balance rests on them alone.
+    residual rests on them alone.
     """
     if signals.target is None or signals.measured is not None or "control" in signals.residual:
         return signals
@@ -360,7 +372,7 @@ def _give(subject: Subject, motor: int) -> float:
     return max(of_belt, of_gear)
 
 
-def _speeds(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
+def _speeds(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
     """Usual errors of a motor's speed beside its joints'."""
     if "transmission" not in signals.residual:
         return {}
@@ -373,12 +385,12 @@ def _speeds(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
     else:
         speed = first_derivative(belt.transmitted(signals, motor), signals.step)
     return {
-        balance: rows[0]
-        for balance, rows in turned(signals, motor, one.spread * speed[None]).items()
+        residual_name: rows[0]
+        for residual_name, rows in turned(signals, motor, one.spread * speed[None]).items()
     }
 
 
-def _stepped(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
+def _stepped(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
     """Friction as simulators step it, less friction at once."""
     subject, half = signals.subject, signals.acceleration * signals.step / 2
     damping = friction_damping(
@@ -391,7 +403,7 @@ def _stepped(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
     return {"motion": one.spread * (damping * (signals.velocity + half) - smooth)}
 
 
-def _filtered(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
+def _filtered(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
     """What speeds that controllers know late make them ask for; a motor's own back-EMF is never
     late.
     """
@@ -410,11 +422,14 @@ def _filtered(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
             control[:, motor] = asked[:, motor]
         else:
             changes[motor] = asked[None, :, motor]
-    found = {balance: rows[0] for balance, rows in before_measurement(signals, changes).items()}
+    found = {
+        residual_name: rows[0]
+        for residual_name, rows in before_measurement(signals, changes).items()
+    }
     return found | ({"control": control} if "control" in signals.residual else {})
 
 
-def _told(signals: Signals, one: Usual) -> dict[str, np.ndarray]:
+def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
     """Usual errors of what is told of forces and torques."""
     subject = signals.subject
     if one.effect == TORQUES_LATE:
@@ -462,7 +477,7 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
     subject, rows = signals.subject, np.zeros_like(signals.position)
     j = subject.joints.index(joint)
     at_once = sliding(signals)[:, j]
-    swing = None if signals.chatter is None else signals.chatter.speed[:, j]
+    swing = None if signals.limit_cycle is None else signals.limit_cycle.speed[:, j]
     turned = friction.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
     shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
     rows[:, j] = turning(subject)[j] * shape
@@ -470,8 +485,8 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
 
 
 def turning(subject: Subject) -> np.ndarray:
-    """Friction whose turning over is a calibration error `(n,)` [Nm]: the model's, or a usual error
-    where it has none.
+    """Friction whose turning over is a nuisance parameter `(n,)` [Nm]: the model's, or a usual
+    error where it has none.
     """
     return np.where(subject.coulomb > 0, subject.coulomb, COULOMB_LEAST * joint_strength(subject))
 
@@ -482,14 +497,14 @@ def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
     """
     subject = signals.subject
     j = subject.joints.index(joint)
-    if signals.chatter is None or not signals.chatter.speed[:, j].any():
+    if signals.limit_cycle is None or not signals.limit_cycle.speed[:, j].any():
         return {}
     rows, speed, width = (
         np.zeros_like(signals.position),
         signals.velocity[:, j],
         subject.friction_speed[j],
     )
-    swing = signals.chatter.speed[:, j]
+    swing = signals.limit_cycle.speed[:, j]
     rows[:, j] = subject.coulomb[j] * (
         friction.turned(speed, width, SWINGS[place] * swing) - friction.turned(speed, width, swing)
     )
@@ -511,25 +526,28 @@ def stop(position: np.ndarray, way: float) -> np.ndarray:
 
 
 def columns(
-    sieve: Sieve, errors: Sequence[Usual], calibrated: bool = False
+    filtered_log: FilteredLog, errors: Sequence[NuisanceParameter], calibrated: bool = False
 ) -> dict[int, np.ndarray]:
     """Samples of all errors at one spread each, by row `(errors, samples)`."""
-    found = {row: np.zeros((len(errors), sieve.count(row))) for row in range(len(sieve.rows))}
-    for place, trace in enumerate(traces(sieve.signals, errors, calibrated)):
-        for row, one in enumerate(sieve.rows):
-            if one.balance in trace:
-                values = trace[one.balance][:, one.column]
+    found = {
+        row: np.zeros((len(errors), filtered_log.count(row)))
+        for row in range(len(filtered_log.rows))
+    }
+    for place, trace in enumerate(traces(filtered_log.signals, errors, calibrated)):
+        for row, one in enumerate(filtered_log.rows):
+            if one.residual_name in trace:
+                values = trace[one.residual_name][:, one.column]
                 if np.any(np.nan_to_num(values) != 0):
-                    found[row][place] = sieve.sample(row, values[None])[0]
+                    found[row][place] = filtered_log.sample(row, values[None])[0]
     return found
 
 
-def spreads(errors: Sequence[Usual], factors: Mapping[str, float]) -> np.ndarray:
+def spreads(errors: Sequence[NuisanceParameter], factors: Mapping[str, float]) -> np.ndarray:
     """Factor of each error's effect `(errors,)`."""
     return np.array([factors.get(one.effect, 1.0) for one in errors])
 
 
-def for_life(errors: Sequence[Usual], subject: Subject) -> np.ndarray:
+def for_life(errors: Sequence[NuisanceParameter], subject: Subject) -> np.ndarray:
     """Deviation of each error of a healthy robot, in usual ones `(errors,)`."""
     told = {
         joint for joint, coulomb in zip(subject.joints, subject.coulomb, strict=True) if coulomb > 0

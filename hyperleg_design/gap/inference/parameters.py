@@ -24,7 +24,7 @@ move on belts that give (in development they were 10 to 25 % off)."""
 
 
 def parameters(judge: Judge, model: Model, place: int) -> dict[str, Value]:
-    """Values of one cause with 95 % intervals, calibration errors and coloured noise included."""
+    """Values of one cause with 95 % intervals, nuisance parameters and coloured noise included."""
     cause = model.causes[place]
     values, deviation = model.values(place), model.deviation(place)
     found = {}
@@ -46,7 +46,7 @@ def _derived(
     """The same in words that people use, with intervals from those of the parameters, each moved
     alone.
     """
-    effect, subject = EFFECTS[cause.effect], judge.base.samples.sieves[0].signals.subject
+    effect, subject = EFFECTS[cause.effect], judge.base.samples.filtered_logs[0].signals.subject
     middle = effect.derived(cause.location, values, subject)
     below, above = dict.fromkeys(middle, 0.0), dict.fromkeys(middle, 0.0)
     for i, parameter in enumerate(effect.parameters):

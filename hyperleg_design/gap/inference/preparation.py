@@ -17,7 +17,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
-from hyperleg_design.gap.inference import floor, nuisance, screen
+from hyperleg_design.gap.inference import noise_model, nuisance, screen
 from hyperleg_design.gap.inference.base import Base, Prior
 from hyperleg_design.gap.inference.decide import shown_already
 from hyperleg_design.gap.inference.detectors.holding import noticed
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.inference.model import Model
     from hyperleg_design.gap.inference.thresholds import Thresholds
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.filtering import Sieve
+    from hyperleg_design.gap.signals.filtering import FilteredLog
     from hyperleg_design.gap.signals.signals import Signals
 
 MOST_SESSIONS = 4
@@ -52,7 +52,7 @@ class Prepared:
     """Ready for causes."""
 
     base: Base
-    errors: tuple[nuisance.Usual, ...]
+    errors: tuple[nuisance.NuisanceParameter, ...]
     """Of the base's columns."""
     calibrated: bool
     """Whether reference logs were at hand."""
@@ -66,7 +66,7 @@ def prepare(
     thresholds: Thresholds,
     threads: int = 1,
 ) -> Prepared:
-    """Samples, calibration errors and their priors.
+    """Samples, nuisance parameters and their priors.
 
     Args:
         signals: conditioned logs under test.
@@ -75,11 +75,11 @@ def prepare(
         threads: that share the work.
 
     Raises:
-        InputError: no log shows a balance.
+        InputError: no log shows a residual.
     """
     signals = newly(signals, references)
     subject = signals[0].subject
-    usual = nuisance.usual_errors(subject, signals[0].step, bool(references))
+    usual = nuisance.nuisance_parameters(subject, signals[0].step, bool(references))
     own = _columns(signals, usual, thresholds, sessions_of(signals), bool(references))
     if not len(own.samples.value):
         raise InputError(
@@ -116,7 +116,7 @@ def _with_learned(
     own: _Columns,
     kept: np.ndarray,
     prior: Prior,
-    errors: list[nuisance.Usual],
+    errors: list[nuisance.NuisanceParameter],
     known: Sequence[Learned],
     thresholds: Thresholds,
 ) -> Prepared:
@@ -139,18 +139,20 @@ def _with_learned(
 
 
 def _showing(columns: _Columns) -> np.ndarray:
-    """Which calibration errors show at all `(errors,)` of bool."""
+    """Which nuisance parameters show at all `(errors,)` of bool."""
     return np.array(
         [reach(columns.samples, row[None]) > nuisance.LEAST for row in columns.errors], bool
     )
 
 
-def _wide(errors: Sequence[nuisance.Usual], subject: Subject) -> Prior:
+def _wide(errors: Sequence[nuisance.NuisanceParameter], subject: Subject) -> Prior:
     """Of errors for life."""
     return Prior(np.zeros(len(errors)), np.diag(nuisance.for_life(errors, subject) ** 2))
 
 
-def _felt(prior: Prior, errors: Sequence[nuisance.Usual], signals: Sequence[Signals]) -> Prior:
+def _felt(
+    prior: Prior, errors: Sequence[nuisance.NuisanceParameter], signals: Sequence[Signals]
+) -> Prior:
     """With what the base's motion tells of its accelerometer along the vertical: else its error
     hides loads.
     """
@@ -184,9 +186,9 @@ def sessions_of(signals: Sequence[Signals]) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Samples of some logs with the columns of all calibration errors."""
+    """Samples of some logs with the columns of all nuisance parameters."""
 
-    sieves: list[Sieve]
+    filtered_logs: list[FilteredLog]
     floors: list[list[np.ndarray]]
     """Of each log, of each of its rows `(samples,)`."""
     samples: Samples
@@ -203,14 +205,14 @@ class _Columns:
         """With the floor of each row and band scaled in variance."""
         floors = []
         usual = float(np.median(list(scales.values()))) if scales else 1.0
-        for one, rows in zip(self.sieves, self.floors, strict=True):
+        for one, rows in zip(self.filtered_logs, self.floors, strict=True):
             changed = []
             for place, values in enumerate(rows):
                 row = one.rows[place]
                 band, _, _ = one.labels(place)
                 factor = np.array(
                     [
-                        scales.get((row.balance, row.column, int(b)), usual)
+                        scales.get((row.residual_name, row.column, int(b)), usual)
                         for b in range(int(band.max(initial=-1)) + 1)
                     ]
                 )
@@ -221,7 +223,7 @@ class _Columns:
     def gathered(self, floors: list[list[np.ndarray]], apart: np.ndarray | None = None) -> Samples:
         """The samples anew, over other floors, or with episodes apart `(S,)`."""
         return gather(
-            self.sieves, floors, self.sessions.tolist(), self.thresholds.information, apart
+            self.filtered_logs, floors, self.sessions.tolist(), self.thresholds.information, apart
         )
 
     def base(self, kept: np.ndarray, prior: Prior, thresholds: Thresholds) -> Base:
@@ -244,19 +246,19 @@ class _Columns:
 
 def _columns(
     signals: Sequence[Signals],
-    usual: Sequence[nuisance.Usual],
+    usual: Sequence[nuisance.NuisanceParameter],
     thresholds: Thresholds,
     sessions: np.ndarray,
     calibrated: bool,
 ) -> _Columns:
-    sieves = [filtering.sieve(s, filtering.sticking(s)) for s in signals]
-    floors = [floor.expected(one, thresholds) for one in sieves]
-    samples = gather(sieves, floors, sessions.tolist(), thresholds.information)
+    filtered_logs = [filtering.filtered_log(s, filtering.sticking(s)) for s in signals]
+    floors = [noise_model.expected(one, thresholds) for one in filtered_logs]
+    samples = gather(filtered_logs, floors, sessions.tolist(), thresholds.information)
     errors = np.zeros((len(usual), len(samples.value)))
-    for one, places in zip(sieves, samples.where, strict=True):
+    for one, places in zip(filtered_logs, samples.where, strict=True):
         for row, columns in nuisance.columns(one, usual, calibrated).items():
             errors[:, places[row]] = columns
-    return _Columns(sieves, floors, samples, errors, sessions, thresholds)
+    return _Columns(filtered_logs, floors, samples, errors, sessions, thresholds)
 
 
 def _base(
@@ -277,7 +279,9 @@ def _base(
     )
 
 
-def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual], subject: Subject) -> Prior:
+def _after(
+    base: Base, fit: Fit, errors: Sequence[nuisance.NuisanceParameter], subject: Subject
+) -> Prior:
     """What reference logs tell of another day; friction that they show turns over as nobody knows,
     as that of the model does.
     """
@@ -293,7 +297,9 @@ def _after(base: Base, fit: Fit, errors: Sequence[nuisance.Usual], subject: Subj
     return Prior(mean, known + np.diag(day**2), told=True)
 
 
-def _turning(errors: Sequence[nuisance.Usual], mean: np.ndarray, subject: Subject) -> np.ndarray:
+def _turning(
+    errors: Sequence[nuisance.NuisanceParameter], mean: np.ndarray, subject: Subject
+) -> np.ndarray:
     """How many times as much friction as they stand for turns over, by reference logs, of such
     errors; 1 of others `(errors,)`.
     """
@@ -313,7 +319,7 @@ def _turning(errors: Sequence[nuisance.Usual], mean: np.ndarray, subject: Subjec
 
 
 def _scales(base: Base, model: Model) -> dict[tuple[str, int, int], float]:
-    """Variance over the floor by balance, column and band: of reference logs, and of each that the
+    """Variance over the floor by residual, column and band: of reference logs, and of each that the
     others predict, if that is larger.
     """
     samples, fit = base.samples, model.fit
@@ -331,7 +337,7 @@ def _scales(base: Base, model: Model) -> dict[tuple[str, int, int], float]:
             (base.freedom + fit.rss[group]) / (base.freedom + number[group]),
             float(elsewhere[group]),
         )
-        found[row.balance, row.column, int(samples.group_band[group])] = float(
+        found[row.residual_name, row.column, int(samples.group_band[group])] = float(
             np.clip(scale, LEAST_SCALE, MOST_SCALE)
         )
     return found

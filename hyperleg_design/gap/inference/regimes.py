@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.results.diagnosis import Place
-from hyperleg_design.gap.signals.signals import BALANCES
+from hyperleg_design.gap.signals.signals import RESIDUALS
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.judge import Judge
@@ -24,23 +24,25 @@ def worst(judge: Judge, name: str, kind: str) -> Place | None:
     total: dict[str, float] = {}
     ticks: dict[str, float] = {}
     for row in samples.rows:
-        if row.name != name or BALANCES[row.balance][0] != kind:
+        if row.name != name or RESIDUALS[row.residual_name][0] != kind:
             continue
-        for one, sieve in enumerate(samples.sieves):
+        for one, filtered_log in enumerate(samples.filtered_logs):
             own = [
                 i
-                for i, r in enumerate(sieve.rows)
-                if (r.balance, r.column) == (row.balance, row.column)
+                for i, r in enumerate(filtered_log.rows)
+                if (r.residual_name, r.column) == (row.residual_name, row.column)
             ]
             if not own:
                 continue
             part = samples.where[one][own[0]]
             index = np.clip(
-                np.round(samples.time[part] / sieve.signals.step).astype(int),
+                np.round(samples.time[part] / filtered_log.signals.step).astype(int),
                 0,
-                len(sieve.signals.time) - 1,
+                len(filtered_log.signals.time) - 1,
             )
-            for regime, mask in regimes(sieve.signals, row.balance, row.column).items():
+            for regime, mask in regimes(
+                filtered_log.signals, row.residual_name, row.column
+            ).items():
                 chosen = mask[index]
                 total[regime] = total.get(regime, 0.0) + float((left[part][chosen] ** 2).sum())
                 ticks[regime] = ticks.get(regime, 0.0) + float(samples.share[part][chosen].sum())
@@ -60,11 +62,11 @@ def worst(judge: Judge, name: str, kind: str) -> Place | None:
     return None if best is None else Place(name, kind, best[1], min(best[2], 1.0))
 
 
-def regimes(signals: Signals, balance: str, column: int) -> dict[str, np.ndarray]:
+def regimes(signals: Signals, residual_name: str, column: int) -> dict[str, np.ndarray]:
     """What a joint or motor was doing `(t,)` of bool each."""
     velocity = (
         signals.velocity[:, column]
-        if balance == "motion"
+        if residual_name == "motion"
         else signals.velocity @ signals.subject.joint_from_motor[:, column]
     )
     speed = np.abs(velocity)
@@ -81,7 +83,7 @@ def regimes(signals: Signals, balance: str, column: int) -> dict[str, np.ndarray
         "fast": speed >= middle,
         "reversal": reversal,
     }
-    if balance == "motion":
+    if residual_name == "motion":
         load = np.abs(signals.rigid[:, column])
         found |= {"light load": load < np.median(load), "heavy load": load >= np.median(load)}
         place = signals.position[:, column]

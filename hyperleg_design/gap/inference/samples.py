@@ -18,7 +18,7 @@ import numpy as np
 from hyperleg_design.gap.signals.filtering import traced
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.filtering import Row, Sieve
+    from hyperleg_design.gap.signals.filtering import FilteredLog, Row
     from hyperleg_design.gap.signals.signals import Signals
 
 FOLDS = 5
@@ -46,7 +46,7 @@ class Piece:
 class Samples:
     """`S` samples of all logs, in `G` groups and `P` parts."""
 
-    sieves: tuple[Sieve, ...]
+    filtered_logs: tuple[FilteredLog, ...]
     rows: tuple[Row, ...]
     """Of all logs together."""
     value: np.ndarray
@@ -62,7 +62,7 @@ class Samples:
     block: np.ndarray
     """`(S,)` each."""
     where: tuple[tuple[slice, ...], ...]
-    """Of each log and each row of its sieve."""
+    """Of each log and each row of its filtered log."""
     pieces: tuple[Piece, ...]
     group_row: np.ndarray
     group_band: np.ndarray
@@ -123,8 +123,8 @@ class Samples:
         them.
         """
         found = None
-        for sieve, places in zip(self.sieves, self.where, strict=True):
-            for row, values in traced(sieve, trace(sieve.signals)).items():
+        for filtered_log, places in zip(self.filtered_logs, self.where, strict=True):
+            for row, values in traced(filtered_log, trace(filtered_log.signals)).items():
                 if found is None:
                     found = np.zeros((count, len(self.value)))
                 found[:, places[row]] = values
@@ -132,7 +132,7 @@ class Samples:
 
 
 def gather(
-    sieves: Sequence[Sieve],
+    filtered_logs: Sequence[FilteredLog],
     floors: Sequence[Sequence[np.ndarray]],
     sessions: Sequence[int],
     information: float,
@@ -141,17 +141,22 @@ def gather(
     """Samples of all logs.
 
     Args:
-        sieves: one a log.
+        filtered_logs: one a log.
         floors: of each log, of each of its rows `(samples,)`.
         sessions: number of the session of each log, from 0.
         information: share of what would be independent numbers in white noise that counts as such.
         episode: samples that belong to episodes `(S,)` of bool.
     """
-    keys = list(dict.fromkeys((r.balance, r.column) for sieve in sieves for r in sieve.rows))
-    rows = tuple(
-        next(r for s in sieves for r in s.rows if (r.balance, r.column) == key) for key in keys
+    keys = list(
+        dict.fromkeys(
+            (r.residual_name, r.column) for filtered_log in filtered_logs for r in filtered_log.rows
+        )
     )
-    deal = _parts(sieves)
+    rows = tuple(
+        next(r for s in filtered_logs for r in s.rows if (r.residual_name, r.column) == key)
+        for key in keys
+    )
+    deal = _parts(filtered_logs)
     groups: dict[tuple[int, int, bool], int] = {}
     parts: dict[tuple[int, int], int] = {
         (log, chunk): i
@@ -159,15 +164,15 @@ def gather(
     }
     table: list[list[np.ndarray]] = [[] for _ in range(8)]
     where, pieces, start, blocks = [], [], 0, 0
-    for number, sieve in enumerate(sieves):
+    for number, filtered_log in enumerate(filtered_logs):
         places = []
-        duration = float(sieve.signals.time[-1] - sieve.signals.time[0])
-        for place, row in enumerate(sieve.rows):
-            band, time, share = sieve.labels(place)
+        duration = float(filtered_log.signals.time[-1] - filtered_log.signals.time[0])
+        for place, row in enumerate(filtered_log.rows):
+            band, time, share = filtered_log.labels(place)
             share = share * information
             if episode is not None:
                 share = np.where(episode[start : start + len(band)], OF_EPISODES * share, share)
-            overall = keys.index((row.balance, row.column))
+            overall = keys.index((row.residual_name, row.column))
             group = np.empty(len(band), int)
             apart = (
                 np.zeros(len(band), bool) if episode is None else episode[start : start + len(band)]
@@ -179,14 +184,14 @@ def gather(
                         group[mine] = groups.setdefault((overall, b, flag), len(groups))
             chunk = np.minimum((time / duration * deal[number]).astype(int), deal[number] - 1)
             part = np.array([parts[number, c] for c in range(deal[number])])[chunk]
-            residual = sieve.signals.residual[row.balance][:, row.column]
+            residual = filtered_log.signals.residual[row.residual_name][:, row.column]
             edges = np.flatnonzero(np.diff(group) | np.diff(part)) + 1
             for low, high in zip(np.r_[0, edges], np.r_[edges, len(group)], strict=True):
                 if high > low:
                     pieces.append(
                         Piece(start + int(low), start + int(high), int(group[low]), int(part[low]))
                     )
-            values = sieve.sample(place, residual[None])[0]
+            values = filtered_log.sample(place, residual[None])[0]
             for column, found in zip(
                 table,
                 (
@@ -209,12 +214,12 @@ def gather(
     joined = [np.concatenate(column) if column else np.zeros(0) for column in table]
     key_of = sorted(groups, key=groups.__getitem__)
     log_of = np.array([log for log, _ in parts])
-    whole = FOLDS if len(sieves) > FOLDS else max(len(sieves), 1)
+    whole = FOLDS if len(filtered_logs) > FOLDS else max(len(filtered_logs), 1)
     fold = np.stack([[(chunk + log) % FOLDS for log, chunk in parts], log_of % whole])
-    if len(sieves) < 2:
+    if len(filtered_logs) < 2:
         fold[1] = fold[0]
     return Samples(
-        tuple(sieves),
+        tuple(filtered_logs),
         rows,
         joined[0],
         joined[1],
@@ -235,14 +240,14 @@ def gather(
     )
 
 
-def _parts(sieves: Sequence[Sieve]) -> list[int]:
+def _parts(filtered_logs: Sequence[FilteredLog]) -> list[int]:
     """Stretches that each log is cut into: five of a short one, ten of a long one, no more than is
     needed of many.
     """
-    most = max(MOST_PARTS // len(sieves), 1)
+    most = max(MOST_PARTS // len(filtered_logs), 1)
     found = []
-    for sieve in sieves:
-        duration = float(sieve.signals.time[-1] - sieve.signals.time[0])
+    for filtered_log in filtered_logs:
+        duration = float(filtered_log.signals.time[-1] - filtered_log.signals.time[0])
         wanted = FOLDS if duration < 30 else 2 * FOLDS
         found.append(wanted if wanted <= most else (FOLDS if most >= FOLDS else most))
     return found

@@ -1,4 +1,4 @@
-"""Every effect at every place, linearised and fitted beside the calibration errors; the promising
+"""Every effect at every place, linearised and fitted beside the nuisance parameters; the promising
 ones refitted exactly.
 
 An effect that is not linear is tried from each of its starts by a few Gauss-Newton steps within its
@@ -110,7 +110,7 @@ def places(subject: Subject, effects: Iterable[str] | None = None) -> list[tuple
 
 def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarray) -> Cause | None:
     """An effect linearised at some values `(k,)`; None where no log shows it."""
-    subject = samples.sieves[0].signals.subject
+    subject = samples.filtered_logs[0].signals.subject
     usual = effect.usual(location, subject)
     low, high = effect.bounds(location, subject)
     holds = samples.holds
@@ -155,7 +155,9 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     )
     scaled = factor(samples, effect.identifier, location, usual, values)
     driver = DRIVERS.get(effect.identifier)
-    unseen = driver is not None and all(getattr(s.signals, driver) is None for s in samples.sieves)
+    unseen = driver is not None and all(
+        getattr(s.signals, driver) is None for s in samples.filtered_logs
+    )
     shakes = effect.unsettles(values) and _unsettling(samples, effect, location)
     return Cause(
         effect.identifier,
@@ -176,14 +178,14 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         effect.doubtful(values),
         subject.tree.beyond(location),
         effect.odds(location, subject, values)
-        + telling.odds(effect.identifier, location, [s.signals for s in samples.sieves]),
+        + telling.odds(effect.identifier, location, [s.signals for s in samples.filtered_logs]),
     )
 
 
 def _unsettling(samples: Samples, effect: Effect, location: str) -> bool:
     """Whether a joint chatters that an effect could have made unstable, in any log."""
     shaken = set(shaking(samples)) if effect.identifier in UNSETTLING else set()
-    subject = samples.sieves[0].signals.subject
+    subject = samples.filtered_logs[0].signals.subject
     if location in subject.motors and effect.kind == "motor":
         moves = subject.joint_from_motor[:, subject.motors.index(location)] != 0
         return any(
@@ -229,7 +231,7 @@ def screen(
     first; the best of them are then descended from.
 
     Args:
-        base: residual and calibration errors.
+        base: residual and nuisance parameters.
         nothing: fit without any further cause.
         wanted: effects and locations.
         threads: that share the work; they change no result.
@@ -300,7 +302,7 @@ def _size(traced: Traces) -> int:
 
 
 def _trace(base: Base, effect: Effect, location: str) -> Traces:
-    missing = lacking(effect, location, [s.signals for s in base.samples.sieves])
+    missing = lacking(effect, location, [s.signals for s in base.samples.filtered_logs])
     if missing:
         return NotJudged(effect.identifier, location, missing)
     unexcited = NotJudged(effect.identifier, location, "these logs do not excite it")
@@ -375,23 +377,25 @@ def lacking(effect: Effect, location: str, signals: Sequence[Signals]) -> str:
     """What the logs lack to show an effect at all, or nothing."""
     subject = signals[0].subject
     values = effect.example(location, subject)[None]
-    balances = set().union(*(effect.trace(s, location, values) for s in signals))
-    if not balances:
+    residual_names = set().union(*(effect.trace(s, location, values) for s in signals))
+    if not residual_names:
         return "these logs lack the signals that would show it"
-    if not balances & set().union(*(s.residual for s in signals)):
-        return f"these logs have no balance in which it shows ({', '.join(sorted(balances))})"
+    if not residual_names & set().union(*(s.residual for s in signals)):
+        return f"these logs have no balance in which it shows ({', '.join(sorted(residual_names))})"
     return ""
 
 
 def _variants(base: Base, effect: Effect, location: str) -> np.ndarray:
     """Of all logs, each once."""
-    found = np.concatenate([effect.variants(s.signals, location) for s in base.samples.sieves])
+    found = np.concatenate(
+        [effect.variants(s.signals, location) for s in base.samples.filtered_logs]
+    )
     return np.unique(found, axis=0)
 
 
 def _starts(base: Base, effect: Effect, location: str) -> np.ndarray:
     """Starts of all logs, each once; the first of every log before the second of any."""
-    logs = [list(effect.starts(s.signals, location)) for s in base.samples.sieves]
+    logs = [list(effect.starts(s.signals, location)) for s in base.samples.filtered_logs]
     found = np.array([start for turn in zip_longest(*logs) for start in turn if start is not None])
     _, first = np.unique(np.round(found, 12), axis=0, return_index=True)
     return found[np.sort(first)][:MOST_STARTS]
@@ -416,7 +420,7 @@ def descend(
     """Gauss-Newton steps of a nonlinear effect, halved until they better the fit.
 
     Args:
-        base: residual and calibration errors.
+        base: residual and nuisance parameters.
         effect: what is fitted.
         location: its place.
         start: values to begin with.

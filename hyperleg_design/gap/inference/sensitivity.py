@@ -1,7 +1,7 @@
 """How small an effect could have been and still been named from these logs: what `none` means, and
 what no analysis can find.
 
-Around no effect, with calibration errors free within their priors in every session, a trace x (over
+Around no effect, with nuisance parameters free within their priors in every session, a trace x (over
 the floor, weighted) has the
 Fisher information  I = x (1 - Z (Z'Z + P)^-1 Z') x'  of its size, where Z are the errors' traces and P their prior precision. A
 size f has the expected log-likelihood f^2 I / 2 over none, with standard deviation f sqrt(I). It is
@@ -121,7 +121,7 @@ def _probes(judge: Judge, effect: Effect, location: str) -> list[_Probes]:
     if isinstance(traced, screen.NotJudged):
         return []
     sizes = [i for i, p in enumerate(effect.parameters) if not p.shape]
-    subject = judge.base.samples.sieves[0].signals.subject
+    subject = judge.base.samples.filtered_logs[0].signals.subject
     bounds = effect.bounds(location, subject)
     if isinstance(traced, list):
         return [
@@ -190,7 +190,7 @@ def _factors(judge: Judge, effect: Effect, columns: np.ndarray) -> np.ndarray:
     nothing.
     """
     rules, base = judge.thresholds, judge.base
-    floating = base.samples.sieves[0].signals.subject.floating
+    floating = base.samples.filtered_logs[0].signals.subject.floating
     unsure = (floating and not base.prior.told) or effect.doubtful(effect.nulls)
     least = np.sqrt(2 * ((rules.evident_doubtful if unsure else rules.evident) + PAID)) + OFTEN
     told = _information(judge, columns)
@@ -204,7 +204,7 @@ def _factors(judge: Judge, effect: Effect, columns: np.ndarray) -> np.ndarray:
 
 
 def _information(judge: Judge, columns: np.ndarray) -> np.ndarray:
-    """Fisher information of each trace's size, calibration errors free `(k,)`."""
+    """Fisher information of each trace's size, nuisance parameters free `(k,)`."""
     from scipy.linalg import cho_solve
 
     base = judge.base

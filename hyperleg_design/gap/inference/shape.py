@@ -2,7 +2,7 @@
 report says of it.
 
 Each shape is a block of smooth functions of what one row may depend on. They are fitted as ridge
-regressions, beside the calibration errors and the causes found. One that closes more on held-out
+regressions, beside the nuisance parameters and the causes found. One that closes more on held-out
 data than the catalogue does speaks against the catalogue.
 """
 
@@ -84,16 +84,16 @@ def shapes(samples: Samples, rows: np.ndarray) -> list[Shape]:
     found = []
     for row in rows.tolist():
         one = samples.rows[row]
-        if one.balance == "motion":
+        if one.residual_name == "motion":
             kinds = [k for k in KINDS if k not in ("gravity", "ratio_over_position")]
-        elif one.balance in ("drive", "control"):
+        elif one.residual_name in ("drive", "control"):
             kinds = ["time", "rhythm", "speed", OF_LOAD]
-        elif one.balance == "transmission":
+        elif one.residual_name == "transmission":
             kinds = ["ratio_over_position"]
         else:
             kinds = ["time", "rhythm"]
         found += [Shape(kind, row, f"{one.name}: {KINDS[kind]}") for kind in kinds]
-    if any(r.balance == "motion" for r in samples.rows):
+    if any(r.residual_name == "motion" for r in samples.rows):
         found.append(Shape("gravity", -1, KINDS["gravity"]))
     return found
 
@@ -116,11 +116,13 @@ def columns(base: Base, nothing: Fit, shape: Shape) -> np.ndarray | None:
             if shape.name in OF_ENCODER:
                 return basis.of_encoder(signals)
             values = basis.of(signals)
-            if one.balance not in signals.residual:
+            if one.residual_name not in signals.residual:
                 return {}
-            full = np.zeros((count, len(signals.time), signals.residual[one.balance].shape[1]))
+            full = np.zeros(
+                (count, len(signals.time), signals.residual[one.residual_name].shape[1])
+            )
             full[..., one.column] = values
-            return {one.balance: full}
+            return {one.residual_name: full}
 
         traces = samples.columns(trace, count)
     if traces is None:
@@ -148,19 +150,19 @@ class _Basis:
         self.shape = shape
         samples = base.samples
         self.row = samples.rows[shape.row]
-        logs = [s.signals for s in samples.sieves]
+        logs = [s.signals for s in samples.filtered_logs]
         subject = logs[0].subject
-        of_motor = self.row.balance in OF_MOTORS
+        of_motor = self.row.residual_name in OF_MOTORS
         self.motor = (
             self.row.column
             if of_motor
             else int(np.argmax(np.abs(subject.joint_from_motor[self.row.column])))
-            if self.row.balance == "motion"
+            if self.row.residual_name == "motion"
             else 0
         )
         self.joint = (
             self.row.column
-            if self.row.balance == "motion"
+            if self.row.residual_name == "motion"
             else int(np.argmax(np.abs(subject.joint_from_motor[:, self.motor])))
         )
         position = np.concatenate([s.position[:, self.joint] for s in logs])
@@ -233,7 +235,7 @@ class _Basis:
         return np.zeros((0, len(time)))
 
     def of_encoder(self, signals: Signals) -> dict[str, np.ndarray]:
-        """Errors of a position that go with it as waves, or with time, in all balances `(k, t,
+        """Errors of a position that go with it as waves, or with time, in all residuals `(k, t,
         columns)` each.
         """
         from hyperleg_design.gap.effects import EFFECTS
@@ -242,8 +244,8 @@ class _Basis:
             signals, signals.subject.joints[self.joint], np.array([[SMALL]])
         )
         return {
-            balance: self.of(signals)[..., None] * (one[0] / SMALL)
-            for balance, one in found.items()
+            residual_name: self.of(signals)[..., None] * (one[0] / SMALL)
+            for residual_name, one in found.items()
         }
 
     def _pieces(self, position: np.ndarray) -> np.ndarray:
@@ -259,19 +261,23 @@ def _rhythm(base: Base, row: int) -> float:
     samples = base.samples
     one = samples.rows[row]
     total, frequency = None, None
-    longest = max(len(s.signals.time) for s in samples.sieves)
-    for sieve in samples.sieves:
-        if one.balance not in sieve.signals.residual:
+    longest = max(len(s.signals.time) for s in samples.filtered_logs)
+    for filtered_log in samples.filtered_logs:
+        if one.residual_name not in filtered_log.signals.residual:
             continue
         values = np.nan_to_num(
-            np.where(sieve.signals.valid, sieve.signals.residual[one.balance][:, one.column], 0.0)
+            np.where(
+                filtered_log.signals.valid,
+                filtered_log.signals.residual[one.residual_name][:, one.column],
+                0.0,
+            )
         )
         power = (
             np.abs(np.fft.rfft(np.hanning(len(values)) * (values - values.mean()), 4 * longest))
             ** 2
         )
         total = power if total is None else total + power
-        frequency = np.fft.rfftfreq(4 * longest, sieve.signals.step)
+        frequency = np.fft.rfftfreq(4 * longest, filtered_log.signals.step)
     if total is None or frequency is None:
         return 0.0
     inside = (frequency > 0.2) & (frequency < FASTEST_RHYTHM)

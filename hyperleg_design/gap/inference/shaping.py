@@ -103,13 +103,13 @@ def beside(judge: Judge, chosen: Model, rows: np.ndarray) -> tuple[Told, ...]:
 
 
 def of_base(judge: Judge) -> tuple[Told, ...]:
-    """Rhythms in the balance of a floating base, in which no joint's friction and no drive has a
+    """Rhythms in the residual of a floating base, in which no joint's friction and no drive has a
     part: small pushes show there.
     """
     base = judge.base
     found = []
     for row, one in enumerate(base.samples.rows):
-        if one.balance != "base":
+        if one.residual_name != "base":
             continue
         rhythm = shape.Shape(
             "rhythm",
@@ -134,7 +134,7 @@ def _companions(judge: Judge, chosen: Model) -> np.ndarray | None:
     S)`.
     """
     samples = judge.base.samples
-    subject = samples.sieves[0].signals.subject
+    subject = samples.filtered_logs[0].signals.subject
     found = []
     for place, cause in enumerate(chosen.causes):
         if cause.effect not in TURNING:

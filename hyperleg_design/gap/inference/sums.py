@@ -1,7 +1,7 @@
 """Sums of products of the columns that fits are made of, by group of samples; columns that a row
 does not show are left out.
 
-A robot's row shows few of all calibration errors, so that most of these products are nothing: kept
+A robot's row shows few of all nuisance parameters, so that most of these products are nothing: kept
 whole, they would fill the memory, and reading them would be most of a diagnosis.
 """
 

@@ -28,7 +28,7 @@ def friction_torque(
     subject: Subject, position: np.ndarray, velocity: np.ndarray, swing: np.ndarray | None = None
 ) -> np.ndarray:
     """Nominal friction and springs that a drive has to overcome `(..., n)` [Nm]; `swing` of
-    `chatter.Chatter.speed`.
+    `limit_cycle.LimitCycle.speed`.
     """
     return np.asarray(
         rubbing_torque(subject, velocity, swing) + subject.spring * (position - subject.spring_rest)
@@ -48,7 +48,9 @@ def rubbing_torque(
 def turned(
     velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray | None = None
 ) -> np.ndarray:
-    """Share of the nominal Coulomb friction at some velocities, from -1 to 1, chatter averaged."""
+    """Share of the nominal Coulomb friction at some velocities, from -1 to 1, over a limit cycle's
+    swing.
+    """
     share = np.tanh(velocity / width)
     if swing is not None and swing.any():
         share = np.where(swing > 0, sliding_share(velocity, width, swing), share)

@@ -39,7 +39,7 @@ from hyperleg_design.gap.results.diagnosis import (
     Shrinkage,
 )
 from hyperleg_design.gap.results.finding import NOTE, WARNING
-from hyperleg_design.gap.signals.signals import BALANCES
+from hyperleg_design.gap.signals.signals import RESIDUALS
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
@@ -96,7 +96,7 @@ class Answer:
                 float(self.judge.gap(v, rows))
                 for v in (chosen.bare, chosen.square, self.held(model).square)
             )
-            if before - least < LEAST_CHANGE * before:  # what it explains is in no balance
+            if before - least < LEAST_CHANGE * before:  # what it explains is in no residual
                 return 0.0
             return float(np.clip((before - after) / (before - least), -9.99, 1.0))
         return float(
@@ -228,7 +228,7 @@ class Answer:
         return (
             bool(named)
             and ungiven(
-                self.found.model, joint, [s.signals for s in self.judge.base.samples.sieves]
+                self.found.model, joint, [s.signals for s in self.judge.base.samples.filtered_logs]
             )
             >= HELD * torque
         )
@@ -275,7 +275,7 @@ class Answer:
     def unit(self, row: int) -> str:
         """Of a row, or of its episodes."""
         rows = self.judge.base.samples.rows
-        return BALANCES[rows[row % len(rows)].balance][1]
+        return RESIDUALS[rows[row % len(rows)].residual_name][1]
 
     def alike(self) -> np.ndarray:
         """Of the rows that count, those in the unit of the one with the largest gap: all that one
@@ -304,11 +304,11 @@ class Answer:
         for row, value in zip(samples.rows, excess, strict=True):
             key = (
                 row.name.rsplit("_", 1)[0]
-                if row.balance == "ground"
+                if row.residual_name == "ground"
                 else "robot"
-                if row.balance == "base"
+                if row.residual_name == "base"
                 else row.name,
-                BALANCES[row.balance][0],
+                RESIDUALS[row.residual_name][0],
             )
             shares[key] = shares.get(key, 0.0) + float(value)
         total = sum(shares.values())
@@ -342,7 +342,7 @@ class Answer:
                 else max((m.over for m in models), default=0.0)
             )
             none = 0.0 if place == 0 else _without(found, place)
-            unlisted = other + (CHATTERS if found.chatter else shaped - rules.unlisted)
+            unlisted = other + (CHATTERS if found.limit_cycle else shaped - rules.unlisted)
             scores = np.array([*(rank(m) for m in models), none, unlisted])
             weights = np.exp(rules.temperature * (scores - scores.max()))
             weights /= weights.sum()
@@ -440,7 +440,7 @@ class Answer:
                     "gain": 0.0,
                 }
             )
-        for joint in self.found.chatter:
+        for joint in self.found.limit_cycle:
             found.append(
                 {
                     "shape": "chatter",
@@ -453,7 +453,7 @@ class Answer:
         for row, share in self.found.failing.items():
             gives = (
                 "its drive does not give what it was told"
-                if samples.rows[row].balance == "drive"
+                if samples.rows[row].residual_name == "drive"
                 else "it does not move as its torque says"
             )
             says = f"for {100 * share:.1f} % of the time {gives}, and no listed effect says why"
@@ -481,7 +481,7 @@ class Answer:
         return tuple(found)
 
     def nuisance(self) -> tuple[dict[str, Any], ...]:
-        """Largest calibration errors, in usual sizes."""
+        """Largest nuisance parameters, in usual sizes."""
         fit, prior = self.found.model.fit, self.ready.base.prior
         errors = fit.errors + prior.mean
         rows: list[dict[str, Any]] = [
@@ -523,7 +523,7 @@ class Answer:
             share = float(own.mean()) if own.size else 0.0
             if share > 0.01:
                 found.append(
-                    f"{one.balance} of {one.name}: episodes of much larger residuals, "
+                    f"{one.residual_name} of {one.name}: episodes of much larger residuals, "
                     f"{100 * share:.0f} % of the time, count for little"
                 )
         return tuple(dict.fromkeys(found))

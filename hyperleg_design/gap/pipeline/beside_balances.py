@@ -1,4 +1,4 @@
-"""Causes that no balance shows, put into a diagnosis: belts that are heard, sensors that differ
+"""Causes that no residual shows, put into a diagnosis: belts that are heard, sensors that differ
 from others, feet that slide or sink.
 """
 
@@ -45,7 +45,7 @@ def of_heard(told: Diagnosis, heard: Heard) -> Diagnosis:
     """A diagnosis with what is heard of belts and control loops: beside what is named already, or
     instead of nothing.
 
-    Where nothing is named, the gap is that of the noise: what rings is in no balance.
+    Where nothing is named, the gap is that of the noise: what rings is in no residual.
     """
     names = tuple((c.effect, c.location) for c in heard.causes)
     rivals = [r for r in told.rivals if (r.effect, r.location) not in names]
@@ -134,7 +134,7 @@ def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
 
 
 def _surer(cause: Named, offset: Offset) -> Named:
-    """An IMU's errors as balances tell them, or as other sensors do, whichever is surer; what no
+    """An IMU's errors as residuals tell them, or as other sensors do, whichever is surer; what no
     other sensor tells has no interval.
     """
     told = {

@@ -171,7 +171,7 @@ def diagnose_signals(
     say(
         f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue"
     )
-    places = screen.places(samples.sieves[0].signals.subject, effects)
+    places = screen.places(samples.filtered_logs[0].signals.subject, effects)
     judge, found = decide(ready.base, rules, places, threads, references)
     say("intervals, rivals, the next experiment and what these logs can show")
     told = Answer(

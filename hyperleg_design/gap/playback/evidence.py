@@ -22,10 +22,10 @@ BAND = 8.0
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """Traces of one balance of one log, filtered alike; `t` ticks, `r` rows."""
+    """Traces of one residual of one log, filtered alike; `t` ticks, `r` rows."""
 
     log: str
-    balance: str
+    residual_name: str
     rows: tuple[str, ...]
     """Joints, motors, or parts of the base or the feet."""
     time: np.ndarray
@@ -53,7 +53,7 @@ class Evidence:
 
 
 def evidence(
-    signals: Signals, causes: Sequence[Mapping[str, Any]], balance: str = "motion"
+    signals: Signals, causes: Sequence[Mapping[str, Any]], residual_name: str = "motion"
 ) -> Evidence:
     """Residual and explanation on one log.
 
@@ -61,11 +61,11 @@ def evidence(
         signals: of the log.
         causes: as `diagnosis.json` lists them: `effect`, `location`, and `parameters` with their
             `value`.
-        balance: one that the log allows.
+        residual: one that the log allows.
     """
     from hyperleg_design.gap.effects import effect
 
-    residual = signals.residual[balance]
+    residual = signals.residual[residual_name]
     explained = np.zeros_like(residual)
     for cause in causes:
         kind = effect(str(cause["effect"]))
@@ -73,22 +73,22 @@ def evidence(
         values = np.array(
             [[float(told[p.name]["value"]) if p.name in told else p.null for p in kind.parameters]]
         )
-        trace = kind.trace(signals, str(cause["location"]), values).get(balance)
+        trace = kind.trace(signals, str(cause["location"]), values).get(residual_name)
         if trace is not None:
             explained = explained + trace[0]
     known = np.isfinite(residual) & np.isfinite(explained) & signals.valid[:, None]
-    if balance == "motion":
+    if residual_name == "motion":
         known = moving_ticks(signals, known, sticking(signals))
     before = _smooth(np.where(known, residual, 0.0), signals.step)
     made = _smooth(np.where(known, explained, 0.0), signals.step)
     subject = signals.subject
     speed = np.full(residual.shape, np.nan)
     rows: tuple[str, ...]
-    if balance == "motion":
+    if residual_name == "motion":
         rows, speed = subject.joints, signals.velocity
-    elif balance in OF_MOTORS:
+    elif residual_name in OF_MOTORS:
         rows, speed = subject.motors, signals.velocity @ subject.joint_from_motor
-    elif balance == "base":
+    elif residual_name == "base":
         rows = tuple(
             f"base {part}"
             for part in ("force x", "force y", "force z", "torque x", "torque y", "torque z")
@@ -97,7 +97,13 @@ def evidence(
         rows = tuple(f"{foot} {axis}" for foot in subject.feet for axis in "xyz")
     empty = np.where(known, 0.0, np.nan)
     return Evidence(
-        signals.log.name, balance, tuple(rows), signals.time, before + empty, made + empty, speed
+        signals.log.name,
+        residual_name,
+        tuple(rows),
+        signals.time,
+        before + empty,
+        made + empty,
+        speed,
     )
 
 

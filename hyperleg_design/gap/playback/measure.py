@@ -20,7 +20,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.playback.replay import best_input, replay, short_windows
 from hyperleg_design.gap.signals.channels import applied
-from hyperleg_design.gap.signals.signals import BALANCES, Signals
+from hyperleg_design.gap.signals.signals import RESIDUALS, Signals
 
 BAND = 10.0
 """[Hz] Up to which torque residuals count (assumed; joints of legs and arms move below it)."""
@@ -36,10 +36,10 @@ SAME_TARGET = 0.002
 WINDOW = 0.25
 """Of the predictions that give gaps of position and velocity [s]."""
 TORQUE_SIGNALS = {
-    balance: ("torque" if balance == "motion" else balance, *told)
-    for balance, told in BALANCES.items()
+    residual_name: ("torque" if residual_name == "motion" else residual_name, *told)
+    for residual_name, told in RESIDUALS.items()
 }
-"""Name, kind of place and unit of what each balance shows."""
+"""Name, kind of place and unit of what each residual shows."""
 
 
 @dataclass(frozen=True)
@@ -165,11 +165,11 @@ def _sheets(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, st
     subject = signals.subject
     made: list[_Sheet] = []
     valid = signals.valid[:, None]
-    for balance, (signal, kind, unit) in TORQUE_SIGNALS.items():
-        if balance not in signals.residual:
+    for residual_name, (signal, kind, unit) in TORQUE_SIGNALS.items():
+        if residual_name not in signals.residual:
             continue
-        residual = np.where(valid, signals.residual[balance], np.nan)
-        if balance == "motion":
+        residual = np.where(valid, signals.residual[residual_name], np.nan)
+        if residual_name == "motion":
             believed = applied(subject.joint_from_motor, signals.believed)
             made.append(
                 _sheet(
@@ -187,13 +187,13 @@ def _sheets(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, st
             if not subject.one_to_one:
                 at_motors = applied(subject.motor_from_joint, residual)
                 made.append(_motor_sheet(signals, signal, unit, at_motors, signals.believed))
-        elif balance == "drive":
+        elif residual_name == "drive":
             assert signals.measured is not None
             made.append(_motor_sheet(signals, signal, unit, residual, signals.measured))
-        elif balance == "control":
+        elif residual_name == "control":
             assert signals.command is not None
             made.append(_motor_sheet(signals, signal, unit, residual, signals.command))
-        elif balance == "transmission":
+        elif residual_name == "transmission":
             made.append(
                 _motor_sheet(
                     signals, signal, unit, residual, signals.velocity @ subject.joint_from_motor
@@ -208,7 +208,7 @@ def _sheets(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, st
                 "moment_y",
                 "moment_z",
             )
-            if balance == "ground":
+            if residual_name == "ground":
                 names = tuple(f"{foot}_{axis}" for foot in subject.feet for axis in "xyz")
             made.append(_sheet(signals, signal, kind, unit, names, residual, None, None, None))
     if predict and signals.valid.any():

@@ -25,7 +25,7 @@ from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.playback.replay import Plant
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-from hyperleg_design.gap.signals.signals import BALANCES
+from hyperleg_design.gap.signals.signals import RESIDUALS
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Effect
@@ -70,7 +70,7 @@ class Shown:
     """Of the parameters."""
     time: np.ndarray
     """`(t,)` [s]."""
-    balance: str
+    residual_name: str
     """In which its trace is largest; empty where it leaves none."""
     row: str
     """Joint, motor, axis of the base or foot with the largest trace."""
@@ -154,7 +154,7 @@ def show(
     before, _ = _simulated(subject, target, time, ())
     after, log = _simulated(subject, target, time, (one.alteration(location, values, subject),))
     signals = condition(_told(one, log, values), subject)
-    balance, row, unit, trace, residual = _largest(
+    residual_name, row, unit, trace, residual = _largest(
         one.trace(signals, location, values[None]), signals
     )
     return Shown(
@@ -163,7 +163,7 @@ def show(
         location=location,
         values=values,
         time=signals.time,
-        balance=balance,
+        residual_name=residual_name,
         row=row,
         unit=unit,
         trace=trace,
@@ -455,8 +455,8 @@ def _told(one: Effect, log: Log, values: np.ndarray) -> Log:
 def _largest(
     traces: dict[str, np.ndarray], signals: Signals
 ) -> tuple[str, str, str, np.ndarray, np.ndarray]:
-    """The first of the balances in which there is a trace, its row with the largest, its unit, that
-    trace, and the residual.
+    """The first of the residuals in which there is a trace, its row with the largest, its unit,
+    that trace, and the residual.
     """
     subject = signals.subject
     wrench = ("force x", "force y", "force z", "moment x", "moment y", "moment z")
@@ -467,19 +467,23 @@ def _largest(
         "base": wrench,
     }
     names["ground"] = tuple(f"{foot} {axis}" for foot in subject.feet for axis in "xyz")
-    for balance in ("motion", "drive", "ground", "base", "transmission"):
-        if balance not in traces:
+    for residual_name in ("motion", "drive", "ground", "base", "transmission"):
+        if residual_name not in traces:
             continue
-        rows = np.where(signals.valid[:, None], traces[balance][0], np.nan)
-        if balance == "motion":
+        rows = np.where(signals.valid[:, None], traces[residual_name][0], np.nan)
+        if residual_name == "motion":
             rows = np.where(np.isfinite(signals.residual["motion"]), rows, np.nan)
         size = np.sqrt(np.where(np.isfinite(rows), rows, 0.0) ** 2).mean(0)
         place = int(np.argmax(size))
         if size[place] > NOTHING:
-            unit = ("N" if place < 3 else "Nm") if balance == "base" else BALANCES[balance][1]
-            residual = np.where(
-                np.isfinite(rows[:, place]), signals.residual[balance][:, place], np.nan
+            unit = (
+                ("N" if place < 3 else "Nm")
+                if residual_name == "base"
+                else RESIDUALS[residual_name][1]
             )
-            return balance, names[balance][place], unit, rows[:, place], residual
+            residual = np.where(
+                np.isfinite(rows[:, place]), signals.residual[residual_name][:, place], np.nan
+            )
+            return residual_name, names[residual_name][place], unit, rows[:, place], residual
     unknown = np.full(len(signals.time), np.nan)
     return "", "", "Nm", unknown, unknown

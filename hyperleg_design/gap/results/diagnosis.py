@@ -112,7 +112,7 @@ class Diagnosis:
     """Smallest change of each effect's parameters that these logs would have shown, see
     `sensitivity`."""
     nuisance: tuple[Mapping[str, Any], ...] = ()
-    """Calibration errors that were fitted along, the largest first, in usual sizes."""
+    """Nuisance parameters that were fitted along, the largest first, in usual sizes."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
 
     def mapping(self) -> dict[str, Any]:

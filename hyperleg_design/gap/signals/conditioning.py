@@ -1,5 +1,5 @@
 """From a log to `Signals`: an even time base, motion smoothed without delay, torques believed, and
-the residuals of the balances.
+the residuals of the residuals.
 
 Motion comes from `smoothing` (a fixed-interval smoother whose noise the log itself tells).
 Everything else is interpolated onto the same ticks and not smoothed: whoever compares torques
@@ -26,9 +26,9 @@ from hyperleg_design.gap.signals.channels import (
     resampled,
     resampled_or_none,
 )
-from hyperleg_design.gap.signals.chatter import chatter
 from hyperleg_design.gap.signals.control import control_residual
-from hyperleg_design.gap.signals.ground import balance as ground_balance
+from hyperleg_design.gap.signals.ground import ground_residual
+from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import smooth
@@ -52,7 +52,7 @@ LONGEST_EDGE = 0.25
 
 
 def condition(log: Log, subject: Subject) -> Signals:
-    """Make a log ready for the balances.
+    """Make a log ready for the residuals.
 
     Args:
         log: with positions, and with targets, torque commands, torques or currents.
@@ -113,7 +113,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         log, subject, ticks, motion.value, base, None if own is None else own[:, :3]
     )
     needed = rigid.inverse_dynamics(subject, motion.value, motion.first, motion.second, base)
-    shaken = chatter(
+    shaken = limit_cycle(
         resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
     )
     needed = needed + friction.friction_torque(
@@ -148,7 +148,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     ) is not None:
         spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
         if np.isfinite(spin).any():
-            residual["transmission"], refused = transmission.balance(
+            residual["transmission"], refused = transmission.transmission_residual(
                 subject, spin, motion.first, step
             )
             notes += refused
@@ -184,12 +184,12 @@ def condition(log: Log, subject: Subject) -> Signals:
         touching=ground.touching,
         bandwidth=motion.crossover / (2 * np.pi),
         noise=motion.level,
-        chatter=shaken,
+        limit_cycle=shaken,
         notes=tuple(notes),
     )
-    ground_residual = ground_balance(signals)
-    if ground_residual is not None:
-        residual["ground"] = ground_residual
+    of_ground = ground_residual(signals)
+    if of_ground is not None:
+        residual["ground"] = of_ground
     return signals
 
 
@@ -241,7 +241,7 @@ def limited_torque(
 def _command(
     log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth
 ) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
-    """Motor torque that the controller asks for, position targets, the balance of the control, and
+    """Motor torque that the controller asks for, position targets, the residual of the control, and
     motors that it cannot speak of.
     """
     raw_target = log.stack("position_target", subject.joints)

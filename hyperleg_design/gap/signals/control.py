@@ -1,4 +1,4 @@
-"""Balance of the control: motor commands as logged against what the declared gains make of the
+"""Residual of the control: motor commands as logged against what the declared gains make of the
 logged targets and state.
 
 It is drawn up for controllers of the declared form alone. Others (feed-forward, integral terms,

@@ -37,7 +37,7 @@ pass."""
 WITHOUT_BANDWIDTH = 10.0
 """Cutoff where the log does not tell it [Hz]."""
 OF_BALANCE = {"base": 10.0, "ground": 20.0}
-"""Cutoff of balances whose rows are no joints [Hz]."""
+"""Cutoff of residuals whose rows are no joints [Hz]."""
 OVERLAP = 0.15
 """Half width of the transition between bands, over its frequency."""
 KNOWN = 0.7
@@ -53,9 +53,9 @@ FEWEST = 40
 
 @dataclass(frozen=True)
 class Row:
-    """One row of a balance."""
+    """One row of a residual."""
 
-    balance: str
+    residual_name: str
     column: int
     name: str
     """Joint, motor, foot and axis, or axis of the base."""
@@ -82,7 +82,7 @@ class Band:
 
 
 @dataclass(frozen=True, eq=False)
-class Sieve:
+class FilteredLog:
     """What cuts the rows of one log into samples: bands of a row one after the other, samples of a
     band in order of time.
     """
@@ -143,7 +143,7 @@ class Sieve:
         return tuple(np.concatenate(column) for column in zip(*parts, strict=True))  # type: ignore[return-value]
 
 
-def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
+def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> FilteredLog:
     """Filter of one log.
 
     Args:
@@ -154,10 +154,10 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
     from scipy.fft import next_fast_len
 
     rows, masks = [], []
-    for balance, residual in sorted(signals.residual.items()):
+    for residual_name, residual in sorted(signals.residual.items()):
         for column in range(residual.shape[1]):
             mask = signals.valid & np.isfinite(residual[:, column])
-            if balance == "motion" and resting is not None:
+            if residual_name == "motion" and resting is not None:
                 mask = moving(
                     mask,
                     resting[:, column],
@@ -168,10 +168,10 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
                 continue
             rows.append(
                 Row(
-                    balance,
+                    residual_name,
                     column,
-                    row_name(signals, balance, column),
-                    _cutoff(signals, balance, column),
+                    row_name(signals, residual_name, column),
+                    _cutoff(signals, residual_name, column),
                 )
             )
             masks.append(mask)
@@ -179,7 +179,7 @@ def sieve(signals: Signals, resting: np.ndarray | None = None) -> Sieve:
     bands = tuple(
         _bands(row, mask, length, signals.step) for row, mask in zip(rows, masks, strict=True)
     )
-    return Sieve(
+    return FilteredLog(
         signals, tuple(rows), np.array(masks).reshape(len(rows), len(signals.time)), bands, length
     )
 
@@ -220,27 +220,27 @@ def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np
     )
 
 
-def row_name(signals: Signals, balance: str, column: int) -> str:
+def row_name(signals: Signals, residual_name: str, column: int) -> str:
     """Joint, motor, foot and axis, or axis of the base."""
     subject = signals.subject
-    if balance == "motion":
+    if residual_name == "motion":
         return subject.joints[column]
-    if balance == "base":
+    if residual_name == "base":
         return ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")[column]
-    if balance == "ground":
+    if residual_name == "ground":
         return f"{subject.feet[column // 3]}_{'xyz'[column % 3]}"
     return subject.motors[column]
 
 
-def _cutoff(signals: Signals, balance: str, column: int) -> float:
+def _cutoff(signals: Signals, residual_name: str, column: int) -> float:
     most = OF_RATE / signals.step
-    if balance in OF_BALANCE:
-        return min(OF_BALANCE[balance], most)
-    if balance not in ("motion", "transmission"):
+    if residual_name in OF_BALANCE:
+        return min(OF_BALANCE[residual_name], most)
+    if residual_name not in ("motion", "transmission"):
         return min(HIGHEST, most)
     joints = (
         [column]
-        if balance == "motion"
+        if residual_name == "motion"
         else np.flatnonzero(signals.subject.joint_from_motor[:, column])
     )
     bandwidth = (
@@ -250,7 +250,9 @@ def _cutoff(signals: Signals, balance: str, column: int) -> float:
     )
     if not np.isfinite(bandwidth):
         return min(WITHOUT_BANDWIDTH, most)
-    return min(HIGHEST, (OF_BANDWIDTH if balance == "motion" else OF_SPEEDS) * bandwidth, most)
+    return min(
+        HIGHEST, (OF_BANDWIDTH if residual_name == "motion" else OF_SPEEDS) * bandwidth, most
+    )
 
 
 def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[Band, ...]:
@@ -288,16 +290,16 @@ def _rise(frequency: np.ndarray, edge: float) -> np.ndarray:
     return np.asarray(np.pi / 2 * np.clip((frequency / edge - 1 + OVERLAP) / (2 * OVERLAP), 0, 1))
 
 
-def traced(sieve: Sieve, traces: Mapping[str, np.ndarray]) -> dict[int, np.ndarray]:
-    """Samples of traces `(k, t, columns)` by balance: by row `(k, samples)`; rows that they leave
+def traced(filtered_log: FilteredLog, traces: Mapping[str, np.ndarray]) -> dict[int, np.ndarray]:
+    """Samples of traces `(k, t, columns)` by residual: by row `(k, samples)`; rows that they leave
     alone are missing.
     """
     found = {}
-    for place, row in enumerate(sieve.rows):
-        if row.balance in traces:
-            values = traces[row.balance][..., row.column]
+    for place, row in enumerate(filtered_log.rows):
+        if row.residual_name in traces:
+            values = traces[row.residual_name][..., row.column]
             if np.any(np.nan_to_num(values) != 0):
-                found[place] = sieve.sample(place, values)
+                found[place] = filtered_log.sample(place, values)
     return found
 
 

@@ -1,4 +1,4 @@
-"""Balance of the ground: logged contact forces against those of the nominal ground at the logged
+"""Residual of the ground: logged contact forces against those of the nominal ground at the logged
 motion.
 
 Each foot is judged by its whole force F, world frame, and by its pads:
@@ -236,7 +236,7 @@ def footings(signals: Signals) -> tuple[Footing, ...]:
     return _FOOTINGS[signals]
 
 
-def balance(signals: Signals) -> np.ndarray | None:
+def ground_residual(signals: Signals) -> np.ndarray | None:
     """Logged less nominal force of the ground on each foot `(t, 3 f)` [N]; NaN where unknown; None
     without logged forces.
     """

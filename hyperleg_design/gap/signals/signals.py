@@ -1,4 +1,4 @@
-"""A log made ready for the balances: one even time base, smooth motion, believed torques, inverse
+"""A log made ready for the residuals: one even time base, smooth motion, believed torques, inverse
 dynamics.
 """
 
@@ -16,10 +16,10 @@ from hyperleg_design.gap.model.supply import over_nominal
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.chatter import Chatter
+    from hyperleg_design.gap.signals.limit_cycle import LimitCycle
 
 
-BALANCES = {
+RESIDUALS = {
     "motion": ("joint", "Nm"),
     "drive": ("motor", "Nm"),
     "control": ("motor", "Nm"),
@@ -28,8 +28,10 @@ BALANCES = {
     "ground": ("foot", "N"),
 }
 """Kind of place and unit of the rows of each of `Signals.residual`."""
-OF_MOTORS = tuple(balance for balance, (kind, _) in BALANCES.items() if kind == "motor")
-"""Balances with a row for each motor."""
+OF_MOTORS = tuple(
+    residual_name for residual_name, (kind, _) in RESIDUALS.items() if kind == "motor"
+)
+"""Residuals with a row for each motor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,7 @@ class Signals:
     """One log on an even time base, `t` ticks, `n` joints, `m` motors, `f` feet; motion smoothed
     without delay.
 
-    Balances, each what the log shows minus what the nominal model explains:
+    Residuals, each what the log shows minus what the nominal model explains:
         motion: believed joint torque minus the torque that the logged motion needs `(t, n)` [Nm];
         drive: measured motor torque minus the torque that the controller asks for, within nominal
             limits `(t, m)` [Nm], where both are known;
@@ -73,7 +75,7 @@ class Signals:
     """Motor torque that the log measured, or current times the declared torque constant `(t, m)`
     [Nm]."""
     believed: np.ndarray
-    """Motor torque that the balance of motion trusts: measured, else command within the nominal
+    """Motor torque that the residual of motion trusts: measured, else command within the nominal
     limits `(t, m)` [Nm]."""
     rigid: np.ndarray
     """Joint torque that the logged motion needs: inverse dynamics, rotors, nominal friction,
@@ -87,7 +89,7 @@ class Signals:
     valid: np.ndarray
     """Ticks fit for use `(t,)`: no gap in the log near, not at its ends."""
     residual: dict[str, np.ndarray]
-    """By balance that this log allows."""
+    """By residual that this log allows."""
     pad_force: np.ndarray | None = None
     """Force of the ground on each of `subject.pads`, world frame `(t, P, 3)` [N], where the place
     of the force is known."""
@@ -99,7 +101,7 @@ class Signals:
     noise: np.ndarray | None = None
     """Standard deviation of the noise of a position sample, as the log itself tells `(n,)`
     [rad]."""
-    chatter: Chatter | None = None
+    limit_cycle: LimitCycle | None = None
     """Of joints that swing to and fro above all that was commanded; None where none does."""
     notes: tuple[str, ...] = ()
     """What this log lacked and what was assumed in its place."""

@@ -1,16 +1,16 @@
 """Which way joints slide.
 
-Near rest the sign of a velocity is noise, and friction at rest is whatever balances the torques, up
-to its size. So the way of sliding is taken from the position: it turns over while the joint moves
-`2 z`, as bristles bend (Prandtl's stop operator, the elastic-plastic limit of the Dahl and LuGre
-models),
+Near rest the sign of a velocity is noise, and friction at rest is whatever residuals the torques,
+up to its size. So the way of sliding is taken from the position: it turns over while the joint
+moves `2 z`, as bristles bend (Prandtl's stop operator, the elastic-plastic limit of the Dahl and
+LuGre models),
 
     s_i = clip(s_(i-1) + (q_i - q_(i-1)) / z, -1, 1),    way = clip(2 s, -1, 1),
 
 where twice s, as noise alone never lets it stay at its ends. A joint that comes to rest keeps it:
 right on ramps slower than the noise of the velocity, and in holds that a damped controller creeps
 into; where a joint sticks while its controller pulls it the other way, nothing but the torque
-itself tells the friction: such rest is in no balance, `holding` speaks of it.
+itself tells the friction: such rest is in no residual, `holding` speaks of it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from hyperleg_design.gap.model.friction import sliding_share
-from hyperleg_design.gap.signals.chatter import PRESLIDING
+from hyperleg_design.gap.signals.limit_cycle import PRESLIDING
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
@@ -54,10 +54,10 @@ def sliding(signals: Signals) -> np.ndarray:
             np.minimum(state, 1.0, out=state)
             np.maximum(state, -1.0, out=state)
         np.clip(2 * out, -1.0, 1.0, out=out)
-        if signals.chatter is not None:
+        if signals.limit_cycle is not None:
             swings = shaken(signals)
             out[swings] = sliding_share(
-                signals.velocity[swings], WIDTH, signals.chatter.speed[swings]
+                signals.velocity[swings], WIDTH, signals.limit_cycle.speed[swings]
             )
         out.setflags(write=False)
         _SLIDING[signals] = out
@@ -70,16 +70,16 @@ def presliding(signals: Signals) -> np.ndarray:
     if signals.noise is None or signals.bandwidth is None:
         return np.full(count, PRESLIDING)
     passed = np.sqrt(np.clip(2 * np.nan_to_num(signals.bandwidth) * signals.step, 0.0, 1.0))
-    plain = 1.0 if signals.chatter is None else np.sqrt(1 - signals.chatter.share)
+    plain = 1.0 if signals.limit_cycle is None else np.sqrt(1 - signals.limit_cycle.share)
     return np.asarray(
         np.maximum(PRESLIDING, NOISES * np.nan_to_num(signals.noise) * plain * passed)
     )
 
 
 def shaken(signals: Signals) -> np.ndarray:
-    """Where chatter keeps a joint from sticking `(t, n)` of bool."""
+    """Where a limit cycle keeps a joint from sticking `(t, n)` of bool."""
     return (
         np.zeros(signals.position.shape, bool)
-        if signals.chatter is None
-        else np.asarray(signals.chatter.speed > 0)
+        if signals.limit_cycle is None
+        else np.asarray(signals.limit_cycle.speed > 0)
     )

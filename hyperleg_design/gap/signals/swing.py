@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
 
 HALF_WIDTH = 6 / 256
-"""Of the chatter's line, over the log's rate; its frequency wanders with posture and load."""
+"""Of the limit cycle's line, over the log's rate; its frequency wanders with posture and load."""
 FOLDS, UNLIKE = 3, 1.35
 """Multiples of a log's rate that frequencies are looked for beside; frequency by speed over swing,
 over the true one or its inverse, at most: drives filter the speeds that they tell."""
@@ -48,11 +48,11 @@ def swing(signals: Signals) -> Swing | None:
     """The line of the joint that chatters most, in all joints; None where none does, or speeds and
     angles do not go together.
     """
-    if signals.chatter is None or not signals.chatter.joints.any():
+    if signals.limit_cycle is None or not signals.limit_cycle.joints.any():
         return None
-    shaken = np.flatnonzero(signals.chatter.joints)
-    strongest = int(shaken[np.argmax(np.mean(signals.chatter.speed[:, shaken] ** 2, 0))])
-    seen = float(signals.chatter.frequency[strongest])
+    shaken = np.flatnonzero(signals.limit_cycle.joints)
+    strongest = int(shaken[np.argmax(np.mean(signals.limit_cycle.speed[:, shaken] ** 2, 0))])
+    seen = float(signals.limit_cycle.frequency[strongest])
     apart, faster = (
         _apart(signals, "position", signals.position),
         _apart(signals, "velocity", signals.velocity),

@@ -24,7 +24,7 @@ SPAN = 0.5
 """Time over which a motor turns as far as its joints, however its belt swings between [s]."""
 
 
-def balance(
+def transmission_residual(
     subject: Subject, spin: np.ndarray, velocity: np.ndarray, step: float
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Logged speeds of the motors less those of their joints' motion.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _INK, _PALE, _MEASURED, _EXPLAINED, _LEFT = "#1d2129", "#c9ced6", "#2f6db3", "#c8602a", "#6b7280"
 AXIS = {"transmission": "speed [rad/s]", "base": "force, moment [N, Nm]", "ground": "force [N]"}
-"""Of balances that are none of torques."""
+"""Of residuals that are none of torques."""
 _LABELS = 5
 """Joints named in the drawing."""
 _SPAN = 6.0
@@ -144,7 +144,7 @@ def trace_figure(shown: Evidence, title: str = "") -> Figure:
         left.plot(time, explained, color=_EXPLAINED, label="causes predict")
         left.plot(time, after, color=_LEFT, linewidth=1, label="left")
         left.set_xlabel("time [s]")
-        left.set_ylabel(AXIS.get(shown.balance, "torque [Nm]"))
+        left.set_ylabel(AXIS.get(shown.residual_name, "torque [Nm]"))
         left.set_title(title or f"{shown.rows[row]}, {shown.log}")
         left.legend(ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.16))
         if thin.size:
@@ -307,7 +307,7 @@ def rows_figure(shown: Sequence[Evidence]) -> Figure:
         panel.bar(place - 0.2, before, 0.38, color=_MEASURED, label="before")
         panel.bar(place + 0.2, after, 0.38, color=_EXPLAINED, label="after")
         panel.set_xticks(place, names, rotation=40, ha="right")
-        panel.set_ylabel("RMS " + AXIS.get(shown[0].balance, "torque [Nm]"))
+        panel.set_ylabel("RMS " + AXIS.get(shown[0].residual_name, "torque [Nm]"))
         panel.legend()
         return figure
 

@@ -83,7 +83,7 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     ]
     apart = shape in (RINGING, UNSTABLE) or bool(
         of_feet
-    )  # what rings is in no balance, and what feet tell in none in which it is the largest
+    )  # what rings is in no residual, and what feet tell in none in which it is the largest
     shown = (
         []
         if apart and not others
@@ -203,15 +203,15 @@ def _parameter_texts(effect: str, parameters: Mapping[str, Mapping[str, Any]]) -
 
 
 def _balance(signals: Signals, causes: Sequence[Mapping[str, Any]]) -> str:
-    """The balance in which the first cause shows; motion without one."""
+    """The residual in which the first cause shows; motion without one."""
     from hyperleg_design.gap.effects import effect
 
     for cause in causes[:1]:
         kind = effect(str(cause["effect"]))
         traces = kind.trace(signals, str(cause["location"]), kind.nulls[None])
-        for balance in ("motion", *sorted(traces)):
-            if balance in traces and balance in signals.residual:
-                return balance
+        for residual_name in ("motion", *sorted(traces)):
+            if residual_name in traces and residual_name in signals.residual:
+                return residual_name
     return "motion"
 
 
@@ -248,7 +248,7 @@ def _where(
                 wide=False,
             )
         ]
-        alike = [one for one in shown if one.balance == shown[0].balance]
+        alike = [one for one in shown if one.residual_name == shown[0].residual_name]
         if alike and len(alike[0].rows) > 1:
             save(gap_figures.rows_figure(alike), folder / FIGURES / "rows.png")
             pictures.append(

@@ -64,7 +64,7 @@ def show_summary(shown: Shown) -> dict[str, Any]:
             p.name: {"value": float(v), "unit": p.unit}
             for p, v in zip(shown.effect.parameters, shown.values, strict=True)
         },
-        "balance": shown.balance,
+        "balance": shown.residual_name,
         "row": shown.row,
         "trace_rms": _rms(shown.trace[known]),
         "residual_rms": _rms(shown.residual[known]),
@@ -145,7 +145,7 @@ def _caption(shown: Shown) -> str:
 
 def _draw_time(axes: Any, shown: Shown) -> None:
     axes.set_xlabel("time [s]")
-    if not shown.balance:
+    if not shown.residual_name:
         axes.set_axis_off()
         axes.text(0.5, 0.5, "leaves no trace on this motion", ha="center", transform=axes.transAxes)
         return
@@ -172,7 +172,7 @@ def _draw_time(axes: Any, shown: Shown) -> None:
     room = 0.08 * max(high - low, 1e-3 * size, 1e-12)
     axes.set_ylim(low - room, high + 4.0 * room)
     axes.set_ylabel(f"{shown.row} [{shown.unit}]")
-    axes.set_title(PLACES[shown.balance], loc="left")
+    axes.set_title(PLACES[shown.residual_name], loc="left")
     axes.legend(loc="upper right", ncols=2, fontsize=9)
 
 

@@ -48,7 +48,7 @@ class DriveSet:
     high: np.ndarray
     """`(P,)` each."""
     spread: np.ndarray
-    """Usual calibration error of each, from `nuisance` `(P,)`."""
+    """Usual nuisance parameter of each, from `nuisance` `(P,)`."""
 
     @property
     def count(self) -> int:
@@ -72,7 +72,7 @@ class DriveSet:
 
     def cause(self, values: np.ndarray) -> tuple[str, str, float]:
         """What such a fit would name: effect, location and size of the largest change over its
-        usual calibration error.
+        usual nuisance parameter.
         """
         size = np.abs(values) / self.spread
         at = int(np.argmax(size))
@@ -130,7 +130,7 @@ def drive_set(subject: Subject, step: float) -> DriveSet:
 def _spreads(subject: Subject, step: float) -> np.ndarray:
     known: Mapping[tuple[str, str], float] = {
         (u.effect, u.location): u.spread
-        for u in nuisance.usual_errors(subject, step)
+        for u in nuisance.nuisance_parameters(subject, step)
         if u.parameter == 0
     }
     inertia = joint_inertia(subject)

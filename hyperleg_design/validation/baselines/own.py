@@ -1,7 +1,7 @@
 """The diagnosis's own way to fit parameters, on the very parameters of `drive_set`: Gauss-Newton
 whose slopes are traces.
 
-Traces say what torque each parameter leaves in the balance of motion. What a replay of the whole
+Traces say what torque each parameter leaves in the residual of motion. What a replay of the whole
 log would make of such a torque r is, to first order, the response e of the closed loop along the
 logged motion,
 
@@ -47,7 +47,7 @@ STEPS, ENOUGH = 6, 1e-3
 """Steps with replays, and the least share of the squared error that a step must take off for
 another one."""
 WIDE = 50.0
-"""Standard deviation of the parameters over their usual calibration error: a prior for those that
+"""Standard deviation of the parameters over their usual nuisance parameter: a prior for those that
 the logs do not show."""
 CATALOGUE = {
     "damping": "viscous_friction",
@@ -242,7 +242,7 @@ def _known(one: Signals) -> np.ndarray:
 def _first_order(
     one: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Slope of the predicted position by each parameter, in usual calibration errors `(N, P)`, and
+    """Slope of the predicted position by each parameter, in usual nuisance parameters `(N, P)`, and
     the error left `(N,)` [rad].
     """
     columns, rest = _columns(one, drives, values)
@@ -290,7 +290,7 @@ def residual_of(one: Signals) -> np.ndarray:
 
 
 def _columns(one: Signals, drives: DriveSet, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Slope of the traces by each parameter, in usual calibration errors `(t, n, P)`, and the
+    """Slope of the traces by each parameter, in usual nuisance parameters `(t, n, P)`, and the
     residual less the traces `(t, n)`.
     """
     subject = one.subject
@@ -324,7 +324,7 @@ def _late_targets(one: Signals, delay: np.ndarray) -> np.ndarray:
 def _sloped(
     one: Signals, identifier: str, location: str, value: float, spread: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Slope over one spread of an effect's trace in the balance of motion, and that trace `(t, n)`
+    """Slope over one spread of an effect's trace in the residual of motion, and that trace `(t, n)`
     each.
     """
     effect = EFFECTS[identifier]

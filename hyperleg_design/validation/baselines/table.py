@@ -4,7 +4,7 @@ would name, and its time.
 Every method fits `drive_set`'s parameters to all logs of a case but the last, which is replayed
 afterwards. The gap is the RMS of the whole-log position error there, in one simulator
 (`population`); the floor is that of reference logs where a case has some, else 0. A fixed set names
-the parameter that it changed most, over its usual calibration error, and nothing below `NAMED`.
+the parameter that it changed most, over its usual nuisance parameter, and nothing below `NAMED`.
 Cases with a floating base or without targets and gains are outside what these methods do, and are
 listed as such.
 """
@@ -41,7 +41,7 @@ METHODS = ("diagnosis", "own", "sysid", "pace")
 two."""
 FIXED = ("own", "sysid", "pace")
 NAMED = 3.0
-"""Usual calibration errors from which a fixed set names a cause."""
+"""Usual nuisance parameters from which a fixed set names a cause."""
 BUDGET = 300.0
 """Of one fit [s]."""
 

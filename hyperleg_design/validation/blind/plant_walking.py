@@ -3,7 +3,7 @@ law than the simulator's, drives of two masses.
 
 The body is MuJoCo's without friction and rotors; those, belts and drives are integrated here at
 0.25 ms and act as applied joint torques, as in `plant_rig`. Targets come from `Stand`: squats,
-sways, twists and rocking on both feet, with the ankle strategy of a balance controller that sees
+sways, twists and rocking on both feet, with the ankle strategy of a residual controller that sees
 the body's tilt. No walking policy drives it.
 """
 
@@ -27,7 +27,7 @@ ANKLE_STRATEGY = (9.0, 2.6)
 """Change of the ankles' targets over the way [rad/m] and the speed [rad s/m] of the centre of
 mass."""
 AHEAD = 0.04
-"""Where the balance controller holds the centre of mass, before the ankles [m]."""
+"""Where the residual controller holds the centre of mass, before the ankles [m]."""
 FALLEN = 0.45
 """Height of the pelvis below which a run is given up [m]."""
 

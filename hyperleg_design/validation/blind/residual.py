@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
 
 CUTOFF = 12.0
-"""Of the low-pass on both sides of the balance [Hz]."""
+"""Of the low-pass on both sides of the residual [Hz]."""
 SOFT = 0.03
 """Speed below which Coulomb friction is no sign yet [rad/s]."""
 SLOW = 0.05
@@ -78,7 +78,7 @@ def residual(log: Log, chain: Chain) -> np.ndarray:
     )
     needed += chain.coulomb * np.tanh(velocity / SOFT) + chain.viscous * velocity
     motion = smooth(believed @ chain.joint_from_motor.T - needed)
-    # A joint that sticks holds any torque up to its friction: no balance there.
+    # A joint that sticks holds any torque up to its friction: no residual there.
     slow = minimum_filter1d(np.abs(velocity), 2 * round(STICKING / step) + 1, axis=0) < SLOW
     rows = [np.where(slow & (chain.coulomb > 0), np.nan, motion)]
     if measured is not None:

@@ -306,7 +306,7 @@ def wilson(hits: int, cases: int) -> tuple[float, float]:
 
 
 def calibration_error(probability: np.ndarray, right: np.ndarray) -> float:
-    """Expected calibration error: mean distance of stated probability and share of right ones over
+    """Expected nuisance parameter: mean distance of stated probability and share of right ones over
     `BINS` bins, weighted by cases.
     """
     place = np.minimum((probability * BINS).astype(int), BINS - 1)

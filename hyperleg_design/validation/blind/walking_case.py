@@ -440,7 +440,7 @@ def _record(
 
 
 def shown(effect: str, with_effect: Sequence[Log], clean: Sequence[Log], robot: Chain) -> float:
-    """How many times over the floor an effect shows: in the balances, or, of the ground, in where
+    """How many times over the floor an effect shows: in the residuals, or, of the ground, in where
     the base stands and how pads are loaded.
     """
     if effect in ("ground_friction", "ground_compliance"):

@@ -216,9 +216,11 @@ def low_passed(values: np.ndarray, step: float, cutoff: float = 10.0) -> np.ndar
     return sosfiltfilt(butter(2, cutoff, fs=1 / step, output="sos"), values)
 
 
-def misfit(signals, trace: dict, balance: str = "motion") -> float:
+def misfit(signals, trace: dict, residual_name: str = "motion") -> float:
     """Rms of residual minus trace over that of the residual, both low-passed."""
-    found = low_passed(signals.residual[balance][:, 0], signals.step)
-    told = low_passed(trace[balance][0, :, 0], signals.step) if balance in trace else 0.0
+    found = low_passed(signals.residual[residual_name][:, 0], signals.step)
+    told = (
+        low_passed(trace[residual_name][0, :, 0], signals.step) if residual_name in trace else 0.0
+    )
     use = signals.valid
     return float(np.sqrt(np.mean((found - told)[use] ** 2) / np.mean(found[use] ** 2)))

@@ -7,11 +7,11 @@ BANDWIDTH = effect("actuator_bandwidth")
 
 
 def test_trace_is_what_a_lagging_drive_leaves(pendulum):
-    for sees, balance in ((("motor_torque",), "drive"), ((), "motion")):
+    for sees, residual_name in ((("motor_torque",), "drive"), ((), "motion")):
         signals = pendulum(Wrong(lag=0.012), sees=sees)
         trace = BANDWIDTH.trace(signals, "swing", np.array([[0.012]]))
-        assert set(trace) == {balance}
-        assert misfit(signals, trace, balance) < 0.02
+        assert set(trace) == {residual_name}
+        assert misfit(signals, trace, residual_name) < 0.02
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):

@@ -7,26 +7,26 @@ DELAY = effect("command_delay")
 
 
 def test_trace_is_what_late_commands_leave(pendulum):
-    for sees, balance in ((("motor_torque",), "drive"), ((), "motion")):
+    for sees, residual_name in ((("motor_torque",), "drive"), ((), "motion")):
         signals = pendulum(Wrong(delay=0.012), sees=sees)
         trace = DELAY.trace(signals, "robot", np.array([[0.012, 0.0]]))
-        assert set(trace) == {balance}
-        assert misfit(signals, trace, balance) < 0.02
+        assert set(trace) == {residual_name}
+        assert misfit(signals, trace, residual_name) < 0.02
 
 
 def test_trace_is_what_late_targets_leave(pendulum):
     """In the drive, in the motion where nobody measured the drive, in the control where the
     controller's own commands are logged.
     """
-    for sees, balance in (
+    for sees, residual_name in (
         (("motor_torque",), "drive"),
         ((), "motion"),
         (("motor_torque", "motor_torque_command"), "control"),
     ):
         signals = pendulum(Wrong(late_target=0.012), sees=sees)
         trace = DELAY.trace(signals, "robot", np.array([[0.012, 1.0]]))
-        assert misfit(signals, trace, balance) < 0.02
-        others = [np.abs(rows).max() for name, rows in trace.items() if name != balance]
+        assert misfit(signals, trace, residual_name) < 0.02
+        others = [np.abs(rows).max() for name, rows in trace.items() if name != residual_name]
         assert max(others, default=0.0) == 0.0
 
 

@@ -9,11 +9,11 @@ GAIN = effect("controller_gain")
 
 
 def test_trace_is_what_other_gains_leave(pendulum):
-    for sees, balance in ((("motor_torque",), "drive"), ((), "motion")):
+    for sees, residual_name in ((("motor_torque",), "drive"), ((), "motion")):
         signals = pendulum(Wrong(stiffness_scale=0.8, damping_scale=1.3), sees=sees)
         trace = GAIN.trace(signals, "swing", np.array([[0.8, 1.3]]))
-        assert set(trace) == {balance}
-        assert misfit(signals, trace, balance) < 0.01
+        assert set(trace) == {residual_name}
+        assert misfit(signals, trace, residual_name) < 0.01
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):

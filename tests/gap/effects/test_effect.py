@@ -6,7 +6,7 @@ from pendulum import Wrong, low_passed
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import EFFECTS, effect
-from hyperleg_design.gap.effects.effect import BALANCES, KINDS
+from hyperleg_design.gap.effects.effect import KINDS, RESIDUALS
 
 FIXED = [name for name, one in EFFECTS.items() if one.kind not in ("foot", "sensor")]
 EVERYTHING = ("motor_torque", "motor_torque_command", "temperature", "voltage")
@@ -80,10 +80,10 @@ def test_nulls_leave_no_trace_and_nothing_is_written_to(name, signals):
     )
     before = [array.copy() for array in arrays]
     for location in one.locations(signals.subject):
-        for balance, rows in one.trace(signals, location, np.stack([one.nulls] * 2)).items():
-            assert balance in BALANCES
+        for residual_name, rows in one.trace(signals, location, np.stack([one.nulls] * 2)).items():
+            assert residual_name in RESIDUALS
             assert rows.shape[0] == 2
-            assert rows.shape[:0:-1] == signals.residual[balance].shape[::-1]
+            assert rows.shape[:0:-1] == signals.residual[residual_name].shape[::-1]
             assert np.nanmax(np.abs(rows)) < 1e-12
     assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(arrays, before, strict=True))
 
@@ -95,8 +95,10 @@ def test_settings_side_by_side_are_as_one_by_one(name, signals):
     values = np.stack([one.example(location, signals.subject, size) for size in (0.5, 1.0, 2.0)])
     together = one.trace(signals, location, values)
     for row, setting in enumerate(values):
-        for balance, alone in one.trace(signals, location, setting[None]).items():
-            np.testing.assert_allclose(together[balance][row], alone[0], rtol=1e-9, atol=1e-12)
+        for residual_name, alone in one.trace(signals, location, setting[None]).items():
+            np.testing.assert_allclose(
+                together[residual_name][row], alone[0], rtol=1e-9, atol=1e-12
+            )
 
 
 @pytest.mark.parametrize("name", FIXED)

@@ -1,4 +1,4 @@
-"""A biased inertial sensor: what it leaves in the balances, and what the policy is told."""
+"""A biased inertial sensor: what it leaves in the residuals, and what the policy is told."""
 
 from __future__ import annotations
 

@@ -27,9 +27,9 @@ def test_a_wrong_reading_leaves_the_motion_and_shows_in_both_balances(simulated)
     assert np.abs(signals.position - healthy.position).max() < 1e-9
     np.testing.assert_allclose(0.85 * signals.measured, healthy.measured, atol=1e-9)
     trace = CONSTANT.trace(signals, "swing", np.array([[0.85, 1.0]]))
-    for balance in ("motion", "drive"):
+    for residual_name in ("motion", "drive"):
         assert (
-            misfit(signals, trace, balance) < 0.08
+            misfit(signals, trace, residual_name) < 0.08
         )  # the simulation's controller runs between the log's ticks
 
 

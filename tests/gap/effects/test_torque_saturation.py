@@ -9,11 +9,11 @@ SATURATION = effect("torque_saturation")
 
 
 def test_trace_is_what_a_limited_drive_leaves_where_torque_was_measured_and_where_not(pendulum):
-    for sees, balance in ((("motor_torque",), "drive"), ((), "motion")):
+    for sees, residual_name in ((("motor_torque",), "drive"), ((), "motion")):
         signals = pendulum(Wrong(limit=1.0), sees=sees)
         trace = SATURATION.trace(signals, "swing", np.array([[1.0]]))
-        assert set(trace) == {balance}
-        assert misfit(signals, trace, balance) < 0.01
+        assert set(trace) == {residual_name}
+        assert misfit(signals, trace, residual_name) < 0.01
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):

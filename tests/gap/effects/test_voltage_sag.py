@@ -8,12 +8,12 @@ SAG = effect("voltage_sag")
 
 
 def test_trace_is_what_a_falling_voltage_leaves(pendulum):
-    for sees, balance in ((("motor_torque", "voltage"), "drive"), (("voltage",), "motion")):
+    for sees, residual_name in ((("motor_torque", "voltage"), "drive"), (("voltage",), "motion")):
         signals = pendulum(Wrong(follow=1.0), sees=sees)
         trace = SAG.trace(signals, "battery", np.array([[0.0, 1.0, 10.0]]))
-        assert set(trace) == {balance}
+        assert set(trace) == {residual_name}
         # what the battery lost before the recording nobody can tell
-        assert misfit(signals, trace, balance) < 0.1
+        assert misfit(signals, trace, residual_name) < 0.1
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):

@@ -156,7 +156,7 @@ def test_an_error_of_a_links_mass_is_judged_beside_a_load_on_it_however_few_are(
 def supplied(voltage, nominal):
     subject = SimpleNamespace(voltage=nominal)
     return SimpleNamespace(
-        sieves=[
+        filtered_logs=[
             SimpleNamespace(signals=SimpleNamespace(voltage=v, subject=subject)) for v in voltage
         ]
     )

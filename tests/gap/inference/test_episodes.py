@@ -31,7 +31,7 @@ def drives(wild):
     """
     row = np.repeat(np.arange(3), TICKS)
     samples = SimpleNamespace(
-        rows=[SimpleNamespace(balance="drive")] * 3,
+        rows=[SimpleNamespace(residual_name="drive")] * 3,
         share=np.ones(3 * TICKS),
         log=np.zeros(1, int),
         part=np.zeros(3 * TICKS, int),
@@ -63,7 +63,9 @@ def test_drives_that_jump_in_turn_are_no_lost_commands():
 
 def test_one_drive_is_too_few(robot_files):
     samples, left = drives(np.ones((3, TICKS), bool))
-    samples.rows = [SimpleNamespace(balance="motion")] * 2 + [SimpleNamespace(balance="drive")]
+    samples.rows = [SimpleNamespace(residual_name="motion")] * 2 + [
+        SimpleNamespace(residual_name="drive")
+    ]
     assert together(samples, left) == 0.0
 
 
@@ -71,7 +73,7 @@ def test_joints_tell_where_nobody_measured_the_drives():
     wild = np.zeros((3, TICKS), bool)
     wild[:2] = (np.arange(TICKS) * STEP) % 1.0 < 0.1
     samples, left = drives(wild)
-    samples.rows = [SimpleNamespace(balance="motion")] * 3
+    samples.rows = [SimpleNamespace(residual_name="motion")] * 3
     assert together(samples, left) == 0.0
     assert 0.08 <= together(samples, left, "motion") <= 0.12
 

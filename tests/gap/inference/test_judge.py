@@ -33,7 +33,7 @@ def right(judge, knee_friction):
 @pytest.fixture(scope="module")
 def weak_motor(judge):
     samples = judge.base.samples
-    motor = samples.sieves[0].signals.subject.motors[0]
+    motor = samples.filtered_logs[0].signals.subject.motors[0]
     return judge.model(
         [linearise(samples, EFFECTS["torque_constant"], motor, EFFECTS["torque_constant"].nulls)]
     )
@@ -92,7 +92,7 @@ def test_odds_count_what_is_fitted_and_not_what_is_chosen(right, weak_motor):
 
 def test_a_choice_is_told_as_it_was_made(judge, weak_motor):
     samples = judge.base.samples
-    effect, motor = EFFECTS["torque_constant"], samples.sieves[0].signals.subject.motors[0]
+    effect, motor = EFFECTS["torque_constant"], samples.filtered_logs[0].signals.subject.motors[0]
     read = judge.model([linearise(samples, effect, motor, np.array([1.0, 1.0]))])
     assert read.values(0)[1] == 1.0
     assert weak_motor.values(0)[1] == 0.0
@@ -101,14 +101,16 @@ def test_a_choice_is_told_as_it_was_made(judge, weak_motor):
 def test_rows_that_are_known_for_a_moment_do_not_count(judge, right, viscous_ready):
     samples = viscous_ready.base.samples
     assert judge.present.all()
-    knee = next(i for i, r in enumerate(samples.rows) if r.name == "knee" and r.balance == "motion")
-    sieves = []
-    for sieve in samples.sieves:
-        mask = sieve.mask.copy()
+    knee = next(
+        i for i, r in enumerate(samples.rows) if r.name == "knee" and r.residual_name == "motion"
+    )
+    filtered_logs = []
+    for filtered_log in samples.filtered_logs:
+        mask = filtered_log.mask.copy()
         mask[knee, 20:] = False
-        sieves.append(replace(sieve, mask=mask))
+        filtered_logs.append(replace(filtered_log, mask=mask))
     short = Judge(
-        replace(viscous_ready.base, samples=replace(samples, sieves=tuple(sieves))),
+        replace(viscous_ready.base, samples=replace(samples, filtered_logs=tuple(filtered_logs))),
         load_thresholds(),
         1,
     )

@@ -47,7 +47,8 @@ def test_a_limit_that_the_healthy_robot_reaches_too_is_no_cause(robot_files):
     assert any("torque_saturation" in line for line in beside.learned)
     rules = load_thresholds()
     wanted = places(
-        alone.base.samples.sieves[0].signals.subject, ("torque_saturation", "torque_constant")
+        alone.base.samples.filtered_logs[0].signals.subject,
+        ("torque_saturation", "torque_constant"),
     )
     assert decide(alone.base, rules, wanted)[1].model.names[0][0] == "torque_saturation"
     assert decide(beside.base, rules, wanted)[1].model.names == ()

@@ -47,7 +47,7 @@ def test_a_weak_battery_shows_more_often_than_limits_of_healthy_drives_or_by_its
     share, effect, line, episode, unseen, seldom
 ):
     samples = in_episodes(share)
-    samples.sieves = [
+    samples.filtered_logs = [
         SimpleNamespace(
             signals=SimpleNamespace(subject=SimpleNamespace(stall_torque=np.array([line])))
         )
@@ -91,7 +91,9 @@ def test_evidence_counts_over_the_floor_and_a_doubtful_cause_needs_more(
     gain, over, left, floating, doubtful, unsettling, told, effect, worth
 ):
     subject = SimpleNamespace(floating=floating)
-    samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=subject))])
+    samples = SimpleNamespace(
+        filtered_logs=[SimpleNamespace(signals=SimpleNamespace(subject=subject))]
+    )
     judge = SimpleNamespace(
         base=SimpleNamespace(samples=samples, prior=SimpleNamespace(told=told)),
         thresholds=load_thresholds(),
@@ -149,8 +151,8 @@ def rows_of(shown, bare, left, nothing, effect="coulomb_friction"):
     """A judge and a model of one cause, by what there is in two rows and their episodes."""
     samples = SimpleNamespace(
         rows=(
-            SimpleNamespace(name="hip", balance="motion"),
-            SimpleNamespace(name="knee", balance="motion"),
+            SimpleNamespace(name="hip", residual_name="motion"),
+            SimpleNamespace(name="knee", residual_name="motion"),
         )
     )
     held = {
@@ -210,7 +212,7 @@ def test_a_cause_on_a_walk_must_be_nearly_as_large_as_the_floor():
     rules = load_thresholds()
     for floating, least in ((False, rules.visible), (True, rules.visible_afoot)):
         samples = SimpleNamespace(
-            sieves=[
+            filtered_logs=[
                 SimpleNamespace(signals=SimpleNamespace(subject=SimpleNamespace(floating=floating)))
             ]
         )

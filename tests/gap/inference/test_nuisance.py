@@ -20,14 +20,14 @@ from hyperleg_design.gap.inference.nuisance import (
     WIDE,
     columns,
     for_life,
+    nuisance_parameters,
     spreads,
     stop,
     traces,
-    usual_errors,
 )
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.conditioning import condition
-from hyperleg_design.gap.signals.filtering import sieve
+from hyperleg_design.gap.signals.filtering import filtered_log
 from hyperleg_design.gap.signals.loading import load_subject
 
 
@@ -38,7 +38,7 @@ def signals(robot_files):
 
 @pytest.fixture(scope="module")
 def errors(signals):
-    return usual_errors(signals.subject, signals.step)
+    return nuisance_parameters(signals.subject, signals.step)
 
 
 def test_every_error_belongs_to_the_catalogue_and_to_a_place_of_the_robot(signals, errors):
@@ -74,8 +74,8 @@ def test_friction_of_which_the_model_tells_nothing_is_wide_and_turns_over_once_i
         coulomb=np.where(np.arange(len(subject.joints)) == subject.joints.index("knee"), 0.3, 0.0),
     )
     alone, calibrated = (
-        usual_errors(bare, signals.step),
-        usual_errors(bare, signals.step, calibrated=True),
+        nuisance_parameters(bare, signals.step),
+        nuisance_parameters(bare, signals.step, calibrated=True),
     )
     more = [e for e in calibrated if e not in alone]
     expected = {
@@ -134,7 +134,7 @@ def test_traces_are_those_of_the_effects(signals, errors):
     found = traces(signals, errors)[place]["motion"]
     assert np.allclose(found[:, 1], errors[place].spread * signals.velocity[:, 1])
     assert not found[:, 0].any()
-    sampled = columns(sieve(signals), errors)
+    sampled = columns(filtered_log(signals), errors)
     assert sampled[1][place].any()
     assert not sampled[0][place].any()
 
@@ -162,7 +162,7 @@ def geared(robot_files):
 
 def test_gains_take_a_share_of_what_motion_needs_where_nobody_measured_torques(geared):
     signals = diagnosed.conditioned(geared, targets_alone(1))[0]
-    errors = usual_errors(signals.subject, signals.step)
+    errors = nuisance_parameters(signals.subject, signals.step)
     place = next(
         i
         for i, e in enumerate(errors)
@@ -182,11 +182,11 @@ def test_speeds_that_controllers_know_late_show_where_their_damping_asks_for_tor
     late = 0.005
 
     def found(signals):
-        errors = usual_errors(signals.subject, signals.step)
+        errors = nuisance_parameters(signals.subject, signals.step)
         place = next(i for i, e in enumerate(errors) if e.effect == FILTERED)
         return {
-            balance: rows * late / errors[place].spread
-            for balance, rows in traces(signals, errors)[place].items()
+            residual_name: rows * late / errors[place].spread
+            for residual_name, rows in traces(signals, errors)[place].items()
         }
 
     unlogged = found(signals)
@@ -235,7 +235,7 @@ def test_a_joint_without_a_drive_has_no_belt(tmp_path):
     assert signals.subject.passive.tolist() == [False, True]
     belts = [
         one.location
-        for one in usual_errors(signals.subject, signals.step)
+        for one in nuisance_parameters(signals.subject, signals.step)
         if one.effect == "stiff_belt"
     ]
     assert belts == ["hip"]
@@ -253,12 +253,12 @@ def test_forces_that_are_told_too_large_show_as_said(biped_runs):
     )
     place = next(
         e
-        for e in usual_errors(subject, right.step)
+        for e in nuisance_parameters(subject, right.step)
         if (e.effect, e.location) == (FORCES_SCALED, "left_foot")
     )
     (found,) = traces(right, [place])
-    for balance, trace in found.items():
-        moved = (wrong.residual[balance] - right.residual[balance])[right.valid]
+    for residual_name, trace in found.items():
+        moved = (wrong.residual[residual_name] - right.residual[residual_name])[right.valid]
         expected = trace[right.valid] * share / place.spread
         np.testing.assert_allclose(
             np.abs(moved), np.abs(expected), atol=0.02 * np.abs(expected).max()

@@ -35,7 +35,9 @@ def model_of(effect, values, deviation):
 
 
 def judge(interval=1.0):
-    samples = SimpleNamespace(sieves=[SimpleNamespace(signals=SimpleNamespace(subject=SUBJECT))])
+    samples = SimpleNamespace(
+        filtered_logs=[SimpleNamespace(signals=SimpleNamespace(subject=SUBJECT))]
+    )
     return SimpleNamespace(
         thresholds=SimpleNamespace(interval=interval), base=SimpleNamespace(samples=samples)
     )

@@ -6,7 +6,7 @@ import robots
 from hyperleg_design.gap.inference import preparation
 from hyperleg_design.gap.inference.base import Prior
 from hyperleg_design.gap.inference.fit import Design
-from hyperleg_design.gap.inference.nuisance import TURNOVER, Usual
+from hyperleg_design.gap.inference.nuisance import TURNOVER, NuisanceParameter
 from hyperleg_design.gap.inference.preparation import MOST_SESSIONS, sessions_of
 from hyperleg_design.gap.inference.thresholds import load_thresholds
 
@@ -46,8 +46,8 @@ def test_what_reference_logs_know_is_not_found_again(robot_files):
 def test_what_the_accelerometer_feels_too_much_is_known_along_the_vertical_alone(monkeypatch):
     spread = 0.05
     errors = [
-        Usual("link_mass", "pelvis", 0, 0.4),
-        *(Usual("imu_bias", "imu", i, spread) for i in (3, 4, 5)),
+        NuisanceParameter("link_mass", "pelvis", 0, 0.4),
+        *(NuisanceParameter("imu_bias", "imu", i, spread) for i in (3, 4, 5)),
     ]
     rng = np.random.default_rng(3)
     root = rng.normal(size=(4, 6))

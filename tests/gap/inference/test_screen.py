@@ -27,7 +27,7 @@ def ready(robot_files):
 
 @pytest.fixture(scope="module")
 def found(ready):
-    subject = ready.base.samples.sieves[0].signals.subject
+    subject = ready.base.samples.filtered_logs[0].signals.subject
     return screen(ready.base, Design(ready.base).fit(), places(subject))
 
 
@@ -37,7 +37,7 @@ def test_the_true_cause_leads(found):
 
 
 def test_threads_change_nothing(ready, found):
-    subject = ready.base.samples.sieves[0].signals.subject
+    subject = ready.base.samples.filtered_logs[0].signals.subject
     again = screen(ready.base, Design(ready.base).fit(), places(subject), threads=3)
     gains = [[(c.name, c.gain) for c in run if isinstance(c, Candidate)] for run in (found, again)]
     assert gains[0] == gains[1]
@@ -46,7 +46,7 @@ def test_threads_change_nothing(ready, found):
 def test_what_logs_lack_is_said(ready, found):
     told = {n.effect: n.reason for n in found if isinstance(n, NotJudged)}
     assert "lack" in told["command_delay"]
-    signals = [s.signals for s in ready.base.samples.sieves]
+    signals = [s.signals for s in ready.base.samples.filtered_logs]
     assert (
         lacking(EFFECTS["controller_gain"], "knee", signals)
         if EFFECTS["controller_gain"].locations(signals[0].subject)

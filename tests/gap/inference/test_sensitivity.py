@@ -79,7 +79,7 @@ def test_more_logs_show_less(healthy, robot_files):
 
 
 def test_each_size_is_possible_and_none_is_of_what_acts_in_rare_moments(healthy):
-    subject = healthy.base.samples.sieves[0].signals.subject
+    subject = healthy.base.samples.filtered_logs[0].signals.subject
     found = smallest(healthy, places(subject))
     assert {one.effect for one in found} >= {
         "coulomb_friction",
@@ -99,7 +99,7 @@ def test_each_size_is_possible_and_none_is_of_what_acts_in_rare_moments(healthy)
 
 
 def test_threads_change_nothing(healthy):
-    subject = healthy.base.samples.sieves[0].signals.subject
+    subject = healthy.base.samples.filtered_logs[0].signals.subject
     wanted = places(subject, ["coulomb_friction", "payload", "backlash"])
     assert smallest(healthy, wanted) == smallest(Judge(healthy.base, healthy.thresholds, 2), wanted)
 

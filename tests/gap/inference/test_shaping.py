@@ -52,7 +52,7 @@ def test_no_shape_replaces_the_true_cause(robot_files, rules):
     ready = diagnosed.prepared(
         robot_files["coupled"], *(diagnosed.run("viscous", s, session="a") for s in (0, 1))
     )
-    subject = ready.base.samples.sieves[0].signals.subject
+    subject = ready.base.samples.filtered_logs[0].signals.subject
     judge, found = decide(
         ready.base, rules, places(subject, ("viscous_friction", "coulomb_friction"))
     )

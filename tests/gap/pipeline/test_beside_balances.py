@@ -1,4 +1,4 @@
-"""What a diagnosis makes of causes that no balance shows."""
+"""What a diagnosis makes of causes that no residual shows."""
 
 from dataclasses import replace
 
@@ -89,7 +89,7 @@ def test_a_sensor_that_is_named_already_has_the_surer_of_both_sizes(none, offset
         .parameters
     )
     assert told["gyro_y"] == offset.parameters["gyro_y"]  # other sensors know it better
-    assert told["gyro_x"] == sure["gyro_x"]  # balances do
+    assert told["gyro_x"] == sure["gyro_x"]  # residuals do
     assert told["gyro_z"] == rough["gyro_z"]  # no other sensor tells it
 
 

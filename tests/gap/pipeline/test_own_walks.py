@@ -32,7 +32,7 @@ def walked(folder, alterations=None, *, trials=1):
 
 
 def left(folder, logs):
-    """Root mean square of each row that no calibration error explains, over its floor."""
+    """Root mean square of each row that no nuisance parameter explains, over its floor."""
     from hyperleg_design.gap.inference.judge import Judge
 
     subject = load_subject(folder / "logs" / logs[0].metadata.robot, logs)
@@ -40,14 +40,14 @@ def left(folder, logs):
     judge = Judge(ready.base, load_thresholds(), 1)
     rows = judge.rows(judge.nothing.held.bare)[: len(ready.base.samples.rows)]
     return {
-        (row.balance, row.name): float(rows[i]) ** 0.5
+        (row.residual_name, row.name): float(rows[i]) ** 0.5
         for i, row in enumerate(ready.base.samples.rows)
     }
 
 
 def test_a_simulated_walk_has_no_gap_to_its_own_model(tmp_path):
     found = left(tmp_path, walked(tmp_path))
-    assert {balance for balance, _ in found} == {
+    assert {residual_name for residual_name, _ in found} == {
         "base",
         "control",
         "drive",

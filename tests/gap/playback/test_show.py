@@ -45,7 +45,7 @@ def short(monkeypatch):
 def test_every_effect_leaves_a_trace_and_moves_the_loop(name):
     shown = show(name)
     known = np.isfinite(shown.trace) & np.isfinite(shown.residual) & (shown.time > 0.5)
-    assert shown.balance
+    assert shown.residual_name
     assert known.mean() > 0.7
     trace, residual = shown.trace[known], shown.residual[known]
     assert np.abs(trace).max() > 0

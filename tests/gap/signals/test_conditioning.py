@@ -12,10 +12,10 @@ QUANTUM = 1.5e-3
 """Of position sensors that came to hand [rad]."""
 
 
-def share(signals, balance="motion"):
+def share(signals, residual_name="motion"):
     """Root mean square of a residual over that of the believed joint torque, by joint."""
     torque = signals.believed @ signals.subject.joint_from_motor.T
-    residual = signals.residual[balance][signals.valid]
+    residual = signals.residual[residual_name][signals.valid]
     return np.sqrt(np.nanmean(residual**2, 0)) / np.sqrt(np.mean(torque[signals.valid] ** 2, 0))
 
 

@@ -12,8 +12,8 @@ def conditioned(log):
     return condition(log, load_subject(None, [log]))
 
 
-def residual(signals, balance="motion"):
-    return signals.residual[balance][signals.valid]
+def residual(signals, residual_name="motion"):
+    return signals.residual[residual_name][signals.valid]
 
 
 @pytest.mark.parametrize("state", ["standing", "thrown"])

@@ -6,9 +6,9 @@ import pytest
 
 from hyperleg_design.gap.signals.filtering import (
     UNDERWAY,
+    filtered_log,
     moving,
     moving_ticks,
-    sieve,
     sticking,
     traced,
     travelled,
@@ -22,7 +22,7 @@ def signals(robot_files):
 
 
 def test_bands_add_up_to_the_energy_below_the_cutoff(signals):
-    one = sieve(signals)
+    one = filtered_log(signals)
     wave = np.zeros(len(signals.time))
     inside = one.mask[0]
     rng = np.random.default_rng(0)
@@ -36,7 +36,7 @@ def test_bands_add_up_to_the_energy_below_the_cutoff(signals):
 
 
 def test_the_filter_is_linear_and_blind_to_unknown_ticks(signals):
-    one = sieve(signals)
+    one = filtered_log(signals)
     rng = np.random.default_rng(1)
     a, b = rng.normal(size=(2, len(signals.time)))
     assert np.allclose(
@@ -48,13 +48,13 @@ def test_the_filter_is_linear_and_blind_to_unknown_ticks(signals):
 
 
 def test_noise_above_the_cutoff_does_not_pass(signals):
-    one = sieve(signals)
+    one = filtered_log(signals)
     fast = np.sin(2 * np.pi * 70 * signals.time) * np.hanning(len(signals.time))
     assert np.abs(one.sample(0, fast[None])).max() < 0.02
 
 
 def test_independent_numbers_of_a_band_are_its_bandwidth_times_the_time(signals):
-    one = sieve(signals)
+    one = filtered_log(signals)
     band, time, share = one.labels(0)
     span = signals.time[-1] - signals.time[0]
     assert share[band == 0].sum() == pytest.approx(2 * 0.5 * span, rel=0.15)
@@ -73,7 +73,7 @@ def test_a_joint_at_rest_may_stick_and_a_moving_one_does_not(signals):
 def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target_or_comes_far(signals):
     slow = 0.05 * signals.time[:, None] * np.ones(2)
     creeps = dataclasses.replace(
-        signals, position=slow, velocity=np.full_like(slow, 0.05), chatter=None
+        signals, position=slow, velocity=np.full_like(slow, 0.05), limit_cycle=None
     )
     assert not sticking(dataclasses.replace(creeps, target=slow + 0.01))[20:-20].any()
     astray = dataclasses.replace(creeps, target=np.ones_like(slow))
@@ -115,9 +115,11 @@ def test_the_rest_of_a_joint_that_hardly_moves_counts_only_without_dry_friction(
     dry = dataclasses.replace(
         signals, subject=dataclasses.replace(signals.subject, coulomb=np.array([0.0, 1.0]))
     )
-    one = sieve(dry, still)
+    one = filtered_log(dry, still)
     mask = {
-        row.name: m for row, m in zip(one.rows, one.mask, strict=True) if row.balance == "motion"
+        row.name: m
+        for row, m in zip(one.rows, one.mask, strict=True)
+        if row.residual_name == "motion"
     }
     assert mask["hip"][60:].any()
     assert "knee" not in mask or not mask["knee"][50:].any()
@@ -127,7 +129,7 @@ def test_the_rest_of_a_joint_that_hardly_moves_counts_only_without_dry_friction(
 
 
 def test_rows_that_a_trace_leaves_alone_are_missing(signals):
-    one = sieve(signals)
+    one = filtered_log(signals)
     trace = {"motion": np.zeros((1, len(signals.time), 2))}
     trace["motion"][0, :, 1] = 1.0
     assert [one.rows[r].name for r in traced(one, trace)] == ["knee"]

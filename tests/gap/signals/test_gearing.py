@@ -32,9 +32,9 @@ def test_a_log_tells_on_which_side_of_the_gear_it_is(robot, side, names, constan
         - robots.GAINS[:, 1] * signals.velocity
     )
     assert np.abs(joints - wanted)[100:-100].max() < 0.3
-    for balance, most in {"motion": 0.15, "control": 0.02, "transmission": 0.01}.items():
-        found = signals.residual[balance][100:-100]
-        assert np.sqrt(np.nanmean(found**2)) < most, balance
+    for residual_name, most in {"motion": 0.15, "control": 0.02, "transmission": 0.01}.items():
+        found = signals.residual[residual_name][100:-100]
+        assert np.sqrt(np.nanmean(found**2)) < most, residual_name
 
 
 def test_an_idle_log_goes_by_the_names(robot):

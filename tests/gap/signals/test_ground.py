@@ -1,4 +1,4 @@
-"""The balance of the ground, on a biped that stands, bends its knees and presses its feet apart in
+"""The residual of the ground, on a biped that stands, bends its knees and presses its feet apart in
 MuJoCo.
 """
 
@@ -14,11 +14,11 @@ from hyperleg_design.gap.effects.ground_friction import ChangedGround
 from hyperleg_design.gap.playback import show
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.ground import (
-    balance,
     floor_geoms,
     foot_bodies,
     foot_geoms,
     footings,
+    ground_residual,
     nominal_ground,
     pair_settings,
 )
@@ -192,5 +192,5 @@ def test_static_force_of_a_pad_is_mujocos(tmp_path, friction, cone):
 def test_without_forces_there_is_no_balance(standing):
     signals = dataclasses.replace(standing(), contact=None)
     assert footings(signals) == ()
-    assert balance(signals) is None
+    assert ground_residual(signals) is None
     assert effect("ground_friction").trace(signals, "left_foot", np.array([[0.5]])) == {}

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hyperleg_design.gap.signals.chatter import PRESLIDING
+from hyperleg_design.gap.signals.limit_cycle import PRESLIDING
 from hyperleg_design.gap.signals.sliding import presliding, sliding
 
 
@@ -19,7 +19,7 @@ def shown(position, noise=0.0, bandwidth=100.0):
     position = np.asarray(position, float)[:, None]
     return Shown(
         position=position,
-        chatter=None,
+        limit_cycle=None,
         step=0.005,
         noise=np.array([noise]),
         bandwidth=np.array([bandwidth]),

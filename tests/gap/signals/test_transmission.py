@@ -6,7 +6,7 @@ from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.playback.measure import measure
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-from hyperleg_design.gap.signals.transmission import balance, turned
+from hyperleg_design.gap.signals.transmission import transmission_residual, turned
 
 MOTORS = ("m_front", "m_back")
 
@@ -36,11 +36,11 @@ def subject(robot_files):
 def test_rotors_that_turn_with_their_joints_leave_nothing(subject):
     velocity = np.random.default_rng(0).normal(size=(50, 2))
     spin = velocity @ subject.joint_from_motor
-    residual, refused = balance(subject, spin, velocity, 0.005)
+    residual, refused = transmission_residual(subject, spin, velocity, 0.005)
     np.testing.assert_allclose(residual, 0, atol=1e-12)
     assert refused == ()
     spin[:10, 1] = np.nan
-    assert np.isnan(balance(subject, spin, velocity, 0.005)[0]).sum() == 10
+    assert np.isnan(transmission_residual(subject, spin, velocity, 0.005)[0]).sum() == 10
 
 
 def test_a_rotor_that_swings_on_its_belt_ends_where_its_joints_do_and_is_used(subject):
@@ -52,7 +52,7 @@ def test_a_rotor_that_swings_on_its_belt_ends_where_its_joints_do_and_is_used(su
     spin[:, 1] += swing
     expected = (velocity @ subject.joint_from_motor)[:, 1]
     assert expected @ spin[:, 1] / (expected @ expected) < 0.5  # no gear
-    residual, refused = balance(subject, spin, velocity, 0.005)
+    residual, refused = transmission_residual(subject, spin, velocity, 0.005)
     assert refused == ()
     np.testing.assert_allclose(residual[:, 1], swing, atol=1e-12)
 

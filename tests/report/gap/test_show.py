@@ -50,5 +50,5 @@ def test_figure_is_drawn_the_same_each_time_and_without_a_trace_too(shown, tmp_p
     assert one == again
     assert one.startswith(b"\x89PNG")
     nothing = np.full_like(shown.trace, np.nan)
-    empty = dataclasses.replace(shown, balance="", row="", trace=nothing, residual=nothing)
+    empty = dataclasses.replace(shown, residual_name="", row="", trace=nothing, residual=nothing)
     assert show_figure(empty, tmp_path / "empty.png").stat().st_size > 10_000

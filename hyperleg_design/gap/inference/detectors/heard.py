@@ -1,5 +1,5 @@
 """Causes that are heard: in what joints do at high frequencies or in short knocks, and in no
-balance.
+residual.
 """
 
 from __future__ import annotations

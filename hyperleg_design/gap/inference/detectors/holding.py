@@ -2,7 +2,7 @@
 it changes.
 
 What a joint that sticks is held by is no function of the motion, so its rest is left out of the
-balances (`filtering.sticking`). But while it does not move, gravity does not change either: half
+residuals (`filtering.sticking`). But while it does not move, gravity does not change either: half
 the range over which the torque on it rises and falls is friction that it has at least (the bound
 |f| <= F of Coulomb's law for rest), whatever load or offset there may be.
 """
@@ -19,7 +19,7 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.friction import FRICTION
 from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.series import band_limited
-from hyperleg_design.gap.inference.detectors.unsettled import chattering
+from hyperleg_design.gap.inference.detectors.unsettled import in_limit_cycle
 from hyperleg_design.gap.logs.sampling import noise
 from hyperleg_design.gap.model.friction import turned
 from hyperleg_design.gap.signals.channels import applied
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.inference.base import Prior
     from hyperleg_design.gap.inference.learned import Learned
     from hyperleg_design.gap.inference.model import Model
-    from hyperleg_design.gap.inference.nuisance import Usual
+    from hyperleg_design.gap.inference.nuisance import NuisanceParameter
     from hyperleg_design.gap.signals.signals import Signals
 
 RUBBING = FRICTION - {"viscous_friction"}
@@ -114,7 +114,7 @@ def noticed(
     signals: Sequence[Signals],
     references: Sequence[Signals],
     learned: Sequence[Learned] = (),
-    errors: Sequence[Usual] = (),
+    errors: Sequence[NuisanceParameter] = (),
     prior: Prior | None = None,
 ) -> dict[str, float]:
     """Joints that hold more than the friction that the model has and reference logs show, and by
@@ -124,7 +124,7 @@ def noticed(
         signals: conditioned logs under test.
         references: conditioned logs of the healthy robot.
         learned: effects that it has already.
-        errors: calibration errors.
+        errors: nuisance parameters.
         prior: of these, as reference logs tell them.
     """
     subject = signals[0].subject
@@ -138,13 +138,15 @@ def noticed(
     shows = np.max([held(s) for s in signals], 0)
     counts = (
         (shows - known > BEYOND * known + LEAST * joint_strength(subject))
-        & ~chattering(signals)
+        & ~in_limit_cycle(signals)
         & ~subject.passive
     )
     return {subject.joints[j]: float(shows[j] - known[j]) for j in np.flatnonzero(counts).tolist()}
 
 
-def calibrated(errors: Sequence[Usual], prior: Prior, signals: Sequence[Signals]) -> np.ndarray:
+def calibrated(
+    errors: Sequence[NuisanceParameter], prior: Prior, signals: Sequence[Signals]
+) -> np.ndarray:
     """Friction at rest over the model's that reference logs show, and what they leave open, by
     joint `(n,)` [Nm].
 

@@ -1,4 +1,4 @@
-"""Constant errors of an IMU, seen without any balance: what it tells minus what the base's motion
+"""Constant errors of an IMU, seen without any residual: what it tells minus what the base's motion
 from elsewhere says it should.
 
 A gyro minus the rate of a logged orientation, and an accelerometer minus the acceleration of a

@@ -80,7 +80,7 @@ def knocking(
     Args:
         signals: logs to be diagnosed.
         references: logs of the healthy robot.
-        known: what causes explain of each log's balance of motion `(t, n)` [Nm]; nothing by
+        known: what causes explain of each log's residual of motion `(t, n)` [Nm]; nothing by
             default.
     """
     if known:
@@ -142,7 +142,7 @@ def knocking(
 
 
 def struck(signals: Signals, motor: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where a log is hit hardest: time `(t,)` [s], what the balance of motion leaves there, and
+    """Where a log is hit hardest: time `(t,)` [s], what the residual of motion leaves there, and
     what of it is in the proportions of a motion of a motor's joints, `(t, n)` [Nm] both, between
     `LOWEST` and `HIGHEST`.
     """

@@ -1,4 +1,4 @@
-"""Ground that gives, seen without any balance: how much lower pads stand under more load.
+"""Ground that gives, seen without any residual: how much lower pads stand under more load.
 
 Where the floor lies, no log tells to a millimetre, and what errors of encoders and links make of a
 foot's height is about the same at all loads. But the slope of height over load is the compliance of

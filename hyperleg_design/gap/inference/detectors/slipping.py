@@ -1,4 +1,4 @@
-"""Ground that feet slide on, seen without any balance: what slides pushes back by mu times its
+"""Ground that feet slide on, seen without any residual: what slides pushes back by mu times its
 load, against its way.
 
 A pad that sticks may have any tangential force within its cone and one that creeps, in rubber as in

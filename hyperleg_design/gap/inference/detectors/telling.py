@@ -1,4 +1,4 @@
-"""What logs tell of a cause beside their balances: log odds for it, or against it.
+"""What logs tell of a cause beside their residuals: log odds for it, or against it.
 
 | effect | sign |
 |---|---|
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
 
 KNOCKS = 15.0
-"""Log odds against a spring where joints knock (in development no spring's joints did; balances
+"""Log odds against a spring where joints knock (in development no spring's joints did; residuals
 tell the two apart badly then)."""
 WARMER, WARM = 25.0, 2.0
 """How much warmer than `COLD`, and than most other motors, a motor must be [K], and the log odds

@@ -1,4 +1,4 @@
-"""What feet tell of their ground without any balance, foot by foot; see `slipping` and
+"""What feet tell of their ground without any residual, foot by foot; see `slipping` and
 `sinking`.
 """
 

@@ -27,10 +27,10 @@ UNSETTLING = (
 
 def unsettled(samples: Samples) -> tuple[str, ...]:
     """Joints that chatter in any log, and did not in reference logs."""
-    signals = [s.signals for s in samples.sieves]
+    signals = [s.signals for s in samples.filtered_logs]
     joints = signals[0].subject.joints
     return tuple(
-        joints[j] for j in np.flatnonzero(np.broadcast_to(chattering(signals), len(joints)))
+        joints[j] for j in np.flatnonzero(np.broadcast_to(in_limit_cycle(signals), len(joints)))
     )
 
 
@@ -41,13 +41,13 @@ def shaking(samples: Samples) -> tuple[str, ...]:
     names = unsettled(samples)
     signals = [
         s.signals
-        for s in samples.sieves
-        if s.signals.chatter is not None and s.signals.chatter.joints.any()
+        for s in samples.filtered_logs
+        if s.signals.limit_cycle is not None and s.signals.limit_cycle.joints.any()
     ]
     found: set[str] = set()
     for one in signals:
-        assert one.chatter is not None
-        size = np.sqrt(np.mean(one.chatter.speed**2, 0)) * one.chatter.joints
+        assert one.limit_cycle is not None
+        size = np.sqrt(np.mean(one.limit_cycle.speed**2, 0)) * one.limit_cycle.joints
         found |= {one.subject.joints[j] for j in np.flatnonzero(size >= MOVED * size.max())}
     return tuple(name for name in names if name in found)
 
@@ -56,9 +56,9 @@ def swings(signals: Sequence[Signals], joint: str) -> str:
     """How a joint chatters, in the log where it does most; for people."""
     place = signals[0].subject.joints.index(joint)
     shaken = [
-        s.chatter
+        s.limit_cycle
         for s in signals
-        if s.chatter is not None and np.isfinite(s.chatter.frequency[place])
+        if s.limit_cycle is not None and np.isfinite(s.limit_cycle.frequency[place])
     ]
     size, frequency = max(
         (float(np.sqrt(np.mean(c.speed[:, place] ** 2))), float(c.frequency[place])) for c in shaken
@@ -70,21 +70,23 @@ def swings(signals: Sequence[Signals], joint: str) -> str:
     )
 
 
-def chattering(signals: Sequence[Signals]) -> np.ndarray:
+def in_limit_cycle(signals: Sequence[Signals]) -> np.ndarray:
     """Which joints are unsettled in any of some logs `(n,)` of bool; `()`, False, where none is in
     any.
     """
-    return np.asarray(np.any([s.chatter.joints for s in signals if s.chatter is not None], 0))
+    return np.asarray(
+        np.any([s.limit_cycle.joints for s in signals if s.limit_cycle is not None], 0)
+    )
 
 
 def newly(signals: Sequence[Signals], references: Sequence[Signals]) -> list[Signals]:
     """Logs in which only those joints count as unsettled that were settled in all reference
     logs.
     """
-    known = chattering(references)
+    known = in_limit_cycle(references)
     return [
         s
-        if s.chatter is None
-        else replace(s, chatter=replace(s.chatter, joints=s.chatter.joints & ~known))
+        if s.limit_cycle is None
+        else replace(s, limit_cycle=replace(s.limit_cycle, joints=s.limit_cycle.joints & ~known))
         for s in signals
     ]

@@ -15,7 +15,7 @@ from hyperleg_design.gap.inference.detectors.holding import (
     held,
     noticed,
 )
-from hyperleg_design.gap.inference.nuisance import Usual
+from hyperleg_design.gap.inference.nuisance import NuisanceParameter
 from hyperleg_design.gap.inference.preparation import prepare
 from hyperleg_design.gap.inference.thresholds import load_thresholds
 from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
@@ -92,9 +92,9 @@ def test_what_held_before_is_no_news(servo):
 
 def test_errors_that_rub_are_known_together(servo):
     errors = [
-        Usual("coulomb_friction", "swing", 0, 0.1),
-        Usual("stribeck_friction", "swing", 0, 0.2),
-        Usual("viscous_friction", "swing", 0, 1.0),
+        NuisanceParameter("coulomb_friction", "swing", 0, 0.1),
+        NuisanceParameter("stribeck_friction", "swing", 0, 0.2),
+        NuisanceParameter("viscous_friction", "swing", 0, 1.0),
     ]
     prior = Prior(
         np.array([3.0, -0.5, 4.0]), np.array([[4.0, -1.9, 0.0], [-1.9, 1.0, 0.0], [0.0, 0.0, 1.0]])
@@ -107,7 +107,7 @@ def test_errors_that_rub_are_known_together(servo):
 
 def test_calibrated_friction_is_known_at_rest_as_far_as_it_may_reach(servo):
     signals = conditioned(servo, log(0.5))
-    errors = [Usual("coulomb_friction", "swing", 0, 0.01)]
+    errors = [NuisanceParameter("coulomb_friction", "swing", 0, 0.01)]
     for mean, deviation, holds in (
         (0.5, 0.02, False),
         (0.1, 0.02, True),

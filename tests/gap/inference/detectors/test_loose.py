@@ -110,8 +110,8 @@ def test_a_line_that_the_rate_folds_is_unfolded_by_speed_over_swing(robot):
 def test_a_late_command_makes_a_stiff_joint_chatter_and_is_no_belt(robot, torque):
     logs = [log(recorded(delay=3, damping=40.0), damping=40.0, torque=torque)]
     signals = condition(logs[0], load_subject(robot, logs))
-    assert signals.chatter is not None
-    assert signals.chatter.joints.all()
+    assert signals.limit_cycle is not None
+    assert signals.limit_cycle.joints.all()
     assert loose([signals]) is None
 
 
@@ -131,7 +131,7 @@ def test_what_rang_before_is_no_news(robot):
     signals = condition(
         log(recorded(spring=2000.0)), load_subject(robot, [log(recorded(spring=2000.0))])
     )
-    known = replace(signals, chatter=replace(signals.chatter, joints=np.zeros(1, bool)))
+    known = replace(signals, limit_cycle=replace(signals.limit_cycle, joints=np.zeros(1, bool)))
     assert loose([signals]) is not None
     assert loose([known]) is None
     assert (

@@ -9,39 +9,43 @@ def test_what_chattered_before_is_no_news():
     from dataclasses import dataclass
 
     from hyperleg_design.gap.inference.detectors.unsettled import newly
-    from hyperleg_design.gap.signals.chatter import Chatter
+    from hyperleg_design.gap.signals.limit_cycle import LimitCycle
 
     @dataclass(frozen=True, eq=False)
     class Shown:
-        chatter: Chatter | None
+        limit_cycle: LimitCycle | None
 
     def log(*joints):
         return Shown(
-            Chatter(np.ones((4, 2)), np.full(2, 50.0), np.full(2, 0.9), np.array(joints, bool))
+            LimitCycle(np.ones((4, 2)), np.full(2, 50.0), np.full(2, 0.9), np.array(joints, bool))
         )
 
     tests, references = [log(1, 1), Shown(None)], [log(1, 0), Shown(None)]
-    assert newly(tests, references)[0].chatter.joints.tolist() == [False, True]
-    assert newly(tests, [Shown(None)])[0].chatter.joints.tolist() == [True, True]
+    assert newly(tests, references)[0].limit_cycle.joints.tolist() == [False, True]
+    assert newly(tests, [Shown(None)])[0].limit_cycle.joints.tolist() == [True, True]
 
 
 def test_joints_of_all_logs_are_told():
     from hyperleg_design.gap.inference.detectors.unsettled import unsettled
 
-    def sieve(*joints):
+    def filtered_log(*joints):
         shaken = SimpleNamespace(joints=np.array(joints, bool)) if joints else None
         return SimpleNamespace(
-            signals=SimpleNamespace(chatter=shaken, subject=SimpleNamespace(joints=("hip", "knee")))
+            signals=SimpleNamespace(
+                limit_cycle=shaken, subject=SimpleNamespace(joints=("hip", "knee"))
+            )
         )
 
-    assert unsettled(SimpleNamespace(sieves=[sieve(), sieve(0, 1)])) == ("knee",)
-    assert unsettled(SimpleNamespace(sieves=[sieve()])) == ()
+    assert unsettled(SimpleNamespace(filtered_logs=[filtered_log(), filtered_log(0, 1)])) == (
+        "knee",
+    )
+    assert unsettled(SimpleNamespace(filtered_logs=[filtered_log()])) == ()
 
 
 def test_joints_that_are_shaken_along_are_not_to_blame():
     from hyperleg_design.gap.inference.detectors.unsettled import MOVED, shaking, unsettled
 
-    def sieve(speed, *joints):
+    def filtered_log(speed, *joints):
         swing = (
             None
             if speed is None
@@ -51,15 +55,17 @@ def test_joints_that_are_shaken_along_are_not_to_blame():
         )
         return SimpleNamespace(
             signals=SimpleNamespace(
-                chatter=swing, subject=SimpleNamespace(joints=("hip", "knee", "toe"))
+                limit_cycle=swing, subject=SimpleNamespace(joints=("hip", "knee", "toe"))
             )
         )
 
-    logs = SimpleNamespace(sieves=[sieve(None), sieve([0.9 * MOVED, 1.1 * MOVED, 1.0], 1, 1, 1)])
+    logs = SimpleNamespace(
+        filtered_logs=[filtered_log(None), filtered_log([0.9 * MOVED, 1.1 * MOVED, 1.0], 1, 1, 1)]
+    )
     assert unsettled(logs) == ("hip", "knee", "toe")
     assert shaking(logs) == ("knee", "toe")
-    logs.sieves.append(sieve([0.1, 9.0, 0.0], 1, 0, 0))
+    logs.filtered_logs.append(filtered_log([0.1, 9.0, 0.0], 1, 0, 0))
     assert shaking(logs) == ("hip", "knee", "toe"), (
         "it is loudest in one log; what does not chatter there is not"
     )
-    assert shaking(SimpleNamespace(sieves=[sieve(None)])) == ()
+    assert shaking(SimpleNamespace(filtered_logs=[filtered_log(None)])) == ()

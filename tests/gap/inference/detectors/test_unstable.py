@@ -157,7 +157,9 @@ def test_nothing_is_said_without_gains_or_of_what_rang_before_or_stands_on_its_f
     assert unstable([replace(signals, subject=replace(signals.subject, gains=gains))]) is None
     assert unstable([replace(signals, subject=replace(signals.subject, base="floating"))]) is None
     assert (
-        unstable([replace(signals, chatter=replace(signals.chatter, joints=np.zeros(2, bool)))])
+        unstable(
+            [replace(signals, limit_cycle=replace(signals.limit_cycle, joints=np.zeros(2, bool)))]
+        )
         is None
     )
 

@@ -4,20 +4,20 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.floor import expected
+from hyperleg_design.gap.inference.noise_model import expected
 from hyperleg_design.gap.inference.thresholds import load_thresholds
-from hyperleg_design.gap.signals.filtering import sieve
+from hyperleg_design.gap.signals.filtering import filtered_log
 
 
 @pytest.fixture(scope="module")
 def one(robot_files):
     signals = diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
-    return sieve(signals)
+    return filtered_log(signals)
 
 
 @pytest.fixture(scope="module")
 def jittering(robot_files):
-    return sieve(diagnosed.conditioned(robot_files["servos"], diagnosed.stamped_badly(0))[0])
+    return filtered_log(diagnosed.conditioned(robot_files["servos"], diagnosed.stamped_badly(0))[0])
 
 
 def noise_of(one, floors, row):
@@ -37,7 +37,7 @@ def test_white_torque_noise_is_told_from_the_log_itself(one):
         one.signals,
         residual={"motion": level * rng.normal(size=one.signals.residual["motion"].shape)},
     )
-    noisy_sieve = sieve(noisy)
+    noisy_sieve = filtered_log(noisy)
     floors = expected(noisy_sieve, nothing)
     band, _, _ = noisy_sieve.labels(0)
     values = noisy_sieve.sample(0, noisy.residual["motion"][:, 0][None])[0]
@@ -60,7 +60,7 @@ def test_what_rings_at_high_frequencies_is_no_noise_at_low_ones(one):
         )
     floors = []
     for residual in (quiet, quiet + rung):
-        noisy = sieve(dataclasses.replace(one.signals, residual={"motion": residual}))
+        noisy = filtered_log(dataclasses.replace(one.signals, residual={"motion": residual}))
         floors.append(noise_of(noisy, expected(noisy, nothing), 0))
     low = sorted(floors[0])[1:3]
     assert all(floors[1][b] < 1.6 * floors[0][b] for b in low)
@@ -78,7 +78,7 @@ def test_a_worse_known_torque_raises_the_floor(one):
 
 def test_positions_stamped_early_or_late_are_noisier_where_joints_are_fast(jittering):
     signals, rules = jittering.signals, load_thresholds()
-    even = sieve(
+    even = filtered_log(
         dataclasses.replace(signals, velocity=np.ones_like(signals.velocity))
     )  # no tick faster than any other
     for row, (told, before) in enumerate(

@@ -1,5 +1,5 @@
-"""Joints that chatter: a line in the motion above all that was commanded, as of a control loop on
-the edge of its stability.
+"""Joints in a limit cycle: a line in the motion above all that was commanded, as of a control loop
+on the edge of its stability.
 
 A smoother takes it for noise, and rightly leaves it out of accelerations. But friction sees it: a
 joint that swings to and fro with the speed a sin(phi) while it moves at v is held back by the mean
@@ -26,7 +26,7 @@ before they slide."""
 LEAST_LINE = 0.5
 """Share of what smoothing leaves that a line must have; white noise has a tenth."""
 HALF_WIDTH = 6
-"""Of a line, in steps of the spectrum; a chatter's frequency wanders with posture and load."""
+"""Of a line, in steps of the spectrum; its frequency wanders with posture and load."""
 SEGMENT = 256
 """Ticks of a piece of the averaged spectrum."""
 LOWEST = 0.15
@@ -34,29 +34,29 @@ LOWEST = 0.15
 ABOVE = 1.3
 """Lowest frequency of a line over that of the smoother."""
 WINDOW = 0.2
-"""Time over which the chatter's size is averaged [s]."""
+"""Time over which its size is averaged [s]."""
 UNSETTLED = 0.2
-"""Share of a log in which a joint must chatter to count as unsettled."""
+"""Share of a log in which a joint must be in a limit cycle to count as unsettled."""
 
 
 @dataclass(frozen=True, eq=False)
-class Chatter:
+class LimitCycle:
     """Of `n` joints on `t` ticks."""
 
     speed: np.ndarray
     """Amplitude of the joints' speed beyond what bends friction's bristles `(t, n)` [rad/s]; 0
-    where a joint does not chatter."""
+    where a joint is in none."""
     frequency: np.ndarray
-    """`(n,)` [Hz], as sampled; NaN where a joint does not chatter."""
+    """`(n,)` [Hz], as sampled; NaN where a joint is in none."""
     share: np.ndarray
     """Of the variance of the positions about their smooth course that the line makes `(n,)`."""
     joints: np.ndarray
     """Which joints are unsettled by it `(n,)` of bool."""
 
 
-def chatter(
+def limit_cycle(
     position: np.ndarray, velocity: np.ndarray, motion: Smooth, step: float
-) -> Chatter | None:
+) -> LimitCycle | None:
     """Chatter of joints; None where there is none.
 
     Args:
@@ -67,7 +67,7 @@ def chatter(
         step: of the ticks [s].
     """
     ticks, count = position.shape
-    found = Chatter(
+    found = LimitCycle(
         np.zeros((ticks, count)), np.full(count, np.nan), np.zeros(count), np.zeros(count, bool)
     )
     for joint in range(count):

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.signals.chatter import chatter
+from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.smoothing import smooth
 
 STEP = 0.005
@@ -28,7 +28,7 @@ def moved(swing, frequency, noise=2e-4, seed=0):
 def found(swing, frequency, logged=True, **options):
     position, velocity = moved(swing, frequency, **options)
     velocity = velocity if logged else np.full_like(velocity, np.nan)
-    return chatter(position, velocity, smooth(TIME, position, TIME, velocity), STEP)
+    return limit_cycle(position, velocity, smooth(TIME, position, TIME, velocity), STEP)
 
 
 @pytest.mark.parametrize("logged", [True, False])

@@ -24,7 +24,7 @@ from hyperleg_design.gap.signals.ground import footings
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.thresholds import Thresholds
-    from hyperleg_design.gap.signals.filtering import Band, Sieve
+    from hyperleg_design.gap.signals.filtering import Band, FilteredLog
     from hyperleg_design.gap.signals.signals import Signals
 
 NEAR = 0.5
@@ -48,70 +48,79 @@ _SHAKEN: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 _INERTIAS: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
 
-def expected(sieve: Sieve, thresholds: Thresholds) -> list[np.ndarray]:
+def expected(filtered_log: FilteredLog, thresholds: Thresholds) -> list[np.ndarray]:
     """Standard deviation that each sample of each row may have, `(samples,)` a row, in the row's
     unit.
     """
-    load, still = _loads(sieve)
-    return [_row(sieve, row, load, still, thresholds) for row in range(len(sieve.rows))]
+    load, still = _loads(filtered_log)
+    return [
+        _row(filtered_log, row, load, still, thresholds) for row in range(len(filtered_log.rows))
+    ]
 
 
 def _row(
-    sieve: Sieve,
+    filtered_log: FilteredLog,
     row: int,
     load: dict[str, np.ndarray],
     still: dict[str, np.ndarray],
     thresholds: Thresholds,
 ) -> np.ndarray:
-    signals, one = sieve.signals, sieve.rows[row]
-    moving = load[one.balance][:, one.column]
-    constant = still[one.balance][one.column]
-    residual = np.where(sieve.mask[row], signals.residual[one.balance][:, one.column], 0.0)
-    density = _capped(
-        sieve, row, residual, _white(residual, sieve.mask[row], one.cutoff, signals.step)
+    signals, one = filtered_log.signals, filtered_log.rows[row]
+    moving = load[one.residual_name][:, one.column]
+    constant = still[one.residual_name][one.column]
+    residual = np.where(
+        filtered_log.mask[row], signals.residual[one.residual_name][:, one.column], 0.0
     )
-    samples = sieve.sample(row, np.nan_to_num(moving)[None])[0]
-    level, _, _ = sieve.labels(row)
+    density = _capped(
+        filtered_log,
+        row,
+        residual,
+        _white(residual, filtered_log.mask[row], one.cutoff, signals.step),
+    )
+    samples = filtered_log.sample(row, np.nan_to_num(moving)[None])[0]
+    level, _, _ = filtered_log.labels(row)
     whole = (
-        np.sqrt(np.nanmean(np.where(sieve.mask[row], moving, np.nan) ** 2))
-        if sieve.mask[row].any()
+        np.sqrt(np.nanmean(np.where(filtered_log.mask[row], moving, np.nan) ** 2))
+        if filtered_log.mask[row].any()
         else 0.0
     )
-    turning = _turning(sieve, row) if constant > 0 else np.zeros(len(signals.time))
-    sinking = _smoothed(_sinking(sieve, row) ** 2, NEAR / signals.step)
+    turning = _turning(filtered_log, row) if constant > 0 else np.zeros(len(signals.time))
+    sinking = _smoothed(_sinking(filtered_log, row) ** 2, NEAR / signals.step)
     found, start = np.empty(len(samples)), 0
-    for band, white in zip(sieve.bands[row], density, strict=True):
+    for band, white in zip(filtered_log.bands[row], density, strict=True):
         part = slice(start, start + len(band.kept))
         start = part.stop
-        local = _smoothed(samples[part] ** 2, band.count / (sieve.length * signals.step) * NEAR)
+        local = _smoothed(
+            samples[part] ** 2, band.count / (filtered_log.length * signals.step) * NEAR
+        )
         noise = white * (band.high - band.low) + _at(
-            _of_acceleration(sieve, row, band.low, band.high), band
+            _of_acceleration(filtered_log, row, band.low, band.high), band
         )
         share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
         dry = (
             (thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant
-        ) ** 2 / len(sieve.bands[row])
+        ) ** 2 / len(filtered_log.bands[row])
         found[part] = np.sqrt(
-            noise + share + dry + _at(sinking, band) + (LEAST * _strength(sieve, row)) ** 2
+            noise + share + dry + _at(sinking, band) + (LEAST * _strength(filtered_log, row)) ** 2
         )
     assert len(level) == start
     return found
 
 
-def _sinking(sieve: Sieve, row: int) -> np.ndarray:
+def _sinking(filtered_log: FilteredLog, row: int) -> np.ndarray:
     """What the height of a foot leaves open of the ground's vertical force `(t,)` [N]; 0
     elsewhere.
     """
-    one = sieve.rows[row]
-    if one.balance != "ground" or one.column % 3 != 2:
-        return np.zeros(len(sieve.signals.time))
-    return np.nan_to_num(footings(sieve.signals)[one.column // 3].doubt())
+    one = filtered_log.rows[row]
+    if one.residual_name != "ground" or one.column % 3 != 2:
+        return np.zeros(len(filtered_log.signals.time))
+    return np.nan_to_num(footings(filtered_log.signals)[one.column // 3].doubt())
 
 
-def _turning(sieve: Sieve, row: int) -> np.ndarray:
+def _turning(filtered_log: FilteredLog, row: int) -> np.ndarray:
     """How much of a joint's friction turns over at each tick, averaged around it `(t,)`."""
-    part = 1 - stop(sieve.signals.position[:, sieve.rows[row].column], TURNING) ** 2
-    return _smoothed(part * sieve.mask[row], TURNING_TIME / sieve.signals.step)
+    part = 1 - stop(filtered_log.signals.position[:, filtered_log.rows[row].column], TURNING) ** 2
+    return _smoothed(part * filtered_log.mask[row], TURNING_TIME / filtered_log.signals.step)
 
 
 def _at(values: np.ndarray, band: Band) -> np.ndarray:
@@ -120,40 +129,40 @@ def _at(values: np.ndarray, band: Band) -> np.ndarray:
     return np.asarray(values[place])
 
 
-def _loads(sieve: Sieve) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """By balance: size of what is balanced `(t, columns)`, and friction of the model
+def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """By residual: size of what is balanced `(t, columns)`, and friction of the model
     `(columns,)`.
     """
-    signals = sieve.signals
+    signals = filtered_log.signals
     subject = signals.subject
     found: dict[str, np.ndarray] = {}
     still: dict[str, np.ndarray] = {}
-    for balance, residual in signals.residual.items():
-        still[balance] = np.zeros(residual.shape[1])
-        if balance == "motion":
-            found[balance] = applied(subject.joint_from_motor, signals.believed)
-            still[balance] = subject.coulomb
-        elif balance == "base" and signals.contact is not None:
+    for residual_name, residual in signals.residual.items():
+        still[residual_name] = np.zeros(residual.shape[1])
+        if residual_name == "motion":
+            found[residual_name] = applied(subject.joint_from_motor, signals.believed)
+            still[residual_name] = subject.coulomb
+        elif residual_name == "base" and signals.contact is not None:
             total = np.linalg.norm(np.nan_to_num(signals.contact).sum(1), axis=-1)
-            found[balance] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
-        elif balance == "ground" and signals.contact is not None:
-            found[balance] = np.repeat(np.linalg.norm(signals.contact, axis=-1), 3, axis=-1)
-        elif balance == "transmission":
-            found[balance] = signals.velocity @ subject.joint_from_motor
+            found[residual_name] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
+        elif residual_name == "ground" and signals.contact is not None:
+            found[residual_name] = np.repeat(np.linalg.norm(signals.contact, axis=-1), 3, axis=-1)
+        elif residual_name == "transmission":
+            found[residual_name] = signals.velocity @ subject.joint_from_motor
         elif signals.command is not None and residual.shape[1] == signals.command.shape[1]:
-            found[balance] = signals.command
+            found[residual_name] = signals.command
         else:
-            found[balance] = residual
+            found[residual_name] = residual
     return found, still
 
 
-def _strength(sieve: Sieve, row: int) -> float:
-    one, subject = sieve.rows[row], sieve.signals.subject
-    if one.balance == "motion":
+def _strength(filtered_log: FilteredLog, row: int) -> float:
+    one, subject = filtered_log.rows[row], filtered_log.signals.subject
+    if one.residual_name == "motion":
         return float(joint_strength(subject)[one.column])
-    if one.balance in ("base", "ground"):
+    if one.residual_name in ("base", "ground"):
         return 100.0
-    if one.balance == "transmission":
+    if one.residual_name == "transmission":
         fastest = float(subject.no_load_speed[one.column])
         return fastest if np.isfinite(fastest) else FAST
     limit = float(subject.torque_limit[one.column])
@@ -184,15 +193,15 @@ def _white(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -
     return float(2 * step * density / np.sum(np.hanning(len(third)) ** 2))
 
 
-def _capped(sieve: Sieve, row: int, residual: np.ndarray, white: float) -> np.ndarray:
+def _capped(filtered_log: FilteredLog, row: int, residual: np.ndarray, white: float) -> np.ndarray:
     """Density of white noise in each band `(bands,)`, no more than what that band, or a faster one,
     shows in all [unit^2/Hz].
 
     What knocks or rings at high frequencies is not white: it is no reason for noise at low ones.
     """
-    samples, start = sieve.sample(row, residual[None])[0], 0
+    samples, start = filtered_log.sample(row, residual[None])[0], 0
     found = []
-    for band in sieve.bands[row]:
+    for band in filtered_log.bands[row]:
         part = samples[start : start + len(band.kept)]
         start += len(band.kept)
         found.append(
@@ -203,19 +212,19 @@ def _capped(sieve: Sieve, row: int, residual: np.ndarray, white: float) -> np.nd
     return np.minimum.accumulate(np.r_[white, found[::-1]])[:0:-1]
 
 
-def _of_acceleration(sieve: Sieve, row: int, low: float, high: float) -> np.ndarray:
+def _of_acceleration(filtered_log: FilteredLog, row: int, low: float, high: float) -> np.ndarray:
     """Variance in a band of the torque that noise of positions feigns at each tick, twice
     differentiated, below the smoother's crossover `(t,)`.
     """
-    signals, one = sieve.signals, sieve.rows[row]
+    signals, one = filtered_log.signals, filtered_log.rows[row]
     if (
-        one.balance != "motion"
+        one.residual_name != "motion"
         or signals.noise is None
         or not np.isfinite(signals.noise[one.column])
     ):
         return np.zeros(len(signals.time))
     square = _shaken(signals)
-    stiff = _feedback(sieve, row)
+    stiff = _feedback(filtered_log, row)
     turned = (2 * np.pi) ** 4 * (high**5 - low**5) / 5
     own = inertias(signals)[one.column][np.arange(len(square)) // _every(signals)]
     found = turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, one.column]
@@ -252,14 +261,14 @@ def _shaken(signals: Signals) -> np.ndarray:
     return found
 
 
-def of_acceleration(sieve: Sieve, row: int) -> tuple[np.ndarray, np.ndarray]:
+def of_acceleration(filtered_log: FilteredLog, row: int) -> tuple[np.ndarray, np.ndarray]:
     """Variance of each sample of a row that noise of accelerations feigns, and the mean square of
     that noise's frequency `(samples,)` each.
     """
-    bands = sieve.bands[row]
+    bands = filtered_log.bands[row]
     if not bands:
         return np.zeros(0), np.zeros(0)
-    feigned = [_at(_of_acceleration(sieve, row, b.low, b.high), b) for b in bands]
+    feigned = [_at(_of_acceleration(filtered_log, row, b.low, b.high), b) for b in bands]
     rate = [
         np.full(
             len(b.kept), (2 * np.pi) ** 2 * 5 / 7 * (b.high**7 - b.low**7) / (b.high**5 - b.low**5)
@@ -294,11 +303,11 @@ def _every(signals: Signals) -> int:
     return max(round(POSTURE / signals.step), 1)
 
 
-def _feedback(sieve: Sieve, row: int) -> float:
+def _feedback(filtered_log: FilteredLog, row: int) -> float:
     """Torque over noise of position where the torque is computed from the logged position
     [Nm/rad].
     """
-    signals, one = sieve.signals, sieve.rows[row]
+    signals, one = filtered_log.signals, filtered_log.rows[row]
     gain = (
         float(signals.subject.gains[one.column, 0])
         if signals.measured is None and signals.target is not None
