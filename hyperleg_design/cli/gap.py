@@ -211,6 +211,9 @@ class Diagnose(Printing):
     """Rules of the decision, a YAML file; the shipped ones by default."""
     threads: Annotated[int, AtLeast(1)] = 2
     """The answer does not depend on them."""
+    method: Literal["", "posterior", "rules"] = ""
+    """By which it decides: the posterior probability of causes beside a model of the model's own
+    error, or the rules that each cause must pass; the usual one by default."""
 
     def run(self) -> None:
         """Diagnose."""
@@ -228,6 +231,7 @@ class Diagnose(Printing):
             thresholds=self.thresholds or None,
             threads=self.threads,
             show=show,
+            method=self.method,
         )
         if self.json:
             emit(found)

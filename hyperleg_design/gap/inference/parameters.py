@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.judge import Judge
     from hyperleg_design.gap.inference.model import Model
+    from hyperleg_design.gap.model.subject import Subject
 
 NORMAL = 1.96
 """Standard deviations of a normal distribution's 95 % interval."""
@@ -25,28 +26,38 @@ move on belts that give (in development they were 10 to 25 % off)."""
 
 def parameters(judge: Judge, model: Model, place: int) -> dict[str, Value]:
     """Values of one cause with 95 % intervals, nuisance parameters and coloured noise included."""
-    cause = model.causes[place]
-    values, deviation = model.values(place), model.deviation(place)
+    return intervals(
+        model.causes[place],
+        model.values(place),
+        judge.thresholds.interval * model.deviation(place),
+        judge.base.samples.filtered_logs[0].signals.subject,
+    )
+
+
+def intervals(
+    cause: Cause, values: np.ndarray, deviation: np.ndarray, subject: Subject
+) -> dict[str, Value]:
+    """Values `(k,)` of a cause with 95 % intervals from their standard deviations `(k,)`."""
     found = {}
     for i, parameter in enumerate(EFFECTS[cause.effect].parameters):
         rough = ROUGH.get((cause.effect, parameter.name), 0.0) * abs(values[i])
-        reach = NORMAL * np.hypot(judge.thresholds.interval * deviation[i], rough)
+        reach = NORMAL * np.hypot(deviation[i], rough)
         found[parameter.name] = Value(
             float(values[i]),
             float(max(values[i] - reach, cause.low[i])),
             float(min(values[i] + reach, cause.high[i])),
             parameter.unit,
         )
-    return found | _derived(judge, cause, values, found)
+    return found | _derived(subject, cause, values, found)
 
 
 def _derived(
-    judge: Judge, cause: Cause, values: np.ndarray, found: dict[str, Value]
+    subject: Subject, cause: Cause, values: np.ndarray, found: dict[str, Value]
 ) -> dict[str, Value]:
     """The same in words that people use, with intervals from those of the parameters, each moved
     alone.
     """
-    effect, subject = EFFECTS[cause.effect], judge.base.samples.filtered_logs[0].signals.subject
+    effect = EFFECTS[cause.effect]
     middle = effect.derived(cause.location, values, subject)
     below, above = dict.fromkeys(middle, 0.0), dict.fromkeys(middle, 0.0)
     for i, parameter in enumerate(effect.parameters):

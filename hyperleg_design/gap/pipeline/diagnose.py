@@ -19,13 +19,20 @@ from hyperleg_design.gap.inference.detectors.sinking import sinks
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import slips
 from hyperleg_design.gap.inference.preparation import prepare
+from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.sensitivity import smallest
 from hyperleg_design.gap.inference.thresholds import Thresholds, load_thresholds
 from hyperleg_design.gap.pipeline.answer import Answer
 from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_imu
+from hyperleg_design.gap.pipeline.judged import judge_signals
 from hyperleg_design.gap.results.diagnosis import Diagnosis
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
+
+POSTERIOR, RULES = METHODS = ("posterior", "rules")
+"""Ways to decide: by the posterior probabilities of one model, or by the rules before it."""
+DEFAULT = RULES
+"""The usual one."""
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
@@ -43,6 +50,8 @@ def diagnose(
     thresholds: str | Path | Thresholds | None = None,
     threads: int = 2,
     show: Callable[[str], None] | None = None,
+    method: str = DEFAULT,
+    rules: InferenceRules | None = None,
 ) -> Diagnosis:
     """Diagnose logs of a robot.
 
@@ -56,6 +65,8 @@ def diagnose(
         thresholds: rules, or a file of them; the shipped ones by default.
         threads: that share the work; they change no result.
         show: takes lines of progress.
+        method: one of `METHODS`.
+        rules: of the posterior.
 
     Raises:
         InputError: no log to diagnose, a log that is not fit for it, or one that does not go with
@@ -88,6 +99,8 @@ def diagnose(
         threads=threads,
         show=show,
         checks=checks,
+        method=method,
+        rules=rules,
     )
 
 
@@ -145,6 +158,8 @@ def diagnose_signals(
     show: Callable[[str], None] | None = None,
     checks: Sequence[Check] = (),
     effects: Sequence[str] | None = None,
+    method: str = DEFAULT,
+    rules: InferenceRules | None = None,
 ) -> Diagnosis:
     """Diagnose conditioned logs; arguments as of `diagnose`.
 
@@ -157,22 +172,39 @@ def diagnose_signals(
         show: takes lines of progress.
         checks: of the logs, for remarks and doubts.
         effects: of the catalogue that are tried; all by default.
+        method: one of `METHODS`.
+        rules: of the posterior.
 
     Raises:
-        InputError: no log, or none with a residual.
+        InputError: no log, or none with a residual, or an unknown method.
     """
     say = show or (lambda _: None)
-    rules = thresholds if isinstance(thresholds, Thresholds) else load_thresholds(thresholds)
+    if method not in METHODS:
+        raise InputError("diagnose", "method", method, f"expects one of {', '.join(METHODS)}")
+    fixed = thresholds if isinstance(thresholds, Thresholds) else load_thresholds(thresholds)
     if not signals:
         raise InputError("diagnose", "logs", None, "are missing: give at least one log")
+    if method == POSTERIOR:
+        say("noise, discrepancy and the hypotheses of the catalogue")
+        told = judge_signals(
+            signals,
+            references,
+            screen.places(signals[0].subject, effects),
+            rules or InferenceRules(),
+            fixed,
+            seed=seed,
+            threads=threads,
+            checks=checks,
+        )
+        return _beside(told, signals, references, effects)
     say("calibration errors and floor")
-    ready = prepare(signals, references, rules, threads)
+    ready = prepare(signals, references, fixed, threads)
     samples = ready.base.samples
     say(
         f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue"
     )
     places = screen.places(samples.filtered_logs[0].signals.subject, effects)
-    judge, found = decide(ready.base, rules, places, threads, references)
+    judge, found = decide(ready.base, fixed, places, threads, references)
     say("intervals, rivals, the next experiment and what these logs can show")
     told = Answer(
         ready, judge, found, seed, list(signals), list(references), list(checks)
@@ -181,6 +213,16 @@ def diagnose_signals(
         name for name in places if name not in {(n.effect, n.location) for n in found.not_judged}
     ]
     told = replace(told, sensitivity=tuple(one.mapping() for one in smallest(judge, judged)))
+    return _beside(told, signals, references, effects)
+
+
+def _beside(
+    told: Diagnosis,
+    signals: Sequence[Signals],
+    references: Sequence[Signals],
+    effects: Sequence[str] | None,
+) -> Diagnosis:
+    """With what feet and the IMU tell that is in no residual."""
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
         if effects is None or effect in effects:
             told = of_feet(told, tell(signals, references))

@@ -114,6 +114,11 @@ class Diagnosis:
     nuisance: tuple[Mapping[str, Any], ...] = ()
     """Nuisance parameters that were fitted along, the largest first, in usual sizes."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    remainder: float | None = None
+    """Share of the gap that no listed effect explains, where something unlisted acts."""
+    lacks: Mapping[str, Any] | None = None
+    """With reference logs, what the model lacks of them already: `verdict` and `causes` in the same
+    form; no part of the verdict."""
 
     def mapping(self) -> dict[str, Any]:
         """As `diagnosis.json` holds it, numbers rounded to `DIGITS`."""
@@ -149,6 +154,10 @@ class Diagnosis:
             "nuisance": [dict(one) for one in self.nuisance],
             "provenance": dict(self.provenance),
         }
+        if self.remainder is not None:
+            found["remainder"] = self.remainder
+        if self.lacks is not None:
+            found["lacks"] = dict(self.lacks)
         rounded: dict[str, Any] = _rounded(found)
         return rounded
 
@@ -210,6 +219,8 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
             sensitivity=tuple(content.get("sensitivity", ())),
             nuisance=tuple(content.get("nuisance", ())),
             provenance=dict(content.get("provenance", {})),
+            remainder=None if content.get("remainder") is None else float(content["remainder"]),
+            lacks=content.get("lacks"),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise InputError(

@@ -1,0 +1,99 @@
+"""What a hypothesis predicts of blocks of the logs that it was not fitted to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
+from hyperleg_design.gap.inference.samples import BLOCKS
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.channel import Channel, Scales
+    from hyperleg_design.gap.inference.hypothesis import Hypothesis
+    from hyperleg_design.gap.inference.rules import InferenceRules
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Samples under test, each predicted without its own block; in the residuals' units."""
+
+    before: np.ndarray
+    """Residual less what a healthy robot's discrepancy explains of it `(S,)`."""
+    trace: np.ndarray
+    """What the causes leave `(S,)`."""
+    unlisted: np.ndarray
+    """What only a discrepancy larger than a healthy robot's explains `(S,)`."""
+
+    @property
+    def after(self) -> np.ndarray:
+        """Residual less that and the causes' traces `(S,)`."""
+        return self.before - self.trace
+
+    @property
+    def noise(self) -> np.ndarray:
+        """What neither causes nor any discrepancy predict `(S,)`."""
+        return self.after - self.unlisted
+
+
+def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules) -> Prediction:
+    """Cross-validate a hypothesis over blocks, its scales fixed.
+
+    Args:
+        evidence: channels.
+        hypothesis: fitted to all samples.
+        rules: of the inference.
+    """
+    samples, weight = evidence.samples, evidence.weight
+    fold = samples.fold[BLOCKS][samples.part]
+    stack = Stack.of(hypothesis.causes, weight) if hypothesis.causes else None
+    before = np.zeros(len(fold))
+    trace, unlisted = np.zeros(len(fold)), np.zeros(len(fold))
+    for held in range(samples.folds(BLOCKS)):
+        kept = fold != held
+        channels = tuple(_without(one, kept) for one in evidence.channels)
+        left = np.zeros(len(fold))
+        if stack is not None:
+            last = bool(stack.constant.any())
+            columns = stack.columns * kept
+            columns = np.concatenate([columns, stack.constant[None] * kept]) if last else columns
+            part = replace(evidence, channels=channels)
+            products = shifted(reduced(part, hypothesis.scales, columns), last)
+            found = solve(products, stack.low, stack.high, stack.shape, rules, stack.factors)
+            left = found.theta @ stack.columns + stack.constant
+        for whole, some, scales in zip(evidence.channels, channels, hypothesis.scales, strict=True):
+            means, _ = some.without(left * kept).discrepancy(scales)
+            healthy = healthy_share(whole, scales, rules)
+            for cell, (place, white) in enumerate(zip(whole.places, whole.whitened, strict=True)):
+                mine = fold[place] == held
+                if not mine.any():
+                    continue
+                at = place[mine]
+                explained = means[whole.session[cell]] @ white[:-1, mine]
+                before[at] = (white[-1, mine] - healthy * explained) / weight[at]
+                unlisted[at] = (1 - healthy) * explained / weight[at]
+                trace[at] = left[at] / weight[at]
+    return Prediction(before, trace, unlisted)
+
+
+def healthy_share(channel: Channel, scales: Scales, rules: InferenceRules) -> float:
+    """Share of a channel's discrepancy that a healthy robot's would be, by its prior, from 0 to 1:
+    all of it, up to one deviation of the prior above its median.
+    """
+    prior = rules.discrepancy
+    if channel.referenced:
+        return float(np.exp(-scales.new))
+    most = np.log(prior.standing) + prior.standing_spread
+    return float(np.exp(min(most - scales.standing, 0.0)))
+
+
+def _without(channel: Channel, kept: np.ndarray) -> Channel:
+    """A channel whose samples under test are those of a mask `(S,)`."""
+    white = tuple(
+        one * kept[place] if len(place) else one
+        for one, place in zip(channel.whitened, channel.places, strict=True)
+    )
+    return replace(channel, whitened=white, products=np.array([one @ one.T for one in white]))

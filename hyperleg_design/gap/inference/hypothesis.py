@@ -1,0 +1,237 @@
+"""Hypotheses: sets of causes, their fit beside the discrepancy, and their evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.inference.fit import _bounded
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.assembly import Evidence
+    from hyperleg_design.gap.inference.channel import Scales
+    from hyperleg_design.gap.inference.endogenous import Factor, Shrinking
+    from hyperleg_design.gap.inference.fit import Cause
+    from hyperleg_design.gap.inference.rules import InferenceRules
+
+EVERYWHERE = "*"
+"""Location of an effect that acts at all of its places."""
+FREE = 1e3
+"""Prior deviation from which large sizes are looked for, in usual sizes."""
+ROUNDS = 3
+"""Of widening the priors of large fits."""
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """An effect at one place, or at all of its places."""
+
+    effect: str
+    location: str
+    """Place, or `EVERYWHERE`."""
+    causes: tuple[Cause, ...]
+
+    @property
+    def name(self) -> tuple[str, str]:
+        """Effect and location."""
+        return self.effect, self.location
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """A set of candidates, fitted."""
+
+    candidates: tuple[Candidate, ...]
+    theta: np.ndarray
+    """Parameters of all causes, in usual sizes from their nulls `(k,)`."""
+    covariance: np.ndarray
+    """`(k, k)`"""
+    scales: tuple[Scales, ...]
+    """By channel."""
+    log_evidence: float
+    """Over that of nothing wrong [nat]."""
+    log_prior: float
+    """[nat]"""
+
+    @property
+    def score(self) -> float:
+        """Unnormalised log posterior probability [nat]."""
+        return self.log_evidence + self.log_prior
+
+    @property
+    def causes(self) -> tuple[Cause, ...]:
+        """Of all candidates."""
+        return tuple(cause for one in self.candidates for cause in one.causes)
+
+    @property
+    def names(self) -> tuple[tuple[str, str], ...]:
+        """Effects and locations of the candidates, sorted."""
+        return tuple(sorted(one.name for one in self.candidates))
+
+    @cached_property
+    def parts(self) -> list[slice]:
+        """Where the parameters of each cause stand."""
+        ends = np.cumsum([0, *(len(c.nulls) for c in self.causes)]).tolist()
+        return [slice(start, stop) for start, stop in pairwise(ends)]
+
+    def values(self, place: int) -> np.ndarray:
+        """Parameters of one cause."""
+        cause = self.causes[place]
+        return np.clip(
+            cause.nulls + self.theta[self.parts[place]] * cause.usual, cause.low, cause.high
+        )
+
+    def deviation(self, place: int) -> np.ndarray:
+        """Standard deviations of one cause's parameters."""
+        variance = np.diag(self.covariance)[self.parts[place]]
+        return np.asarray(np.sqrt(np.maximum(variance, 0.0)) * self.causes[place].usual)
+
+    def trace(self) -> np.ndarray:
+        """What its causes leave in every sample under test `(S,)`, in the residuals' units."""
+        found = np.zeros(0)
+        for part, cause in zip(self.parts, self.causes, strict=True):
+            own = cause.trace(self.theta[part])
+            found = own if not found.size else found + own
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """Columns of some causes, one after the other."""
+
+    columns: np.ndarray
+    """Weighted as the residual `(k, S)`."""
+    constant: np.ndarray
+    """Weighted trace at theta 0 of what is linearised elsewhere `(S,)`."""
+    low: np.ndarray
+    high: np.ndarray
+    """Bounds of theta `(k,)`."""
+    shape: np.ndarray
+    """Parameters that only shape a trace `(k,)` of bool."""
+    factors: tuple[tuple[int, Factor | Shrinking], ...] = ()
+    """Parameters that scale the torque which the residual is made of, and the missing term of its
+    density, see `endogenous`."""
+
+    @classmethod
+    def of(cls, causes: Sequence[Cause], weight: np.ndarray) -> Stack:
+        """Of causes that are linearised."""
+        constant = np.zeros(len(weight))
+        for one in causes:
+            if not one.linear:
+                constant = constant + one.constant
+        ends = np.cumsum([0, *(len(one.nulls) for one in causes)]).tolist()
+        factors = tuple(
+            (start + one.factor.parameter, one.factor)
+            for start, one in zip(ends, causes, strict=False)
+            if one.factor is not None
+        )
+        return cls(
+            np.concatenate([one.columns for one in causes]) * weight,
+            constant * weight,
+            np.concatenate([(one.low - one.nulls) / one.usual for one in causes]),
+            np.concatenate([(one.high - one.nulls) / one.usual for one in causes]),
+            np.concatenate([one.shape for one in causes]),
+            factors,
+        )
+
+
+def reduced(evidence: Evidence, scales: Sequence[Scales], columns: np.ndarray) -> np.ndarray:
+    """Products of residual and columns in the metric of the marginal covariance, over all channels.
+
+    Args:
+        evidence: channels.
+        scales: hyperparameters by channel.
+        columns: weighted as the residual `(m, S)`.
+
+    Returns:
+        `(m + 1, m + 1)`, the residual first.
+    """
+    found = np.zeros((len(columns) + 1, len(columns) + 1))
+    for channel, own in zip(evidence.channels, scales, strict=True):
+        shown = np.flatnonzero(np.any(columns[:, channel.samples] != 0, 1))
+        products = channel.stacked(*channel.crossed(columns[shown])) if len(shown) else None
+        left, _ = channel.reduced(own, channel.summed(own.noise, products))
+        place = np.r_[0, 1 + shown]
+        found[np.ix_(place, place)] += left
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Causes at the maximum of their posterior, at fixed scales."""
+
+    theta: np.ndarray
+    covariance: np.ndarray
+    gain: float
+    """Log evidence over that of theta = 0, the discrepancy integrated out [nat]."""
+    occam: float
+    """The part of it that theta's own prior and uncertainty make [nat]."""
+
+
+def solve(
+    products: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    shape: np.ndarray,
+    rules: InferenceRules,
+    factors: Sequence[tuple[int, Factor | Shrinking]] = (),
+) -> Solution:
+    """Posterior of causes by Laplace's method, exact where all are linear and within bounds.
+
+    Args:
+        products: as of `reduced`.
+        low: bounds of theta `(k,)`.
+        high: the same.
+        shape: parameters that only shape a trace; their prior deviation is 1 `(k,)`.
+        rules: of the inference.
+        factors: as of `Stack`.
+    """
+    found = [
+        _solve(products, low, high, shape, rules, factors, first)
+        for first in (rules.cause.width, FREE)
+    ]
+    return max(found, key=lambda one: one.gain)
+
+
+def _solve(
+    products: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    shape: np.ndarray,
+    rules: InferenceRules,
+    factors: Sequence[tuple[int, Factor | Shrinking]],
+    first: float,
+) -> Solution:
+    """As `solve`, from a first prior deviation of the sizes."""
+    normal, right = products[1:, 1:], products[1:, 0]
+    theta = np.zeros(len(low))
+    deviation = np.where(shape, 1.0, first)
+    for turn in range(ROUNDS):
+        if turn:
+            deviation = np.where(shape, 1.0, np.maximum(rules.cause.width, np.abs(theta)))
+        precision, target = normal + np.diag(1 / deviation**2), right.copy()
+        for place, factor in factors:
+            slope, bend = factor.slopes(float(theta[place]))
+            precision[place, place] += bend
+            target[place] += slope + bend * theta[place]
+        theta, covariance = _bounded(precision, target, low, high)
+    occam = -0.5 * float(np.sum((theta / deviation) ** 2))
+    occam -= float(np.sum(np.log(deviation))) + 0.5 * float(np.linalg.slogdet(precision)[1])
+    occam += sum(factor.log(float(theta[place])) for place, factor in factors)
+    gain = float(right @ theta - 0.5 * theta @ normal @ theta)
+    return Solution(theta, covariance, gain + occam, occam)
+
+
+def shifted(products: np.ndarray, last: bool) -> np.ndarray:
+    """Products whose last column, a constant trace, is taken off the residual; without it."""
+    if not last:
+        return products
+    found = products.copy()
+    found[0] -= products[-1]
+    found[:, 0] -= found[:, -1]
+    return found[:-1, :-1]

@@ -1,0 +1,183 @@
+"""From hypotheses and their evidence to a verdict: posterior probabilities, sets of causes that the
+data cannot tell apart, and what remains.
+
+| verdict | |
+|---|---|
+| `none` | nothing is the most probable, and no channel shows something unlisted |
+| `explained` | a set of causes is, and accounts for the main part of the gap |
+| `ambiguous` | the same, and rivals are as probable in the place of one of them |
+| `unknown` | something unlisted acts, and no listed cause accounts for the main part |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.inference.channel import ABSENT
+from hyperleg_design.gap.inference.hypothesis import EVERYWHERE
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.assembly import Evidence
+    from hyperleg_design.gap.inference.channel import Channel, Scales
+    from hyperleg_design.gap.inference.crossed import Prediction
+    from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
+    from hyperleg_design.gap.inference.rules import InferenceRules
+    from hyperleg_design.gap.inference.search import Result
+
+Name = tuple[str, str]
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """What the hypotheses say together."""
+
+    verdict: str
+    hypothesis: Hypothesis
+    """The most probable."""
+    order: tuple[int, ...]
+    """Its candidates, the one that explains most first."""
+    probability: dict[Name, float]
+    """Of each candidate in any hypothesis."""
+    rivals: tuple[tuple[Hypothesis, Candidate], ...]
+    """Other candidates and the best hypothesis with each, most probable first."""
+    alike: tuple[tuple[Name, ...], ...]
+    """For each candidate in `order`, what cannot be told from it."""
+    closed: float
+    """Share of the excess gap that the causes close."""
+    remainder: float
+    """Share of the gap that something unlisted makes."""
+
+
+def posterior_of(
+    result: Result, evidence: Evidence, held: Prediction, rules: InferenceRules
+) -> Posterior:
+    """The answer.
+
+    Args:
+        result: of the search.
+        evidence: what it was made on.
+        held: prediction of the most probable hypothesis on held-out blocks.
+        rules: of the inference.
+    """
+    own = rules.posterior
+    scores = np.array([one.score for one in result.hypotheses])
+    weights = np.exp(own.temperature * (scores - scores.max()))
+    weights /= weights.sum()
+    best = result.best
+    probability: dict[Name, float] = {}
+    for one, weight in zip(result.hypotheses, weights.tolist(), strict=True):
+        names = {name for candidate in one.candidates for name in _stated(candidate)}
+        for name in sorted(names):
+            probability[name] = probability.get(name, 0.0) + weight
+    probability = {name: min(p, own.most_certain) for name, p in probability.items()}
+    before, after, noise = (
+        mean_square(evidence, values) for values in (held.before, held.after, held.noise)
+    )
+    lowest = min(noise, after)
+    closed = float((before - after) / (before - lowest)) if before > lowest * (1 + 1e-9) else 0.0
+    acting = any(
+        unlisted(channel, scales, rules)
+        for channel, scales in zip(evidence.channels, best.scales, strict=True)
+    )
+    remainder = 0.0
+    if acting:
+        remainder = float(np.clip((after - lowest) / max(before - lowest, 1e-300), 0.0, 1.0))
+    if not best.candidates:
+        verdict = "unknown" if acting else "none"
+        return Posterior(verdict, best, (), probability, _rivals(result, best), (), 0.0, remainder)
+    order = tuple(np.argsort(-np.array(_effects(best)), kind="stable").tolist())
+    sets = tuple(_alike(result, best, place, rules) for place in order)
+    main = closed if acting else 1.0
+    verdict = "ambiguous" if any(sets) else "explained"
+    if main < own.main_part:
+        verdict = "unknown"
+    probability = {
+        name: p * (1 - remainder if remainder >= own.remainder else 1.0)
+        for name, p in probability.items()
+    }
+    return Posterior(
+        verdict, best, order, probability, _rivals(result, best), sets, closed, remainder
+    )
+
+
+def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
+    """Whether a channel's discrepancy is rather an unlisted effect's than a healthy robot's."""
+    prior = rules.discrepancy
+    if channel.referenced:
+        return scales.new > ABSENT
+    healthy = ((scales.standing - np.log(prior.standing)) / prior.standing_spread) ** 2
+    other = ((scales.standing - np.log(prior.unlisted)) / prior.unlisted_spread) ** 2
+    odds = np.log(prior.unlisted_probability / (1 - prior.unlisted_probability))
+    odds += 0.5 * (healthy - other) + np.log(prior.standing_spread / prior.unlisted_spread)
+    return bool(odds > 0 and scales.standing > np.log(prior.standing))
+
+
+def mean_square(evidence: Evidence, values: np.ndarray) -> float:
+    """Mean square over the noise of the channels' samples, each channel alike [-]."""
+    square = (values * evidence.weight) ** 2
+    found = []
+    for channel in evidence.channels:
+        number = float(evidence.samples.share[channel.samples].sum())
+        found.append(float(square[channel.samples].sum()) / max(number, 1e-300))
+    return float(np.mean(found))
+
+
+def _stated(candidate: Candidate) -> list[Name]:
+    """What a candidate states: itself, and, of an effect at all places, that it acts at each."""
+    return [candidate.name, *((cause.effect, cause.location) for cause in candidate.causes)]
+
+
+def _effects(hypothesis: Hypothesis) -> list[float]:
+    """How far the causes of each candidate stand out of their uncertainty, squared."""
+    found, place = [], 0
+    for one in hypothesis.candidates:
+        total = 0.0
+        for _ in one.causes:
+            part = hypothesis.parts[place]
+            theta = np.where(hypothesis.causes[place].shape, 0.0, hypothesis.theta[part])
+            spread = np.diag(hypothesis.covariance)[part]
+            total += float(np.sum(theta**2 / np.maximum(spread, 1e-300)))
+            place += 1
+        found.append(total / len(one.causes))
+    return found
+
+
+def _alike(result: Result, best: Hypothesis, place: int, rules: InferenceRules) -> tuple[Name, ...]:
+    """Candidates that could stand in the place of one, about as probably."""
+    rest = {one.name for i, one in enumerate(best.candidates) if i != place}
+    found = []
+    for other in result.hypotheses:
+        names = set(other.names)
+        new = names - rest
+        if len(new) != 1 or not rest <= names or best.candidates[place].name in new:
+            continue
+        (name,) = new
+        if best.score - other.score < rules.posterior.alike and name[1] != EVERYWHERE:
+            found.append(name)
+    return tuple(found)
+
+
+def _rivals(result: Result, best: Hypothesis) -> tuple[tuple[Hypothesis, Candidate], ...]:
+    seen: dict[Name, tuple[Hypothesis, Candidate]] = {}
+    known = {(cause.effect, cause.location) for cause in best.causes}
+    for one in result.hypotheses:
+        for candidate in one.candidates:
+            if candidate.name in seen or known.issuperset(_stated(candidate)[1:]):
+                continue
+            if candidate.name not in best.names:
+                seen[candidate.name] = (one, candidate)
+    return tuple(seen.values())
+
+
+def expanded(candidates: Sequence[Candidate]) -> list[tuple[int, Candidate]]:
+    """Place of each cause among those of all candidates, with its candidate."""
+    found, place = [], 0
+    for one in candidates:
+        for _ in one.causes:
+            found.append((place, one))
+            place += 1
+    return found

@@ -1,0 +1,141 @@
+"""Every number that the inference decides by, with its unit and where it comes from.
+
+Labels: *derived* follows from something else in the project, *assumed* is an engineering estimate,
+*developed* was chosen on the development cases of the benchmark (`validation/`) and simulated
+robots, never on held-out cases.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+
+from hyperleg_design.errors import InputError
+
+
+@dataclass(frozen=True)
+class NoiseRules:
+    """How much the samples of a residual tell."""
+
+    information: float = 0.4
+    """Share of the independent numbers of white noise that a sample counts for [-]; what is left of
+    a motion repeats with it (developed)."""
+    weight: float = 4.0
+    """Independent numbers that the expected noise counts for when that of a channel and band is
+    estimated [-] (assumed)."""
+
+
+@dataclass(frozen=True)
+class DiscrepancyRules:
+    """What the model of a healthy robot leaves of a residual, as a function of its state.
+
+    A scale multiplies the prior deviations of all discrepancy columns of one channel; its logarithm
+    has a normal prior.
+    """
+
+    share: float = 0.01
+    """Deviation of one shape over the load of its channel at scale 1 [-] (developed)."""
+    waves: int = 12
+    """Random cosine features beside the named shapes [-] (assumed)."""
+    standing: float = 1.0
+    """Median of the scale that all sessions share, without references [-] (developed)."""
+    standing_spread: float = 0.7
+    """Deviation of its logarithm [-] (developed)."""
+    referenced: float = 2.0
+    """Median of the same where reference logs teach it [-] (developed)."""
+    referenced_spread: float = 1.5
+    """Deviation of its logarithm [-]: references tell it, so the prior is wide (assumed)."""
+    change: float = 0.3
+    """Median of the scale of what changes from session to session [-] (developed)."""
+    change_spread: float = 0.7
+    """Deviation of its logarithm [-] (developed)."""
+    unlisted: float = 8.0
+    """Median of the scale of an unlisted effect, over that of a healthy robot [-] (assumed)."""
+    unlisted_spread: float = 1.0
+    """Deviation of its logarithm [-] (assumed)."""
+    unlisted_probability: float = 0.02
+    """Prior probability that something unlisted acts on one channel [-] (assumed)."""
+    truncation: float = 1e-3
+    """Directions of the discrepancy that change the residuals by less than this share of one
+    deviation of the noise, squared and summed over all samples, are left out [-] (derived)."""
+
+
+@dataclass(frozen=True)
+class CauseRules:
+    """What is known of causes before any log."""
+
+    probability: float = 0.5
+    """That anything of the catalogue is wrong [-] (assumed)."""
+    width: float = 3.0
+    """Prior deviation of a parameter over its effect's usual size [-]; a fit beyond it widens it
+    (assumed)."""
+
+
+@dataclass(frozen=True)
+class SearchRules:
+    """How far the hypotheses are searched."""
+
+    causes: int = 4
+    """Most places or groups of places in one set [-]."""
+    candidates: int = 8
+    """Effects at places that are fitted to the end in one step [-]."""
+    starts: int = 2
+    """Starts that a nonlinear effect is fitted from [-]."""
+    steps: int = 5
+    """Gauss-Newton steps of a start [-]."""
+    share: float = 0.25
+    """Gain over the best one's from which a candidate is fitted to the end [-] (assumed)."""
+    least: float = -1.5
+    """Gain in nats from which any is [nat] (assumed)."""
+    groups: int = 2
+    """Effects that are tried at all of their places at once in one step [-]."""
+    rounds: int = 3
+    """Of fitting causes and scales in turn [-]."""
+
+
+@dataclass(frozen=True)
+class PosteriorRules:
+    """From log evidence to an answer."""
+
+    temperature: float = 0.6
+    """Factor on differences of log evidence when probabilities are stated [-] (developed)."""
+    likely: float = 0.5
+    """Posterior probability of any cause at all from which causes are named [-]."""
+    alike: float = 2.5
+    """Difference of log posterior within which rivals count as one set [nat] (developed)."""
+    main_part: float = 0.4
+    """Share of the gap that causes must close, else the answer is `unknown` [-] (assumed)."""
+    remainder: float = 0.1
+    """Share of the gap that is left, from which a remainder is reported [-] (assumed)."""
+    most_certain: float = 0.985
+    """Highest probability that is stated [-] (assumed)."""
+
+
+@dataclass(frozen=True)
+class InferenceRules:
+    """All rules of the inference."""
+
+    noise: NoiseRules = field(default_factory=NoiseRules)
+    discrepancy: DiscrepancyRules = field(default_factory=DiscrepancyRules)
+    cause: CauseRules = field(default_factory=CauseRules)
+    search: SearchRules = field(default_factory=SearchRules)
+    posterior: PosteriorRules = field(default_factory=PosteriorRules)
+
+    def __post_init__(self) -> None:
+        """Check that every number is finite.
+
+        Raises:
+            InputError: a number that is not.
+        """
+        for section in dataclasses.fields(self):
+            values = getattr(self, section.name)
+            for rule in dataclasses.fields(values):
+                value = getattr(values, rule.name)
+                if not math.isfinite(value):
+                    raise InputError(
+                        "inference rules",
+                        f"{section.name}.{rule.name}",
+                        value,
+                        "expects a finite number",
+                    )

@@ -1,0 +1,380 @@
+"""The search for the hypotheses with the largest posterior probability: nothing, each effect at
+each place, an effect at all of its places, and sets of them by forward and backward steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.hypothesis import (
+    EVERYWHERE,
+    Candidate,
+    Hypothesis,
+    Solution,
+    Stack,
+    reduced,
+    shifted,
+    solve,
+)
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.assembly import Evidence
+    from hyperleg_design.gap.inference.channel import Scales
+    from hyperleg_design.gap.inference.fit import Cause
+    from hyperleg_design.gap.inference.rules import InferenceRules
+
+CLOSE = 0.02
+"""Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""
+WHOLE_STEPS = 3
+"""Gauss-Newton steps before they are halved."""
+EASED = 2.0
+"""Noise over the expected, in variance, at most where a fit begins [-]."""
+LARGEST = 10.0
+"""Size of a start's trace that is tried, over the start's own [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Samples:
+    """What `screen` needs of a base."""
+
+    samples: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Promise:
+    """An effect at a place and what it gains at fixed scales, by its columns or by one start."""
+
+    effect: str
+    location: str
+    variant: int
+    gain: float
+    """[nat]"""
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """All hypotheses that were fitted, best first."""
+
+    hypotheses: tuple[Hypothesis, ...]
+    not_judged: tuple[screen.NotJudged, ...]
+
+    @property
+    def best(self) -> Hypothesis:
+        """The one with the largest posterior probability."""
+        return self.hypotheses[0]
+
+
+class Search:
+    """Hypotheses on one body of evidence.
+
+    Args:
+        evidence: channels.
+        rules: of the inference.
+        places: effects and locations that are tried.
+        threads: that share the work; they change no result.
+    """
+
+    def __init__(
+        self,
+        evidence: Evidence,
+        rules: InferenceRules,
+        places: Sequence[tuple[str, str]],
+        threads: int = 1,
+    ) -> None:
+        self.evidence, self.rules, self.threads = evidence, rules, threads
+        self.places = tuple(places)
+        self.count = {name: sum(e == name for e, _ in places) for name, _ in places}
+
+    @cached_property
+    def nothing(self) -> Hypothesis:
+        """No cause: noise and discrepancy alone."""
+        scales = tuple(
+            screen.spread(
+                lambda one: one.fitted(one.start(self.rules), self.rules),
+                self.evidence.channels,
+                self.threads,
+            )
+        )
+        prior = float(np.log(1 - self.rules.cause.probability))
+        return Hypothesis((), np.zeros(0), np.zeros((0, 0)), scales, 0.0, prior)
+
+    @cached_property
+    def ground(self) -> np.ndarray:
+        """Log posterior of each channel without any cause `(channels,)` [nat]."""
+        return np.array(
+            [
+                channel.log_posterior(scales, self.rules)
+                for channel, scales in zip(self.evidence.channels, self.nothing.scales, strict=True)
+            ]
+        )
+
+    @cached_property
+    def traces(self) -> dict[tuple[str, str], screen.Traces]:
+        """What each effect leaves at each place."""
+        base: Any = _Samples(self.evidence.samples)
+        found = screen.spread(
+            lambda name: screen._trace(base, EFFECTS[name[0]], name[1]), self.places, self.threads
+        )
+        return {
+            name: [self.evidence.scaled(c) for c in one] if isinstance(one, list) else one
+            for name, one in zip(self.places, found, strict=True)
+        }
+
+    def result(self) -> Result:
+        """Search forward until no further cause is worth its prior, then drop what is not."""
+        fitted: dict[tuple[tuple[str, str], ...], Hypothesis] = {(): self.nothing}
+        current = self.nothing
+        for _ in range(self.rules.search.causes):
+            further = self.further(current)
+            for one in further:
+                before = fitted.get(one.names)
+                if before is None or one.score > before.score:
+                    fitted[one.names] = one
+            best = max(further, key=lambda one: one.score, default=current)
+            if best.score <= current.score:
+                break
+            current = best
+            for place in range(len(current.candidates) - 1):
+                rest = current.candidates[:place] + current.candidates[place + 1 :]
+                fewer = self.fit(rest, current.scales)
+                fitted.setdefault(fewer.names, fewer)
+                if fewer.score > current.score:
+                    current = fewer
+        ranked = sorted(fitted.values(), key=lambda one: (-one.score, one.names))
+        missing = tuple(t for t in self.traces.values() if isinstance(t, screen.NotJudged))
+        return Result(tuple(ranked), missing)
+
+    def further(self, current: Hypothesis) -> list[Hypothesis]:
+        """Fit the most promising causes beside those of a hypothesis."""
+        rules = self.rules.search
+        promises: dict[tuple[str, str], list[Promise]] = {}
+        for one in self.promises(current):
+            promises.setdefault((one.effect, one.location), []).append(one)
+        names = sorted(promises, key=lambda name: (-promises[name][0].gain, name))
+        if not names:
+            return []
+        least = max(rules.share * promises[names[0]][0].gain, rules.least)
+        chosen = [n for n in names if promises[n][0].gain > least][: rules.candidates]
+        fitted = screen.spread(
+            lambda name: self.best_of(promises[name][: rules.starts], current),
+            chosen,
+            self.threads,
+        )
+        found = [one for one in fitted if one is not None]
+        effects = list(dict.fromkeys(effect for effect, _ in chosen))
+        whole = [
+            effect
+            for effect in effects
+            if EFFECTS[effect].linear
+            and self.count[effect] > 1
+            and all(one.effect != effect for one in current.candidates)
+        ][: rules.groups]
+        for effect in whole:
+            own = sorted(name for name in promises if name[0] == effect)
+            causes = [self.candidate(promises[name][0], current) for name in own]
+            joined = tuple(c for one in causes if one is not None for c in one.causes)
+            if len(joined) > 1:
+                everywhere = Candidate(effect, EVERYWHERE, joined)
+                found.append(self.fit((*current.candidates, everywhere), current.scales))
+        return found
+
+    def promises(self, current: Hypothesis) -> list[Promise]:
+        """Gain of every effect at every place beside a hypothesis, at its scales, best first."""
+        beside, weight = current.causes, self.evidence.weight
+        taken = {(c.effect, c.location) for c in beside}
+        base = Stack.of(beside, weight) if beside else None
+        blocks = [] if base is None else [base.columns, base.constant[None]]
+        at = sum(len(one) for one in blocks)
+        entries: list[tuple[Promise, np.ndarray, Cause | None]] = []
+        for (effect, location), traced in self.traces.items():
+            if (effect, location) in taken or isinstance(traced, screen.NotJudged):
+                continue
+            options: list[Any] = traced if isinstance(traced, list) else list(traced[1])
+            for variant, option in enumerate(options):
+                cause = option if not isinstance(option, np.ndarray) else None
+                columns = option[None] if cause is None else option.columns
+                blocks.append(columns * weight)
+                place = np.arange(at, at + len(columns))
+                entries.append((Promise(effect, location, variant, 0.0), place, cause))
+                at += len(columns)
+        if not entries:
+            return []
+        products = reduced(self.evidence, current.scales, np.concatenate(blocks))
+        known = 0
+        if base is not None:
+            known = len(base.columns)
+            products[0] -= products[known + 1]
+            products[:, 0] -= products[:, known + 1]
+        start = self._solved(products, base, np.zeros(0, int), None).gain if base else 0.0
+        found = [
+            Promise(
+                one.effect,
+                one.location,
+                one.variant,
+                self._solved(products, base, place, cause).gain - start,
+            )
+            for one, place, cause in entries
+        ]
+        return sorted(found, key=lambda one: (-one.gain, one.effect, one.location, one.variant))
+
+    def _solved(
+        self,
+        products: np.ndarray,
+        base: Stack | None,
+        place: np.ndarray,
+        cause: Cause | None,
+    ) -> Solution:
+        """One candidate's columns beside those of a base."""
+        known = 0 if base is None else len(base.columns)
+        some = np.r_[0, 1 + np.arange(known), 1 + place]
+        none = np.zeros(0)
+        stacks = [] if base is None else [(base.low, base.high, base.shape)]
+        factors = [] if base is None else list(base.factors)
+        if cause is not None:
+            low, high = ((end - cause.nulls) / cause.usual for end in (cause.low, cause.high))
+            stacks.append((low, high, cause.shape))
+            if cause.factor is not None:
+                factors.append((known + cause.factor.parameter, cause.factor))
+        elif len(place):
+            stacks.append((np.zeros(1), np.full(1, LARGEST), np.zeros(1, bool)))
+        low, high, shape = (
+            np.concatenate([s[i] for s in stacks]) if stacks else none for i in range(3)
+        )
+        return solve(
+            products[np.ix_(some, some)], low, high, shape.astype(bool), self.rules, factors
+        )
+
+    def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
+        """The best fit of an effect at a place beside a hypothesis, from several starts."""
+        linear = EFFECTS[promises[0].effect].linear
+        found = [
+            self.fit((*current.candidates, one), current.scales)
+            for promise in promises[: 1 if linear else None]
+            if (one := self.candidate(promise, current)) is not None
+        ]
+        return max(found, key=lambda one: one.score, default=None)
+
+    def candidate(self, promise: Promise, current: Hypothesis) -> Candidate | None:
+        """An effect linearised where it fits best, by Gauss-Newton steps at fixed scales."""
+        traced = self.traces[promise.effect, promise.location]
+        if isinstance(traced, list):
+            return Candidate(promise.effect, promise.location, (traced[promise.variant],))
+        assert not isinstance(traced, screen.NotJudged)
+        effect = EFFECTS[promise.effect]
+        subject = self.evidence.signals[0].subject
+        low, high = effect.bounds(promise.location, subject)
+        values = np.array(traced[0][promise.variant], float)
+        scales = eased(current.scales)
+        best: tuple[float, Cause] | None = None
+        for step in range(self.rules.search.steps):
+            cause = screen.linearise(self.evidence.samples, effect, promise.location, values)
+            if cause is None:
+                break
+            cause = self.evidence.scaled(cause)
+            stack = Stack.of((*current.causes, cause), self.evidence.weight)
+            solution = self._fitted(stack, scales)
+            if best is None or solution.gain > best[0]:
+                best = solution.gain, cause
+            wanted = cause.nulls + solution.theta[-len(cause.nulls) :] * cause.usual
+            move = np.clip(wanted, low, high) - values
+            if np.max(np.abs(move) / cause.usual) < CLOSE:
+                break
+            values = values + move * (1.0 if step < WHOLE_STEPS else 0.5)
+        return None if best is None else Candidate(promise.effect, promise.location, (best[1],))
+
+    def _fitted(self, stack: Stack, scales: Sequence[Scales]) -> Solution:
+        """Causes at fixed scales; the gain is over no cause at these."""
+        last = bool(stack.constant.any())
+        columns = np.concatenate([stack.columns, stack.constant[None]]) if last else stack.columns
+        products = reduced(self.evidence, scales, columns)
+        own = shifted(products, last)
+        solution = solve(own, stack.low, stack.high, stack.shape, self.rules, stack.factors)
+        change = -0.5 * float(own[0, 0] - products[0, 0])
+        return Solution(solution.theta, solution.covariance, solution.gain + change, solution.occam)
+
+    def fit(self, candidates: Sequence[Candidate], scales: Sequence[Scales]) -> Hypothesis:
+        """Fit causes and the scales of the channels that they show in, in turn: from scales as they
+        are, and from ones whose noise does not hide what the causes explain.
+
+        Args:
+            candidates: of the hypothesis.
+            scales: to begin with.
+        """
+        found = [self._fit(candidates, scales)]
+        if max(float(one.noise.max()) for one in scales) > EASED:
+            found.append(self._fit(candidates, eased(scales)))
+        return max(found, key=lambda one: one.score)
+
+    def _fit(self, candidates: Sequence[Candidate], scales: Sequence[Scales]) -> Hypothesis:
+        causes = [c for one in candidates for c in one.causes]
+        stack = Stack.of(causes, self.evidence.weight)
+        channels = self.evidence.channels
+        shown = [
+            bool(np.any(stack.columns[:, one.samples]) or np.any(stack.constant[one.samples]))
+            for one in channels
+        ]
+        found = list(scales)
+        for _ in range(self.rules.search.rounds):
+            solution = self._fitted(stack, found)
+            trace = solution.theta @ stack.columns + stack.constant
+            found = [
+                channel.without(trace).fitted(own, self.rules, 2) if seen else own
+                for channel, own, seen in zip(channels, found, shown, strict=True)
+            ]
+        solution = self._fitted(stack, found)
+        trace = solution.theta @ stack.columns + stack.constant
+        likelihood = solution.occam
+        for place, (channel, own) in enumerate(zip(channels, found, strict=True)):
+            left = channel.without(trace) if shown[place] else channel
+            likelihood += left.log_posterior(own, self.rules) - self.ground[place]
+        hypothesis = Hypothesis(
+            tuple(candidates), solution.theta, solution.covariance, tuple(found), likelihood, 0.0
+        )
+        return Hypothesis(
+            hypothesis.candidates,
+            hypothesis.theta,
+            hypothesis.covariance,
+            hypothesis.scales,
+            likelihood,
+            self.log_prior(hypothesis),
+        )
+
+    def log_prior(self, hypothesis: Hypothesis) -> float:
+        """Log prior probability of a set of causes at their values [nat]: each effect is as likely
+        as any other, at each of its places, or at all of them.
+        """
+        found, place = 0.0, 0
+        for one in hypothesis.candidates:
+            found += float(np.log(self.rules.cause.probability / len(self.count)))
+            found -= float(np.log(self.count[one.effect] + (self.count[one.effect] > 1)))
+            odds = []
+            for cause in one.causes:
+                values = hypothesis.values(place)
+                odds.append(
+                    EFFECTS[cause.effect].odds(
+                        cause.location, self.evidence.signals[0].subject, values
+                    )
+                    + prior_odds(cause, values)
+                )
+                place += 1
+            found += float(np.mean(odds))
+        return found
+
+
+def eased(scales: Sequence[Scales]) -> tuple[Scales, ...]:
+    """Scales whose noise is at most `EASED`."""
+    return tuple(replace(one, noise=np.minimum(one.noise, EASED)) for one in scales)
+
+
+def prior_odds(cause: Cause, values: np.ndarray) -> float:
+    """Log prior odds of a cause at some values, beside those that its effect states."""
+    from hyperleg_design.gap.inference.judge import _odds
+
+    return min(_odds(cause, values) - cause.odds, 0.0)

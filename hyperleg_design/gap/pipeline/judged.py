@@ -1,0 +1,353 @@
+"""A diagnosis from the posterior of the hypotheses: verdict, gap, causes, rivals, remainder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design import provenance
+from hyperleg_design.gap.experiments import experiment
+from hyperleg_design.gap.inference.assembly import Evidence, evidence_of
+from hyperleg_design.gap.inference.crossed import Prediction, predicted
+from hyperleg_design.gap.inference.detectable import detectable
+from hyperleg_design.gap.inference.parameters import intervals
+from hyperleg_design.gap.inference.posterior import Posterior, expanded, posterior_of
+from hyperleg_design.gap.inference.search import Result, Search
+from hyperleg_design.gap.results.diagnosis import (
+    LEAST_SHARE,
+    MOST_RIVALS,
+    NAMING,
+    Diagnosis,
+    Named,
+    Place,
+    Shrinkage,
+)
+from hyperleg_design.gap.results.finding import NOTE, WARNING
+from hyperleg_design.gap.signals.signals import RESIDUALS
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.checks.check import Check
+    from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
+    from hyperleg_design.gap.inference.rules import InferenceRules
+    from hyperleg_design.gap.inference.thresholds import Thresholds
+    from hyperleg_design.gap.signals.signals import Signals
+
+DRAWS = 400
+"""Of the block bootstrap."""
+CLEAR = 2.0
+"""Standard deviations from its null from which a place of an effect at all places is named."""
+COUNTS = 0.25
+"""Channels count for the gap from this share of the largest excess of any (assumed)."""
+
+
+def judge_signals(
+    signals: Sequence[Signals],
+    references: Sequence[Signals],
+    places: Sequence[tuple[str, str]],
+    rules: InferenceRules,
+    thresholds: Thresholds,
+    *,
+    seed: int = 0,
+    threads: int = 1,
+    checks: Sequence[Check] = (),
+    sensitivity: bool = True,
+) -> Diagnosis:
+    """Diagnose conditioned logs by the posterior of the hypotheses.
+
+    Args:
+        signals: of logs under test.
+        references: of logs of the healthy robot.
+        places: effects and locations that are tried.
+        rules: of the inference.
+        thresholds: of the noise model.
+        seed: of the bootstrap.
+        threads: that share the work; they change no result.
+        checks: of the logs, for remarks.
+        sensitivity: whether to say what these logs could have shown.
+    """
+    evidence = evidence_of(signals, references, rules, thresholds)
+    search = Search(evidence, rules, places, threads)
+    result = search.result()
+    held = predicted(evidence, result.best, rules)
+    posterior = posterior_of(result, evidence, held, rules)
+    answer = _Answer(evidence, result, posterior, held, rules, thresholds, seed)
+    return answer.diagnosis(
+        checks, tuple(one.mapping() for one in detectable(search)) if sensitivity else ()
+    )
+
+
+class _Answer:
+    """What the file tells of a posterior."""
+
+    def __init__(
+        self,
+        evidence: Evidence,
+        result: Result,
+        posterior: Posterior,
+        held: Prediction,
+        rules: InferenceRules,
+        thresholds: Thresholds,
+        seed: int,
+    ) -> None:
+        self.evidence, self.result, self.posterior, self.held = evidence, result, posterior, held
+        self.rules, self.thresholds, self.seed = rules, thresholds, seed
+        self.squares = {
+            name: self._squares(getattr(held, name)) for name in ("before", "after", "noise")
+        }
+        self.counts = self._counts()
+
+    def diagnosis(self, checks: Sequence[Check], sensitivity: Any) -> Diagnosis:
+        """All of it."""
+        told = self.posterior
+        naming = told.verdict in NAMING
+        causes = self.causes() if told.hypothesis.candidates else ()
+        rivals = self.rivals()
+        if not naming:
+            rivals, causes = (*causes, *rivals), ()
+            most = sum(one.probability for one in rivals)
+            if most > 1 - self.rules.posterior.likely:
+                share = (1 - self.rules.posterior.likely) / most
+                rivals = tuple(_scaled(one, share) for one in rivals)
+        equivalent = tuple(
+            (told.hypothesis.candidates[place].name, *group)
+            for place, group in zip(told.order, told.alike, strict=True)
+            if group and naming
+        )
+        trial = experiment.separating(equivalent[0]) if equivalent else None
+        left = told.remainder if told.remainder >= self.rules.posterior.remainder else None
+        return Diagnosis(
+            verdict=told.verdict,
+            gap=self.gap(naming),
+            where=self.where(),
+            causes=causes,
+            rivals=rivals[:MOST_RIVALS],
+            equivalent=equivalent,
+            separating_experiment=None
+            if trial is None
+            else experiment.as_mapping(trial, equivalent[0]),
+            not_judged=tuple(
+                {"effect": n.effect, "location": n.location, "reason": n.reason}
+                for n in self.result.not_judged
+            ),
+            residual_shape=self.shape(),
+            checks=self.remarks(checks),
+            sensitivity=sensitivity,
+            provenance=self.provenance(),
+            remainder=left,
+        )
+
+    def causes(self) -> tuple[Named, ...]:
+        """Of the most probable hypothesis, the one that explains most first."""
+        told = self.posterior
+        found: list[Named] = []
+        for place in told.order:
+            found += self.named(told.hypothesis, told.hypothesis.candidates[place])
+        return tuple(found)
+
+    def named(self, hypothesis: Hypothesis, candidate: Candidate) -> list[Named]:
+        """A candidate's causes with parameters: one, or one a place where it acts."""
+        probability = self.posterior.probability[candidate.name]
+        subject = self.evidence.signals[0].subject
+        found: list[tuple[float, Named]] = []
+        for place, own in expanded(hypothesis.candidates):
+            if own is not candidate:
+                continue
+            cause = hypothesis.causes[place]
+            values = hypothesis.values(place)
+            deviation = self.thresholds.interval * hypothesis.deviation(place)
+            clear = np.abs(values - cause.nulls) / np.maximum(deviation, 1e-300)
+            stands = float(np.max(np.where(cause.shape, 0.0, clear)))
+            named = Named(
+                cause.effect,
+                cause.location,
+                probability,
+                self.closed_by(hypothesis, place),
+                intervals(cause, values, deviation, subject),
+            )
+            found.append((stands, named))
+        clear_ones = [named for stands, named in found if stands >= CLEAR]
+        return clear_ones or [max(found, key=lambda one: one[0])[1]]
+
+    def closed_by(self, hypothesis: Hypothesis, place: int) -> float:
+        """Share of the gap that one cause closes."""
+        if hypothesis is not self.posterior.hypothesis or not self.posterior.hypothesis.causes:
+            return 0.0
+        part = hypothesis.parts[place]
+        own = hypothesis.causes[place].trace(hypothesis.theta[part])
+        others = self.held.before - (self.held.trace - own)
+        before = self._total(self._squares(others))
+        after = self._total(self.squares["after"])
+        first = self._total(self.squares["before"])
+        lowest = self.lowest()
+        total = np.sqrt(first) - np.sqrt(lowest)
+        if total <= 1e-12:
+            return 0.0
+        return float(np.clip((np.sqrt(before) - np.sqrt(after)) / total, -9.99, 1.0))
+
+    def rivals(self) -> tuple[Named, ...]:
+        """Other candidates, most probable first."""
+        found: list[Named] = []
+        for hypothesis, candidate in self.posterior.rivals[:MOST_RIVALS]:
+            own = [one for one in self.named(hypothesis, candidate) if not self.told(one)]
+            found += own[:1]
+        return tuple(sorted(found, key=lambda one: (-one.probability, one.effect, one.location)))
+
+    def told(self, one: Named) -> bool:
+        """Whether a rival is a cause of the most probable hypothesis itself."""
+        return any(
+            (cause.effect, cause.location) == (one.effect, one.location)
+            for cause in self.posterior.hypothesis.causes
+        )
+
+    def gap(self, naming: bool) -> Shrinkage:
+        """Before, after and floor over the channels that count, in their unit."""
+        scale = float(np.sqrt(self._total(self._squares(1 / self.evidence.weight))))
+        before, after = (float(np.sqrt(self._total(self.squares[n]))) for n in ("before", "after"))
+        lowest = float(np.sqrt(self.lowest()))
+        closed, low, high = 0.0, 0.0, 0.0
+        if naming and before > lowest * (1 + 1e-9):
+            closed = min((before - after) / (before - lowest), 1.0)
+            drawn = self.drawn()
+            low, high = (float(v) for v in np.percentile(drawn, [2.5, 97.5]))
+        else:
+            after = before
+        return Shrinkage(
+            before * scale,
+            after * scale,
+            min(lowest, after) * scale,
+            max(closed, -9.99),
+            (max(min(low, closed), -9.99), max(high, closed)),
+            self.unit(),
+        )
+
+    def drawn(self) -> np.ndarray:
+        """Share closed in bootstrap draws of blocks `(DRAWS,)`."""
+        samples = self.evidence.samples
+        count = int(samples.block.max(initial=0)) + 1
+        rng = np.random.default_rng([self.seed, 20])
+        draws = rng.multinomial(count, np.full(count, 1 / count), size=DRAWS).astype(float)
+        chosen = np.zeros(len(samples.value), bool)
+        for place in np.flatnonzero(self.counts).tolist():
+            chosen[self.evidence.channels[place].samples] = True
+        sums = {
+            name: draws
+            @ np.bincount(
+                samples.block[chosen],
+                ((getattr(self.held, name) * self.evidence.weight) ** 2)[chosen],
+                count,
+            )
+            for name in ("before", "after", "noise")
+        }
+        before, after = np.sqrt(sums["before"]), np.sqrt(sums["after"])
+        lowest = np.minimum(np.sqrt(sums["noise"]), after)
+        return np.minimum((before - after) / np.maximum(before - lowest, 1e-12), 1.0)
+
+    def lowest(self) -> float:
+        """Mean square that no cause can go below."""
+        return min(self._total(self.squares["noise"]), self._total(self.squares["after"]))
+
+    def _squares(self, values: np.ndarray) -> np.ndarray:
+        """Mean square over the noise of each channel `(channels,)`."""
+        weighed = (values * self.evidence.weight) ** 2
+        return np.array(
+            [
+                float(weighed[one.samples].sum())
+                / max(float(self.evidence.samples.share[one.samples].sum()), 1e-300)
+                for one in self.evidence.channels
+            ]
+        )
+
+    def _total(self, squares: np.ndarray) -> float:
+        """Mean over the channels that count."""
+        return float(np.mean(squares[self.counts]))
+
+    def _counts(self) -> np.ndarray:
+        """Channels that count for the gap, all in the unit of the largest `(channels,)` of bool."""
+        excess = np.maximum(self.squares["before"] - self.squares["noise"], 0.0)
+        kinds = [RESIDUALS[one.residual][1] for one in self.evidence.channels]
+        largest = int(np.argmax(excess))
+        same = np.array([kind == kinds[largest] for kind in kinds])
+        return same & (excess >= COUNTS * excess[largest])
+
+    def unit(self) -> str:
+        """Of the channels that count."""
+        place = int(np.flatnonzero(self.counts)[0])
+        return RESIDUALS[self.evidence.channels[place].residual][1]
+
+    def where(self) -> tuple[Place, ...]:
+        """Shares of the excess by place."""
+        excess = np.maximum(self.squares["before"] - self.squares["noise"], 0.0)
+        shares: dict[tuple[str, str], float] = {}
+        for one, value in zip(self.evidence.channels, excess.tolist(), strict=True):
+            kind = RESIDUALS[one.residual][0]
+            name = one.name
+            if one.residual == "ground":
+                name = one.name.rsplit("_", 1)[0]
+            if one.residual == "base":
+                name = "robot"
+            shares[name, kind] = shares.get((name, kind), 0.0) + value
+        total = sum(shares.values())
+        if total <= 0:
+            return ()
+        ranked = sorted(shares.items(), key=lambda item: (-item[1], item[0]))
+        return tuple(
+            Place(name, kind, "all", value / total)
+            for (name, kind), value in ranked
+            if value / total >= LEAST_SHARE
+        )
+
+    def shape(self) -> tuple[dict[str, Any], ...]:
+        """Channels in which something unlisted acts."""
+        left = self._squares(self.held.unlisted)
+        found = []
+        for place in np.argsort(-left, kind="stable").tolist()[:3]:
+            if left[place] <= 0 or self.posterior.remainder <= 0:
+                continue
+            one = self.evidence.channels[place]
+            says = f"the {one.residual} residual of {one.name} depends on the state in another way"
+            found.append(
+                {
+                    "shape": "unlisted",
+                    "location": one.name,
+                    "says": says + " than a healthy robot's, and no listed effect says why",
+                    "closed_beyond": float(left[place] / max(left.sum(), 1e-300)),
+                    "gain": 0.0,
+                }
+            )
+        return tuple(found)
+
+    def remarks(self, checks: Sequence[Check]) -> tuple[str, ...]:
+        """Remarks on the logs."""
+        found = []
+        for check in checks:
+            found += [
+                f"{check.name}: {f.severity}: {f.signal + ' ' if f.signal else ''}{f.what}"
+                for f in check.findings
+                if f.severity in (WARNING, NOTE)
+            ]
+        for s in (*self.evidence.signals, *self.evidence.references):
+            found += [f"{s.log.name}: {note}" for note in s.notes]
+        if not self.evidence.references:
+            found.append(
+                "no reference logs: what the model leaves is judged by how well robots are known "
+                "usually"
+            )
+        return tuple(dict.fromkeys(found))
+
+    def provenance(self) -> dict[str, Any]:
+        """What made it, of which logs."""
+        return {
+            "logs": [s.log.name for s in self.evidence.signals],
+            "reference": [s.log.name for s in self.evidence.references],
+            "robot": self.evidence.signals[0].subject.name,
+            "seed": self.seed,
+            "held_out": "blocks",
+            "commit": provenance.git_commit(),
+            "versions": provenance.versions(("hyperleg-design", "numpy", "scipy")),
+        }
+
+
+def _scaled(one: Named, share: float) -> Named:
+    return Named(one.effect, one.location, one.probability * share, one.closed, one.parameters)

@@ -1,0 +1,162 @@
+"""The model of one channel against dense Gaussian algebra, and what follows from it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from hyperleg_design.gap.inference.channel import Channel, Scales
+from hyperleg_design.gap.inference.rules import InferenceRules
+
+RULES = InferenceRules()
+
+
+def made(
+    rng: np.random.Generator, sessions: int = 3, tested: int = 1, count: int = 40, k: int = 4
+) -> tuple[Channel, list[np.ndarray]]:
+    """A channel with two bands a session, and its whitened columns (residual last)."""
+    white, session, band, places, start = [], [], [], [], 0
+    for s in range(sessions):
+        for b in range(2):
+            white.append(rng.standard_normal((k + 1, count)))
+            session.append(s)
+            band.append(b if s < tested else 2 + b)
+            own = s < tested
+            places.append(np.arange(start, start + count) if own else np.zeros(0, int))
+            start += count if own else 0
+    channel = Channel(
+        "motion",
+        0,
+        "joint",
+        np.array([one @ one.T for one in white]),
+        np.full(len(white), float(count)),
+        np.array(session),
+        np.array(band),
+        np.arange(sessions) < tested,
+        tuple(places),
+        tuple(white),
+    )
+    return channel, white
+
+
+def dense(channel: Channel, scales: Scales) -> np.ndarray:
+    """Marginal covariance of all samples, cell after cell."""
+    change = channel.change_scales(scales) ** 2
+    sizes = [one.shape[1] for one in channel.whitened]
+    ends = np.cumsum([0, *sizes])
+    found = np.zeros((ends[-1], ends[-1]))
+    for i, one in enumerate(channel.whitened):
+        for j, other in enumerate(channel.whitened):
+            shared = np.exp(2 * scales.standing)
+            if channel.session[i] == channel.session[j]:
+                shared += change[channel.session[i]]
+            block = shared * one[:-1].T @ other[:-1]
+            if i == j:
+                block = block + np.eye(sizes[i]) * scales.noise[channel.band[i]]
+            found[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
+    return found
+
+
+SCALES = Scales(np.array([0.7, 1.9, 1.2, 0.4]), np.log(0.8), np.log(0.5), np.log(3.0))
+
+
+@pytest.mark.parametrize(("sessions", "tested"), [(1, 1), (2, 2), (3, 1), (4, 2)])
+def test_marginal_likelihood_is_that_of_the_normal_distribution(sessions, tested):
+    channel, white = made(np.random.default_rng(sessions), sessions, tested)
+    scales = replace(SCALES, noise=SCALES.noise[: len(channel.numbers)])
+    value = np.concatenate([one[-1] for one in white])
+    covariance = dense(channel, scales)
+    expected = multivariate_normal(cov=covariance).logpdf(value)
+    expected += 0.5 * len(value) * np.log(2 * np.pi)
+    assert channel.log_likelihood(scales) == pytest.approx(expected, rel=1e-9)
+
+
+def test_reduced_products_are_those_in_the_metric_of_the_covariance():
+    rng = np.random.default_rng(5)
+    channel, white = made(rng)
+    columns = rng.standard_normal((3, len(channel.samples)))
+    left, _ = channel.reduced(
+        SCALES, channel.summed(SCALES.noise, channel.stacked(*channel.crossed(columns)))
+    )
+    total = sum(one.shape[1] for one in white)
+    whole = np.zeros((4, total))
+    whole[0] = np.concatenate([one[-1] for one in white])
+    whole[1:, : columns.shape[1]] = columns
+    expected = whole @ np.linalg.solve(dense(channel, SCALES), whole.T)
+    np.testing.assert_allclose(left, expected, rtol=1e-8, atol=1e-9)
+
+
+def test_posterior_of_the_discrepancy_is_that_of_the_normal_equations():
+    channel, white = made(np.random.default_rng(8))
+    means, covariances = channel.discrepancy(SCALES)
+    k, sessions = channel.columns, len(channel.tested)
+    change = channel.change_scales(SCALES) ** 2
+    precision = np.zeros((k * (1 + sessions),) * 2)
+    precision[:k, :k] = np.eye(k) / np.exp(2 * SCALES.standing)
+    right = np.zeros(len(precision))
+    for s in range(sessions):
+        own = slice(k * (1 + s), k * (2 + s))
+        precision[own, own] = np.eye(k) / change[s]
+    for cell, one in enumerate(white):
+        s, noise = channel.session[cell], SCALES.noise[channel.band[cell]]
+        both = np.r_[0:k, k * (1 + s) : k * (2 + s)]
+        stacked = np.concatenate([one[:-1], one[:-1]])
+        precision[np.ix_(both, both)] += stacked @ stacked.T / noise
+        right[both] += stacked @ one[-1] / noise
+    covariance = np.linalg.inv(precision)
+    mean = covariance @ right
+    for s in range(sessions):
+        turn = np.zeros((k, len(right)))
+        turn[:, :k] = turn[:, k * (1 + s) : k * (2 + s)] = np.eye(k)
+        np.testing.assert_allclose(means[s], turn @ mean, rtol=1e-7, atol=1e-9)
+        np.testing.assert_allclose(covariances[s], turn @ covariance @ turn.T, atol=1e-9)
+
+
+def test_taking_a_trace_off_is_the_same_as_another_residual():
+    rng = np.random.default_rng(11)
+    channel, white = made(rng)
+    trace = rng.standard_normal(len(channel.samples))
+    changed = []
+    for place, one in zip(channel.places, white, strict=True):
+        other = one.copy()
+        if len(place):
+            other[-1] -= trace[place]
+        changed.append(other @ other.T)
+    np.testing.assert_allclose(channel.without(trace).products, changed, atol=1e-9)
+
+
+def test_fitting_scales_never_lowers_the_posterior():
+    rng = np.random.default_rng(3)
+    channel, _ = made(rng, count=120)
+    start = channel.start(RULES)
+    fitted = channel.fitted(start, RULES)
+    assert channel.log_posterior(fitted, RULES) >= channel.log_posterior(start, RULES)
+
+
+def test_noise_is_found_where_nothing_else_acts():
+    rng = np.random.default_rng(21)
+    channel, _ = made(rng, sessions=1, count=4000, k=2)
+    quiet = replace(channel, products=channel.products * np.array([1.0, 9.0])[:, None, None])
+    fitted = quiet.fitted(quiet.start(RULES), RULES)
+    np.testing.assert_allclose(fitted.noise, [1.0, 9.0], rtol=0.1)
+
+
+def test_a_change_under_test_alone_is_unlisted_and_one_in_all_sessions_is_not():
+    rng = np.random.default_rng(2)
+    channel, white = made(rng, sessions=4, count=200, k=12)
+    for bent, unlisted in ((range(1), True), (range(4), False)):
+        weights = 6.0 * rng.standard_normal(12)
+        changed = []
+        for s, one in zip(channel.session, white, strict=True):
+            other = one.copy()
+            if s in bent:
+                other[-1] += weights @ one[:-1]
+            changed.append(other)
+        own = replace(
+            channel, whitened=tuple(changed), products=np.array([o @ o.T for o in changed])
+        )
+        fitted = own.fitted(own.start(RULES), RULES)
+        assert (fitted.new > 0) is unlisted

@@ -1,0 +1,110 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.inference.channel import Scales
+from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
+from hyperleg_design.gap.inference.posterior import posterior_of, unlisted
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.search import Result
+
+RULES = InferenceRules()
+HEALTHY = Scales(np.ones(1), 0.0, np.log(0.3))
+BENT = Scales(np.ones(1), np.log(30.0), np.log(0.3))
+
+
+def cause(effect, place):
+    return SimpleNamespace(
+        effect=effect,
+        location=place,
+        nulls=np.zeros(1),
+        usual=np.ones(1),
+        shape=np.zeros(1, bool),
+        low=np.full(1, -9.0),
+        high=np.full(1, 9.0),
+    )
+
+
+def hypothesis(score, *names, scales=HEALTHY):
+    candidates = tuple(Candidate(*name, (cause(*name),)) for name in names)
+    count = len(names)
+    return Hypothesis(candidates, np.arange(count, 0.0, -1), np.eye(count), (scales,), score, 0.0)
+
+
+def evidence(count=100):
+    channel = SimpleNamespace(referenced=False, samples=np.arange(count))
+    samples = SimpleNamespace(share=np.ones(count))
+    return SimpleNamespace(channels=(channel,), samples=samples, weight=np.ones(count))
+
+
+def held(before, after, noise, count=100):
+    ones = np.ones(count)
+    return SimpleNamespace(before=before * ones, after=after * ones, noise=noise * ones)
+
+
+def answer(*hypotheses, prediction=None):
+    ranked = tuple(sorted(hypotheses, key=lambda one: -one.score))
+    return posterior_of(Result(ranked, ()), evidence(), prediction or held(2.0, 1.0, 1.0), RULES)
+
+
+def test_nothing_is_none():
+    found = answer(hypothesis(0.0), hypothesis(-4.0, ("a", "x")))
+    assert found.verdict == "none"
+    assert 0 < found.probability["a", "x"] < 0.5
+
+
+def test_a_cause_far_ahead_is_explained():
+    found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), hypothesis(10.0, ("b", "x")))
+    assert found.verdict == "explained"
+    assert found.probability["a", "x"] > 0.95
+    assert found.closed == pytest.approx(1.0)
+    assert found.remainder == 0.0
+    assert [candidate.name for _, candidate in found.rivals] == [("b", "x")]
+
+
+def test_rivals_as_probable_make_it_ambiguous():
+    found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), hypothesis(29.5, ("b", "x")))
+    assert found.verdict == "ambiguous"
+    assert found.alike == ((("b", "x"),),)
+
+
+def test_rivals_stand_in_the_place_of_one_of_several():
+    found = answer(
+        hypothesis(0.0),
+        hypothesis(30.0, ("a", "x"), ("c", "y")),
+        hypothesis(29.5, ("b", "x"), ("c", "y")),
+        hypothesis(12.0, ("c", "y")),
+    )
+    assert found.verdict == "ambiguous"
+    sets = dict(
+        zip((found.hypothesis.candidates[i].name for i in found.order), found.alike, strict=True)
+    )
+    assert sets == {("a", "x"): (("b", "x"),), ("c", "y"): ()}
+
+
+def test_something_unlisted_alone_is_unknown():
+    found = answer(hypothesis(0.0, scales=BENT), prediction=held(2.0, 2.0, 1.0))
+    assert found.verdict == "unknown"
+    assert found.remainder == pytest.approx(1.0)
+
+
+def test_the_main_part_is_explained_with_a_remainder_that_discounts_it():
+    best = hypothesis(30.0, ("a", "x"), scales=BENT)
+    found = answer(hypothesis(0.0), best, prediction=held(3.0, 1.5, 1.0))
+    assert found.verdict == "explained"
+    assert 0.1 < found.remainder < 0.5
+    assert found.probability["a", "x"] <= 1 - found.remainder
+
+
+def test_a_small_part_of_something_unlisted_is_unknown():
+    best = hypothesis(30.0, ("a", "x"), scales=BENT)
+    found = answer(hypothesis(0.0), best, prediction=held(3.0, 2.9, 1.0))
+    assert found.verdict == "unknown"
+
+
+def test_a_scale_is_unlisted_where_that_prior_is_likelier():
+    channel = SimpleNamespace(referenced=False)
+    assert not unlisted(channel, HEALTHY, RULES)
+    assert not unlisted(channel, Scales(np.ones(1), -3.0, 0.0), RULES)
+    assert unlisted(channel, BENT, RULES)
