@@ -9,6 +9,9 @@ stage's output and r a total reduction, |M| of `transmission.joint_from_motor`:
     mass of a stage              m = k T                   similar stages: m ~ length^3
     loss under load              1 - eta = loss log2(r)    equal stages in series, small losses
 
+A rotor's declared inertia holds that of its gear. It never falls below the share that similar gears
+leave if all of it were the gear's, (T / T_reference)^(5/3), so it stays positive.
+
 The mass of the gear at a motor is `masses.gear_mass_per_torque`, which follows the same m = k T.
 The loss acts at each motor's rated torque and enters the friction of the joint (`friction`), so all
 rooms pay for it in the same place. The catalogue behind the three coefficients is cited in the design
@@ -102,8 +105,10 @@ def catalogue(design: HyperLeg) -> GearChange:
         _of_motors([getattr(design.actuators, a).gear for a in ACTUATOR_OF_MOTOR]) * peak,
         _of_motors([reference_part(design, a, "gear") for a in ACTUATOR_OF_MOTOR]) * reference_peak,
     )
-    inertia = np.expand_dims(gears.inertia_per_torque, -1) * (
-        at_gear[0] ** (5 / 3) - at_gear[1] ** (5 / 3)
+    growth = (at_gear[0] / at_gear[1]) ** (5 / 3)
+    inertia = np.maximum(
+        np.expand_dims(gears.inertia_per_torque, -1) * at_gear[1] ** (5 / 3) * (growth - 1.0),
+        motors.motor_arrays(design).rotor_inertia * (np.minimum(growth, 1.0) - 1.0),
     )
     at_joint = transmission.joint_torque(matrix, peak) - transmission.joint_torque(
         reference, reference_peak

@@ -57,10 +57,8 @@ def run(kind: str, seed: int, **metadata):
         kind == "cubic"
     ):  # a torque that no effect has, as if somebody pulled at the hip with a spring that hardens
         q = log.column("position/hip")
-        signals["motor_torque/m_front"] = (
-            signals["motor_torque/m_front"] + 4.0 * (q - 0.0) ** 3 / 12
-        )
-        signals["motor_torque/m_back"] = signals["motor_torque/m_back"] + 4.0 * (q - 0.0) ** 3 / 12
+        for motor in ("m_front", "m_back"):
+            signals[f"motor_torque/{motor}"] = signals[f"motor_torque/{motor}"] + q**3 / 600
     if kind == "limited":
         asked = np.array([target(t) for t in log.time])
         signals |= {

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot.gear import gear_change
 from hyperleg_design.robot.inertials import LEG_LINKS, inertials
 from hyperleg_design.robot.masses import mass_table
 
@@ -70,20 +71,25 @@ def test_declared_values_stand_in_the_reference_build(hyperleg):
 
 
 def test_another_motor_is_a_point_at_its_place(hyperleg):
-    """The new thigh is the old one and a point of the difference in mass: first and second moments
-    add.
+    """The new thigh is the old one, a point of the difference in mass at the motor, and a point of
+    the larger stage at the knee: first and second moments add.
     """
     old, new = (
         inertials(d)["thigh"]
         for d in (hyperleg, hyperleg.with_values({"actuators.knee.motor": "RI80"}))
     )
-    extra, place = new.mass - old.mass, np.array([0, 0, -0.30 * 0.37])
-    assert extra > 0.05
-    np.testing.assert_allclose(new.mass * new.com, old.mass * old.com + extra * place, atol=1e-14)
-    zero = np.zeros(3)
-    np.testing.assert_allclose(
-        about(new, zero), about(old, zero) - extra * cross(place) @ cross(place), atol=1e-14
+    heavier = hyperleg.with_values({"actuators.knee.motor": "RI80"})
+    stage = gear_change(heavier).stage_mass["knee"]
+    points = (
+        (new.mass - old.mass - stage, np.array([0, 0, -0.30 * 0.37])),
+        (stage, np.array([0, 0, -0.37])),
     )
+    assert all(mass > 0.02 for mass, _ in points)
+    first = old.mass * old.com + sum(mass * place for mass, place in points)
+    np.testing.assert_allclose(new.mass * new.com, first, atol=1e-14)
+    zero = np.zeros(3)
+    second = about(old, zero) - sum(mass * cross(p) @ cross(p) for mass, p in points)
+    np.testing.assert_allclose(about(new, zero), second, atol=1e-14)
 
 
 @pytest.mark.parametrize("fraction", [0.0, 0.9])

@@ -308,7 +308,7 @@ def test_signals_agree_with_the_reward_of_power(make, design):
         environment.chunks[0].drive.model.envelope.power_constant.reshape(3, 1, -1),
     )
     torque, speed = signals["motor_torque"], signals["motor_velocity"]
-    assert torque.shape == (3, 4, 14)
+    assert torque.shape == (3, 8, 14)
     power = (heat * torque**2 + torque * speed).sum(-1).mean(1)
     np.testing.assert_allclose(step.reward_terms[:, 1], -power * 0.02)
     # the same mechanical power at the joints

@@ -12,14 +12,14 @@ def swinging(observations):
 
 def test_recording_is_deterministic_and_whole(make):
     one, other = (rollout(make(simulations=3, seed=2), swinging, 12) for _ in range(2))
-    assert one.substeps == 4
-    assert one.time_step == 0.005
+    assert one.substeps == 8
+    assert one.time_step == 0.0025
     assert one.commands.shape == (3, 12, 3)
     for name, values in one.signals.items():
-        assert values.shape[:2] == (3, 48)
+        assert values.shape[:2] == (3, 96)
         assert values.tobytes() == other.signals[name].tobytes()
     # joint velocity is the rate of joint position
-    rate = np.diff(one.signals["joint_position"], axis=1) / 0.005
+    rate = np.diff(one.signals["joint_position"], axis=1) / one.time_step
     np.testing.assert_allclose(rate, one.signals["joint_velocity"][:, 1:], atol=1e-8)
 
 
