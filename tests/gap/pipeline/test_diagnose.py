@@ -62,7 +62,7 @@ def test_two_causes_are_both_named(robot_files):
 
 
 def test_a_torque_that_no_effect_has_is_unknown(robot_files):
-    result = found(robot_files, "cubic")
+    result = found(robot_files, "cubic_faint")
     assert result.verdict == "unknown"
     assert not result.causes
     assert result.residual_shape
