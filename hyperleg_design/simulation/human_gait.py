@@ -16,14 +16,18 @@ PHASES = 50
 """Of the cycle that are compared with."""
 ANGLE, RATE = 0.25, 2.5
 """Scales of the distance from the cycle [rad], [rad/s]; assumed."""
-KNOTS: dict[str, tuple[tuple[float, float], ...]] = {
-    "hip_pitch": ((0, -27), (10, -24), (30, -6), (50, 11), (62, 2), (75, -22), (87, -31)),
-    "knee": ((0, 7), (13, 17), (38, 6), (52, 14), (62, 38), (73, 60), (85, 35), (95, 6)),
-    "ankle_pitch": ((0, 0), (7, 5), (30, -6), (45, -10), (55, 2), (63, 15), (75, 0), (87, -1)),
+SHARES = tuple(100 * place / 12 for place in range(12))
+"""Places of the knots in the cycle [%]."""
+KNOTS: dict[str, tuple[float, ...]] = {
+    "hip_pitch": (-20.5, -21.0, -15.3, -6.9, 4.5, 12.9, 19.0, 16.2, 5.1, -20.7, -30.9, -24.6),
+    "knee": (3.3, 13.2, 16.0, 13.4, 4.9, 1.8, 5.3, 21.2, 39.1, 61.3, 40.8, 8.2),
+    "ankle_pitch": (-3.4, 6.6, -1.2, -6.1, -9.9, -11.2, -10.8, -1.1, 24.7, 1.8, -0.7, -10.7),
 }
-"""Share of the cycle [%] and angle [deg] in the robot's signs: hip extension, knee flexion and
-plantar flexion positive. Adult level walking, rounded (after Perry and Burnfield, Gait Analysis,
-2nd edition, 2010)."""
+"""Angles at `SHARES` [deg] in the robot's signs: hip extension, knee flexion and plantar flexion
+positive. Derived by `benchmarks/human_cycle.py`: the curves nearest to adult level walking (Perry
+and Burnfield, Gait Analysis, 2nd edition, 2010) with which the feet of this robot neither slip nor
+float at `SPEED`. With the human angles as they are, its heel would still be 50 mm above the floor
+at touchdown, and the standing foot would move at 1.18 m/s."""
 SPEED = 1.33
 """Of the pelvis in this cycle [m/s]."""
 SLOWER, FASTER = 0.8, 1.1
@@ -49,9 +53,8 @@ def cycle(joints: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         side, name = joint.split("_", 1)
         if name not in KNOTS:
             continue
-        at, degrees = np.array(KNOTS[name], float).T
-        closed = np.append(np.deg2rad(degrees), np.deg2rad(degrees[0]))
-        curve = CubicSpline(np.append(at / 100, 1.0), closed, bc_type="periodic")
+        closed = np.deg2rad(np.append(KNOTS[name], KNOTS[name][0]))
+        curve = CubicSpline(np.append(SHARES, 100.0) / 100, closed, bc_type="periodic")
         phase = (share + (0.5 if side == "right" else 0.0)) % 1.0
         places.append(place)
         angles.append(curve(phase))

@@ -9,7 +9,7 @@ import pytest
 
 from hyperleg_design.simulation import human_gait
 from hyperleg_design.simulation.environment import Environment
-from hyperleg_design.simulation.human_gait import ANGLE, KNOTS, PERIOD, PHASES, RATE
+from hyperleg_design.simulation.human_gait import ANGLE, KNOTS, PERIOD, PHASES, RATE, SHARES
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.tasks import load_task
 
@@ -26,7 +26,7 @@ def test_angles_pass_through_the_knots_and_rates_are_their_derivative(joints):
     share = np.arange(PHASES) / PHASES
     for k, (side, name) in enumerate(names):
         shift = PHASES // 2 / PHASES if side == "right" else 0.0
-        for at, degrees in KNOTS[name]:
+        for at, degrees in zip(SHARES, KNOTS[name], strict=True):
             found = np.interp(
                 (at / 100 + shift) % 1, np.r_[share, 1], np.r_[angle[:, k], angle[0, k]]
             )
