@@ -17,7 +17,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.inference import noise_model, nuisance
 from hyperleg_design.gap.inference.channel import Channel
-from hyperleg_design.gap.inference.discrepancy import load, shapes
+from hyperleg_design.gap.inference.discrepancy import MOTORS, load, shapes
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.samples import gather
 from hyperleg_design.gap.signals import filtering
@@ -42,7 +42,9 @@ class Evidence:
 
     channels: tuple[Channel, ...]
     samples: Samples
-    """Under test; causes act on these alone."""
+    """Of all logs, those under test first."""
+    tests: Samples
+    """Of the logs under test: the first ones of `samples`."""
     signals: tuple[Signals, ...]
     """Under test."""
     references: tuple[Signals, ...]
@@ -50,19 +52,40 @@ class Evidence:
     """Share of the numbers of each channel in which its load is no noise."""
 
     def scaled(self, cause: Cause) -> Cause:
-        """A cause that pays for scaling torques, in all channels that it shows in, as far as these
-        torques are no noise.
+        """A cause that pays for scaling torques, in the channels that are made of these torques, as
+        far as they are no noise there.
         """
         factor = cause.factor
         if not isinstance(factor, Factor):
             return cause
         trace = cause.columns[factor.parameter]
-        number = sum(
-            share * float(self.samples.share[channel.samples].sum())
-            for channel, share in zip(self.channels, self.moved, strict=True)
-            if np.any(trace[channel.samples] != 0)
-        )
+        row = self.tests.rows[factor.row]
+        number = 0.0
+        for channel, share in zip(self.channels, self.moved, strict=True):
+            own = (channel.residual, channel.column) == (row.residual_name, row.column)
+            if own or (channel.residual in MOTORS and np.any(trace[channel.samples] != 0)):
+                place = channel.samples if cause.standing else channel.under_test
+                number += share * float(self.samples.share[place].sum())
         return replace(cause, factor=replace(factor, number=number))
+
+    def acting(self, cause: Cause, standing: bool) -> Cause:
+        """A cause whose columns are those of its own logs, with columns of all samples.
+
+        Args:
+            cause: linearised on all samples, or on those under test where it acts there alone.
+            standing: whether it acts in all logs.
+        """
+        missing = len(self.samples.value) - cause.columns.shape[1]
+        return self.scaled(
+            replace(
+                cause,
+                columns=np.pad(cause.columns, ((0, 0), (0, missing))),
+                constant=np.pad(cause.constant, (0, missing))
+                if len(cause.constant)
+                else cause.constant,
+                standing=standing,
+            )
+        )
 
     @property
     def weight(self) -> np.ndarray:
@@ -76,6 +99,8 @@ class _Set:
 
     filtered_logs: list[FilteredLog]
     samples: Samples
+    floors: list[list[np.ndarray]]
+    """Expected noise of each log and row."""
     errors: np.ndarray
     """Columns of the nuisance parameters `(p, S)`."""
     tested: bool
@@ -145,10 +170,28 @@ def evidence_of(
     made = [_channel(key, sets, rules) for key in keys]
     return Evidence(
         tuple(channel for channel, _ in made),
+        _joined(sets, rules) if references else sets[0].samples,
         sets[0].samples,
         tuple(tests),
         tuple(references),
         tuple(moved for _, moved in made),
+    )
+
+
+def _joined(sets: Sequence[_Set], rules: InferenceRules) -> Samples:
+    """Samples of all sets, one after the other."""
+    sessions: list[int] = []
+    for one in sets:
+        first = max(sessions, default=-1) + 1
+        own = [
+            int(one.samples.session[one.samples.log == i][0]) for i in range(len(one.filtered_logs))
+        ]
+        sessions += [first + number for number in own]
+    return gather(
+        [filtered for one in sets for filtered in one.filtered_logs],
+        [floors for one in sets for floors in one.floors],
+        sessions,
+        rules.noise.information,
     )
 
 
@@ -170,7 +213,7 @@ def _set(
     for filtered, places in zip(filtered_logs, samples.where, strict=True):
         for row, found in nuisance.columns(filtered, errors, calibrated).items():
             columns[:, places[row]] = found
-    return _Set(filtered_logs, samples, columns, tested)
+    return _Set(filtered_logs, samples, floors, columns, tested)
 
 
 def _channel(
@@ -193,6 +236,7 @@ def _channel(
     for number, ((one, row), (columns, *_)) in enumerate(zip(parts, made, strict=True)):
         samples = one.samples
         own = np.flatnonzero(samples.row == row)
+        first = 0 if one.tested else len(sets[0].samples.value)
         whole = np.concatenate(
             [
                 one.errors[:, own],
@@ -207,8 +251,8 @@ def _channel(
         for s, b in sorted(set(zip(session.tolist(), band.tolist(), strict=True))):
             mine = (session == s) & (band == b)
             white.append(whole[:, mine])
-            place = own[mine] if one.tested else np.zeros(0, int)
-            cells.append(((number, s), (number, b), float(samples.share[own[mine]].sum()), place))
+            number_of = float(samples.share[own[mine]].sum())
+            cells.append(((number, s), (number, b), number_of, first + own[mine]))
     sessions = sorted({cell[0] for cell in cells})
     bands = sorted({cell[1] for cell in cells})
     white = _rotated(white, rules.discrepancy.truncation)

@@ -65,7 +65,7 @@ class Channel:
     tested: np.ndarray
     """Whether a session is under test `(sessions,)`."""
     places: tuple[np.ndarray, ...]
-    """Which samples under test each cell holds; empty for cells of references."""
+    """Which of the evidence's samples each cell holds."""
     whitened: tuple[np.ndarray, ...]
     """Discrepancy columns and residual of each cell `(k + 1, samples)`."""
 
@@ -91,9 +91,15 @@ class Channel:
 
     @cached_property
     def samples(self) -> np.ndarray:
-        """All samples under test of this channel `(n,)`."""
-        own = [place for place in self.places if len(place)]
-        return np.sort(np.concatenate(own)) if own else np.zeros(0, int)
+        """All samples of this channel `(n,)`."""
+        return np.sort(np.concatenate(self.places))
+
+    @cached_property
+    def under_test(self) -> np.ndarray:
+        """Those of logs under test `(n,)`."""
+        tested = self.tested[self.session]
+        own = [place for place, mine in zip(self.places, tested, strict=True) if mine]
+        return np.sort(np.concatenate(own))
 
     def start(self, rules: InferenceRules) -> Scales:
         """Scales to begin with: noise that explains everything."""
@@ -106,10 +112,10 @@ class Channel:
         return Scales(noise, float(np.log(standing)), float(np.log(prior.change)))
 
     def crossed(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Sums of products with further columns under test.
+        """Sums of products with further columns.
 
         Args:
-            columns: weighted as the residual `(m, S)` over all samples under test.
+            columns: weighted as the residual `(m, S)`.
 
         Returns:
             With the discrepancy columns and the residual `(cells, k + 1, m)`, and among themselves
@@ -119,8 +125,8 @@ class Channel:
         cross = np.zeros((len(self.number), self.columns + 1, m))
         own = np.zeros((len(self.number), m, m))
         for cell, (place, white) in enumerate(zip(self.places, self.whitened, strict=True)):
-            if len(place):
-                mine = columns[:, place]
+            mine = columns[:, place]
+            if mine.any():
                 cross[cell], own[cell] = white @ mine.T, mine @ mine.T
         return cross, own
 
@@ -128,7 +134,7 @@ class Channel:
         """The channel whose residual lacks a trace `(S,)`, weighted as the residual."""
         white = list(self.whitened)
         for cell, place in enumerate(self.places):
-            if len(place):
+            if trace[place].any():
                 white[cell] = white[cell].copy()
                 white[cell][-1] -= trace[place]
         cross, own = self.crossed(trace[None])

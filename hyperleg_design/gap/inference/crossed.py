@@ -22,9 +22,10 @@ class Prediction:
     """Samples under test, each predicted without its own block; in the residuals' units."""
 
     before: np.ndarray
-    """Residual less what a healthy robot's discrepancy explains of it `(S,)`."""
+    """Residual less what a healthy robot's discrepancy and the causes that references show, too,
+    explain of it `(S,)`."""
     trace: np.ndarray
-    """What the causes leave `(S,)`."""
+    """What the other causes leave `(S,)`."""
     unlisted: np.ndarray
     """What only a discrepancy larger than a healthy robot's explains `(S,)`."""
 
@@ -49,13 +50,15 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
     """
     samples, weight = evidence.samples, evidence.weight
     fold = samples.fold[BLOCKS][samples.part]
+    tested = np.arange(len(fold)) < len(evidence.tests.value)
     stack = Stack.of(hypothesis.causes, weight) if hypothesis.causes else None
     before = np.zeros(len(fold))
     trace, unlisted = np.zeros(len(fold)), np.zeros(len(fold))
+    changed = [not cause.standing for cause in hypothesis.causes]
     for held in range(samples.folds(BLOCKS)):
-        kept = fold != held
+        kept = (fold != held) | ~tested
         channels = tuple(_without(one, kept) for one in evidence.channels)
-        left = np.zeros(len(fold))
+        left, own = np.zeros(len(fold)), np.zeros(len(fold))
         if stack is not None:
             last = bool(stack.constant.any())
             columns = stack.columns * kept
@@ -64,18 +67,24 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
             products = shifted(reduced(part, hypothesis.scales, columns), last)
             found = solve(products, stack.low, stack.high, stack.shape, rules, stack.factors)
             left = found.theta @ stack.columns + stack.constant
+            for place, cause, counts in zip(
+                hypothesis.parts, hypothesis.causes, changed, strict=True
+            ):
+                if counts:
+                    own += cause.trace(found.theta[place]) * weight
         for whole, some, scales in zip(evidence.channels, channels, hypothesis.scales, strict=True):
             means, _ = some.without(left * kept).discrepancy(scales)
             healthy = healthy_share(whole, scales, rules)
             for cell, (place, white) in enumerate(zip(whole.places, whole.whitened, strict=True)):
-                mine = fold[place] == held
+                mine = (fold[place] == held) & tested[place]
                 if not mine.any():
                     continue
                 at = place[mine]
                 explained = means[whole.session[cell]] @ white[:-1, mine]
-                before[at] = (white[-1, mine] - healthy * explained) / weight[at]
+                standing = left[at] - own[at]
+                before[at] = (white[-1, mine] - healthy * explained - standing) / weight[at]
                 unlisted[at] = (1 - healthy) * explained / weight[at]
-                trace[at] = left[at] / weight[at]
+                trace[at] = own[at] / weight[at]
     return Prediction(before, trace, unlisted)
 
 
@@ -91,9 +100,8 @@ def healthy_share(channel: Channel, scales: Scales, rules: InferenceRules) -> fl
 
 
 def _without(channel: Channel, kept: np.ndarray) -> Channel:
-    """A channel whose samples under test are those of a mask `(S,)`."""
+    """A channel whose samples are those of a mask `(S,)`."""
     white = tuple(
-        one * kept[place] if len(place) else one
-        for one, place in zip(channel.whitened, channel.places, strict=True)
+        one * kept[place] for one, place in zip(channel.whitened, channel.places, strict=True)
     )
     return replace(channel, whitened=white, products=np.array([one @ one.T for one in white]))

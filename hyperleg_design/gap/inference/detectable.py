@@ -47,8 +47,9 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
     """Of each effect and place with one parameter that is a size and a trace that grows with it."""
     weight = search.evidence.weight
     entries: list[tuple[str, str, int, float, float, np.ndarray]] = []
-    for (name, place), traced in search.traces.items():
-        if isinstance(traced, screen.NotJudged):
+    size = len(weight)
+    for (name, place, standing), traced in search.traces.items():
+        if standing or isinstance(traced, screen.NotJudged):
             continue
         effect = EFFECTS[name]
         subject = search.evidence.signals[0].subject
@@ -64,9 +65,9 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
             change = np.abs(traced[0][:, i] - effect.nulls[i])
             if change.max() > 0:
                 first = int(np.argmin(np.where(change > 0, change, np.inf)))
-                entries.append(
-                    (name, place, i, float(change[first]), most[i], traced[1][first] * weight)
-                )
+                own = traced[1][first]
+                padded = np.pad(own, (0, size - len(own))) * weight
+                entries.append((name, place, i, float(change[first]), most[i], padded))
     if not entries:
         return ()
     columns = np.stack([entry[-1] for entry in entries])

@@ -74,6 +74,8 @@ class Cause:
     odds: float = 0.0
     """Log odds for it by what logs tell beside their residuals, see `telling`, and by its values,
     see `Effect.odds`."""
+    standing: bool = False
+    """Whether it acts in all logs, reference logs included, not in those under test alone."""
 
     @property
     def name(self) -> tuple[str, str]:

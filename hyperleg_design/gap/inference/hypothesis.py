@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.rules import InferenceRules
 
+Name = tuple[str, str, bool]
+"""Effect, location, and whether it acts in all logs, references included."""
 EVERYWHERE = "*"
 """Location of an effect that acts at all of its places."""
 FREE = 1e3
@@ -37,9 +39,14 @@ class Candidate:
     causes: tuple[Cause, ...]
 
     @property
-    def name(self) -> tuple[str, str]:
-        """Effect and location."""
-        return self.effect, self.location
+    def standing(self) -> bool:
+        """Whether it acts in all logs, references included."""
+        return self.causes[0].standing
+
+    @property
+    def name(self) -> Name:
+        """Effect, location, and whether it stands in the references, too."""
+        return self.effect, self.location, self.standing
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +76,8 @@ class Hypothesis:
         return tuple(cause for one in self.candidates for cause in one.causes)
 
     @property
-    def names(self) -> tuple[tuple[str, str], ...]:
-        """Effects and locations of the candidates, sorted."""
+    def names(self) -> tuple[Name, ...]:
+        """Of the candidates, sorted."""
         return tuple(sorted(one.name for one in self.candidates))
 
     @cached_property
@@ -90,14 +97,6 @@ class Hypothesis:
         """Standard deviations of one cause's parameters."""
         variance = np.diag(self.covariance)[self.parts[place]]
         return np.asarray(np.sqrt(np.maximum(variance, 0.0)) * self.causes[place].usual)
-
-    def trace(self) -> np.ndarray:
-        """What its causes leave in every sample under test `(S,)`, in the residuals' units."""
-        found = np.zeros(0)
-        for part, cause in zip(self.parts, self.causes, strict=True):
-            own = cause.trace(self.theta[part])
-            found = own if not found.size else found + own
-        return found
 
 
 @dataclass(frozen=True, eq=False)

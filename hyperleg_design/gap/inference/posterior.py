@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.inference.channel import ABSENT
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE
+from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Name
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
     from hyperleg_design.gap.inference.rules import InferenceRules
     from hyperleg_design.gap.inference.search import Result
-
-Name = tuple[str, str]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +37,9 @@ class Posterior:
     hypothesis: Hypothesis
     """The most probable."""
     order: tuple[int, ...]
-    """Its candidates, the one that explains most first."""
+    """Its candidates that are no `standing` ones, the one that explains most first."""
+    standing: tuple[int, ...]
+    """Its candidates that act in the references, too, likewise: what the model lacks."""
     probability: dict[Name, float]
     """Of each candidate in any hypothesis."""
     rivals: tuple[tuple[Hypothesis, Candidate], ...]
@@ -86,22 +86,23 @@ def posterior_of(
     remainder = 0.0
     if acting:
         remainder = float(np.clip((after - lowest) / max(before - lowest, 1e-300), 0.0, 1.0))
-    if not best.candidates:
+    ranked = np.argsort(-np.array(_effects(best)), kind="stable").tolist()
+    order = tuple(place for place in ranked if not best.candidates[place].standing)
+    standing = tuple(place for place in ranked if best.candidates[place].standing)
+    rivals = _rivals(result, best)
+    if not order:
         verdict = "unknown" if acting else "none"
-        return Posterior(verdict, best, (), probability, _rivals(result, best), (), 0.0, remainder)
-    order = tuple(np.argsort(-np.array(_effects(best)), kind="stable").tolist())
+        return Posterior(verdict, best, (), standing, probability, rivals, (), 0.0, remainder)
     sets = tuple(_alike(result, best, place, rules) for place in order)
     main = closed if acting else 1.0
     verdict = "ambiguous" if any(sets) else "explained"
     if main < own.main_part:
         verdict = "unknown"
     probability = {
-        name: p * (1 - remainder if remainder >= own.remainder else 1.0)
+        name: p * (1 - remainder if remainder >= own.remainder and not name[2] else 1.0)
         for name, p in probability.items()
     }
-    return Posterior(
-        verdict, best, order, probability, _rivals(result, best), sets, closed, remainder
-    )
+    return Posterior(verdict, best, order, standing, probability, rivals, sets, closed, remainder)
 
 
 def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
@@ -121,14 +122,15 @@ def mean_square(evidence: Evidence, values: np.ndarray) -> float:
     square = (values * evidence.weight) ** 2
     found = []
     for channel in evidence.channels:
-        number = float(evidence.samples.share[channel.samples].sum())
-        found.append(float(square[channel.samples].sum()) / max(number, 1e-300))
+        number = float(evidence.samples.share[channel.under_test].sum())
+        found.append(float(square[channel.under_test].sum()) / max(number, 1e-300))
     return float(np.mean(found))
 
 
 def _stated(candidate: Candidate) -> list[Name]:
     """What a candidate states: itself, and, of an effect at all places, that it acts at each."""
-    return [candidate.name, *((cause.effect, cause.location) for cause in candidate.causes)]
+    own = ((cause.effect, cause.location, cause.standing) for cause in candidate.causes)
+    return [candidate.name, *own]
 
 
 def _effects(hypothesis: Hypothesis) -> list[float]:
@@ -156,16 +158,19 @@ def _alike(result: Result, best: Hypothesis, place: int, rules: InferenceRules) 
         if len(new) != 1 or not rest <= names or best.candidates[place].name in new:
             continue
         (name,) = new
-        if best.score - other.score < rules.posterior.alike and name[1] != EVERYWHERE:
+        listed = name[1] != EVERYWHERE and not name[2]
+        if best.score - other.score < rules.posterior.alike and listed:
             found.append(name)
     return tuple(found)
 
 
 def _rivals(result: Result, best: Hypothesis) -> tuple[tuple[Hypothesis, Candidate], ...]:
     seen: dict[Name, tuple[Hypothesis, Candidate]] = {}
-    known = {(cause.effect, cause.location) for cause in best.causes}
+    known = {(cause.effect, cause.location, cause.standing) for cause in best.causes}
     for one in result.hypotheses:
         for candidate in one.candidates:
+            if candidate.standing:
+                continue
             if candidate.name in seen or known.issuperset(_stated(candidate)[1:]):
                 continue
             if candidate.name not in best.names:

@@ -17,6 +17,7 @@ from hyperleg_design.gap.inference.hypothesis import (
     EVERYWHERE,
     Candidate,
     Hypothesis,
+    Name,
     Solution,
     Stack,
     reduced,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.inference.channel import Scales
     from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.rules import InferenceRules
+    from hyperleg_design.gap.inference.samples import Samples
 
 CLOSE = 0.02
 """Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""
@@ -53,9 +55,15 @@ class Promise:
 
     effect: str
     location: str
+    standing: bool
     variant: int
     gain: float
     """[nat]"""
+
+    @property
+    def name(self) -> Name:
+        """Effect, location, and whether it acts in all logs."""
+        return self.effect, self.location, self.standing
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,22 +124,31 @@ class Search:
         )
 
     @cached_property
-    def traces(self) -> dict[tuple[str, str], screen.Traces]:
-        """What each effect leaves at each place."""
-        base: Any = _Samples(self.evidence.samples)
-        found = screen.spread(
-            lambda name: screen._trace(base, EFFECTS[name[0]], name[1]), self.places, self.threads
-        )
-        return {
-            name: [self.evidence.scaled(c) for c in one] if isinstance(one, list) else one
-            for name, one in zip(self.places, found, strict=True)
-        }
+    def traces(self) -> dict[Name, screen.Traces]:
+        """What each effect leaves at each place in the logs under test and, with references, in all
+        logs.
+        """
+        scopes = (False, True) if self.evidence.references else (False,)
+        names = [(*place, standing) for standing in scopes for place in self.places]
+        found = screen.spread(self._traced, names, self.threads)
+        return dict(zip(names, found, strict=True))
+
+    def _traced(self, name: Name) -> screen.Traces:
+        effect, location, standing = name
+        base: Any = _Samples(self._samples(standing))
+        found = screen._trace(base, EFFECTS[effect], location)
+        if isinstance(found, list):
+            return [self.evidence.acting(one, standing) for one in found]
+        return found
+
+    def _samples(self, standing: bool) -> Samples:
+        return self.evidence.samples if standing else self.evidence.tests
 
     def result(self) -> Result:
         """Search forward until no further cause is worth its prior, then drop what is not."""
-        fitted: dict[tuple[tuple[str, str], ...], Hypothesis] = {(): self.nothing}
+        fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.nothing}
         current = self.nothing
-        for _ in range(self.rules.search.causes):
+        for _ in range(self.rules.search.causes * (2 if self.evidence.references else 1)):
             further = self.further(current)
             for one in further:
                 before = fitted.get(one.names)
@@ -148,15 +165,19 @@ class Search:
                 if fewer.score > current.score:
                     current = fewer
         ranked = sorted(fitted.values(), key=lambda one: (-one.score, one.names))
-        missing = tuple(t for t in self.traces.values() if isinstance(t, screen.NotJudged))
+        missing = tuple(
+            traced
+            for (*_, standing), traced in self.traces.items()
+            if isinstance(traced, screen.NotJudged) and not standing
+        )
         return Result(tuple(ranked), missing)
 
     def further(self, current: Hypothesis) -> list[Hypothesis]:
         """Fit the most promising causes beside those of a hypothesis."""
         rules = self.rules.search
-        promises: dict[tuple[str, str], list[Promise]] = {}
+        promises: dict[Name, list[Promise]] = {}
         for one in self.promises(current):
-            promises.setdefault((one.effect, one.location), []).append(one)
+            promises.setdefault(one.name, []).append(one)
         names = sorted(promises, key=lambda name: (-promises[name][0].gain, name))
         if not names:
             return []
@@ -168,16 +189,16 @@ class Search:
             self.threads,
         )
         found = [one for one in fitted if one is not None]
-        effects = list(dict.fromkeys(effect for effect, _ in chosen))
+        effects = list(dict.fromkeys((effect, standing) for effect, _, standing in chosen))
         whole = [
-            effect
-            for effect in effects
+            (effect, standing)
+            for effect, standing in effects
             if EFFECTS[effect].linear
             and self.count[effect] > 1
-            and all(one.effect != effect for one in current.candidates)
+            and all((one.effect, one.standing) != (effect, standing) for one in current.candidates)
         ][: rules.groups]
-        for effect in whole:
-            own = sorted(name for name in promises if name[0] == effect)
+        for effect, standing in whole:
+            own = sorted(name for name in promises if (name[0], name[2]) == (effect, standing))
             causes = [self.candidate(promises[name][0], current) for name in own]
             joined = tuple(c for one in causes if one is not None for c in one.causes)
             if len(joined) > 1:
@@ -188,21 +209,23 @@ class Search:
     def promises(self, current: Hypothesis) -> list[Promise]:
         """Gain of every effect at every place beside a hypothesis, at its scales, best first."""
         beside, weight = current.causes, self.evidence.weight
-        taken = {(c.effect, c.location) for c in beside}
+        taken = {(c.effect, c.location, c.standing) for c in beside}
         base = Stack.of(beside, weight) if beside else None
         blocks = [] if base is None else [base.columns, base.constant[None]]
         at = sum(len(one) for one in blocks)
         entries: list[tuple[Promise, np.ndarray, Cause | None]] = []
-        for (effect, location), traced in self.traces.items():
-            if (effect, location) in taken or isinstance(traced, screen.NotJudged):
+        size = len(weight)
+        for name, traced in self.traces.items():
+            if name in taken or isinstance(traced, screen.NotJudged):
                 continue
             options: list[Any] = traced if isinstance(traced, list) else list(traced[1])
             for variant, option in enumerate(options):
                 cause = option if not isinstance(option, np.ndarray) else None
                 columns = option[None] if cause is None else option.columns
-                blocks.append(columns * weight)
+                own = columns.shape[1]
+                blocks.append(np.pad(columns * weight[:own], ((0, 0), (0, size - own))))
                 place = np.arange(at, at + len(columns))
-                entries.append((Promise(effect, location, variant, 0.0), place, cause))
+                entries.append((Promise(*name, variant, 0.0), place, cause))
                 at += len(columns)
         if not entries:
             return []
@@ -214,15 +237,10 @@ class Search:
             products[:, 0] -= products[:, known + 1]
         start = self._solved(products, base, np.zeros(0, int), None).gain if base else 0.0
         found = [
-            Promise(
-                one.effect,
-                one.location,
-                one.variant,
-                self._solved(products, base, place, cause).gain - start,
-            )
+            replace(one, gain=self._solved(products, base, place, cause).gain - start)
             for one, place, cause in entries
         ]
-        return sorted(found, key=lambda one: (-one.gain, one.effect, one.location, one.variant))
+        return sorted(found, key=lambda one: (-one.gain, *one.name, one.variant))
 
     def _solved(
         self,
@@ -263,7 +281,7 @@ class Search:
 
     def candidate(self, promise: Promise, current: Hypothesis) -> Candidate | None:
         """An effect linearised where it fits best, by Gauss-Newton steps at fixed scales."""
-        traced = self.traces[promise.effect, promise.location]
+        traced = self.traces[promise.name]
         if isinstance(traced, list):
             return Candidate(promise.effect, promise.location, (traced[promise.variant],))
         assert not isinstance(traced, screen.NotJudged)
@@ -274,10 +292,12 @@ class Search:
         scales = eased(current.scales)
         best: tuple[float, Cause] | None = None
         for step in range(self.rules.search.steps):
-            cause = screen.linearise(self.evidence.samples, effect, promise.location, values)
+            cause = screen.linearise(
+                self._samples(promise.standing), effect, promise.location, values
+            )
             if cause is None:
                 break
-            cause = self.evidence.scaled(cause)
+            cause = self.evidence.acting(cause, promise.standing)
             stack = Stack.of((*current.causes, cause), self.evidence.weight)
             solution = self._fitted(stack, scales)
             if best is None or solution.gain > best[0]:

@@ -102,7 +102,7 @@ class _Answer:
         """All of it."""
         told = self.posterior
         naming = told.verdict in NAMING
-        causes = self.causes() if told.hypothesis.candidates else ()
+        causes = self.causes(told.order)
         rivals = self.rivals()
         if not naming:
             rivals, causes = (*causes, *rivals), ()
@@ -111,7 +111,7 @@ class _Answer:
                 share = (1 - self.rules.posterior.likely) / most
                 rivals = tuple(_scaled(one, share) for one in rivals)
         equivalent = tuple(
-            (told.hypothesis.candidates[place].name, *group)
+            tuple(name[:2] for name in (told.hypothesis.candidates[place].name, *group))
             for place, group in zip(told.order, told.alike, strict=True)
             if group and naming
         )
@@ -136,13 +136,22 @@ class _Answer:
             sensitivity=sensitivity,
             provenance=self.provenance(),
             remainder=left,
+            lacks=self.lacks() if self.evidence.references else None,
         )
 
-    def causes(self) -> tuple[Named, ...]:
-        """Of the most probable hypothesis, the one that explains most first."""
+    def lacks(self) -> dict[str, Any]:
+        """What the model lacks of the robot in the references already."""
+        causes = self.causes(self.posterior.standing)
+        return {
+            "verdict": "explained" if causes else "none",
+            "causes": [one.mapping() for one in causes],
+        }
+
+    def causes(self, places: Sequence[int]) -> tuple[Named, ...]:
+        """Some candidates of the most probable hypothesis, in their order."""
         told = self.posterior
         found: list[Named] = []
-        for place in told.order:
+        for place in places:
             found += self.named(told.hypothesis, told.hypothesis.candidates[place])
         return tuple(found)
 
@@ -171,7 +180,9 @@ class _Answer:
         return clear_ones or [max(found, key=lambda one: one[0])[1]]
 
     def closed_by(self, hypothesis: Hypothesis, place: int) -> float:
-        """Share of the gap that one cause closes."""
+        """Share of the gap that one cause closes; of a standing one, of the gap that is left where
+        it is taken away alone.
+        """
         if hypothesis is not self.posterior.hypothesis or not self.posterior.hypothesis.causes:
             return 0.0
         part = hypothesis.parts[place]
@@ -179,7 +190,8 @@ class _Answer:
         others = self.held.before - (self.held.trace - own)
         before = self._total(self._squares(others))
         after = self._total(self.squares["after"])
-        first = self._total(self.squares["before"])
+        standing = hypothesis.causes[place].standing
+        first = before if standing else self._total(self.squares["before"])
         lowest = self.lowest()
         total = np.sqrt(first) - np.sqrt(lowest)
         if total <= 1e-12:
@@ -199,6 +211,7 @@ class _Answer:
         return any(
             (cause.effect, cause.location) == (one.effect, one.location)
             for cause in self.posterior.hypothesis.causes
+            if not cause.standing
         )
 
     def gap(self, naming: bool) -> Shrinkage:
@@ -224,18 +237,19 @@ class _Answer:
 
     def drawn(self) -> np.ndarray:
         """Share closed in bootstrap draws of blocks `(DRAWS,)`."""
-        samples = self.evidence.samples
+        samples = self.evidence.tests
+        number = len(samples.value)
         count = int(samples.block.max(initial=0)) + 1
         rng = np.random.default_rng([self.seed, 20])
         draws = rng.multinomial(count, np.full(count, 1 / count), size=DRAWS).astype(float)
-        chosen = np.zeros(len(samples.value), bool)
+        chosen = np.zeros(number, bool)
         for place in np.flatnonzero(self.counts).tolist():
-            chosen[self.evidence.channels[place].samples] = True
+            chosen[self.evidence.channels[place].under_test] = True
         sums = {
             name: draws
             @ np.bincount(
                 samples.block[chosen],
-                ((getattr(self.held, name) * self.evidence.weight) ** 2)[chosen],
+                ((getattr(self.held, name) * self.evidence.weight)[:number] ** 2)[chosen],
                 count,
             )
             for name in ("before", "after", "noise")
@@ -253,8 +267,8 @@ class _Answer:
         weighed = (values * self.evidence.weight) ** 2
         return np.array(
             [
-                float(weighed[one.samples].sum())
-                / max(float(self.evidence.samples.share[one.samples].sum()), 1e-300)
+                float(weighed[one.under_test].sum())
+                / max(float(self.evidence.samples.share[one.under_test].sum()), 1e-300)
                 for one in self.evidence.channels
             ]
         )

@@ -24,9 +24,8 @@ def made(
             white.append(rng.standard_normal((k + 1, count)))
             session.append(s)
             band.append(b if s < tested else 2 + b)
-            own = s < tested
-            places.append(np.arange(start, start + count) if own else np.zeros(0, int))
-            start += count if own else 0
+            places.append(np.arange(start, start + count))
+            start += count
     channel = Channel(
         "motion",
         0,

@@ -14,10 +14,11 @@ HEALTHY = Scales(np.ones(1), 0.0, np.log(0.3))
 BENT = Scales(np.ones(1), np.log(30.0), np.log(0.3))
 
 
-def cause(effect, place):
+def cause(effect, place, standing=False):
     return SimpleNamespace(
         effect=effect,
         location=place,
+        standing=standing,
         nulls=np.zeros(1),
         usual=np.ones(1),
         shape=np.zeros(1, bool),
@@ -27,13 +28,13 @@ def cause(effect, place):
 
 
 def hypothesis(score, *names, scales=HEALTHY):
-    candidates = tuple(Candidate(*name, (cause(*name),)) for name in names)
+    candidates = tuple(Candidate(*name[:2], (cause(*name),)) for name in names)
     count = len(names)
     return Hypothesis(candidates, np.arange(count, 0.0, -1), np.eye(count), (scales,), score, 0.0)
 
 
 def evidence(count=100):
-    channel = SimpleNamespace(referenced=False, samples=np.arange(count))
+    channel = SimpleNamespace(referenced=False, under_test=np.arange(count))
     samples = SimpleNamespace(share=np.ones(count))
     return SimpleNamespace(channels=(channel,), samples=samples, weight=np.ones(count))
 
@@ -51,22 +52,22 @@ def answer(*hypotheses, prediction=None):
 def test_nothing_is_none():
     found = answer(hypothesis(0.0), hypothesis(-4.0, ("a", "x")))
     assert found.verdict == "none"
-    assert 0 < found.probability["a", "x"] < 0.5
+    assert 0 < found.probability["a", "x", False] < 0.5
 
 
 def test_a_cause_far_ahead_is_explained():
     found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), hypothesis(10.0, ("b", "x")))
     assert found.verdict == "explained"
-    assert found.probability["a", "x"] > 0.95
+    assert found.probability["a", "x", False] > 0.95
     assert found.closed == pytest.approx(1.0)
     assert found.remainder == 0.0
-    assert [candidate.name for _, candidate in found.rivals] == [("b", "x")]
+    assert [candidate.name for _, candidate in found.rivals] == [("b", "x", False)]
 
 
 def test_rivals_as_probable_make_it_ambiguous():
     found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), hypothesis(29.5, ("b", "x")))
     assert found.verdict == "ambiguous"
-    assert found.alike == ((("b", "x"),),)
+    assert found.alike == ((("b", "x", False),),)
 
 
 def test_rivals_stand_in_the_place_of_one_of_several():
@@ -80,7 +81,22 @@ def test_rivals_stand_in_the_place_of_one_of_several():
     sets = dict(
         zip((found.hypothesis.candidates[i].name for i in found.order), found.alike, strict=True)
     )
-    assert sets == {("a", "x"): (("b", "x"),), ("c", "y"): ()}
+    assert sets == {("a", "x", False): (("b", "x", False),), ("c", "y", False): ()}
+
+
+def test_what_stands_in_the_references_is_no_change():
+    found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x", True)))
+    assert found.verdict == "none"
+    assert not found.order
+    assert found.standing == (0,)
+
+
+def test_a_change_beside_what_stands_is_explained():
+    best = hypothesis(40.0, ("a", "x", True), ("a", "x"))
+    found = answer(hypothesis(0.0), best, hypothesis(30.0, ("a", "x", True)))
+    assert found.verdict == "explained"
+    assert (found.order, found.standing) == ((1,), (0,))
+    assert not found.rivals
 
 
 def test_something_unlisted_alone_is_unknown():
@@ -94,7 +110,7 @@ def test_the_main_part_is_explained_with_a_remainder_that_discounts_it():
     found = answer(hypothesis(0.0), best, prediction=held(3.0, 1.5, 1.0))
     assert found.verdict == "explained"
     assert 0.1 < found.remainder < 0.5
-    assert found.probability["a", "x"] <= 1 - found.remainder
+    assert found.probability["a", "x", False] <= 1 - found.remainder
 
 
 def test_a_small_part_of_something_unlisted_is_unknown():

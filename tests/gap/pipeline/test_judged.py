@@ -45,6 +45,19 @@ def test_a_robot_like_its_references_is_none_and_a_change_is_named(robot_files):
     assert result.causes[0].parameters["torque"].value == pytest.approx(0.8, rel=0.2)
 
 
+def test_what_the_references_show_as_well_is_no_change_but_what_the_model_lacks(robot_files):
+    logs = [diagnosed.run("dry", s, session="today") for s in (0, 1)]
+    healthy = [diagnosed.run("dry", s, session="before", role="reference") for s in (2, 3)]
+    result = diagnose(robot_files["coupled"], logs, healthy, threads=1, method=POSTERIOR)
+    assert result.verdict == "none"
+    assert not result.causes
+    assert result.lacks["verdict"] == "explained"
+    (cause,) = result.lacks["causes"]
+    assert (cause["effect"], cause["location"]) == ("coulomb_friction", "hip")
+    torque = cause["parameters"]["torque"]
+    assert torque["low"] < 0.8 < torque["high"]
+
+
 def test_two_causes_are_both_named(robot_files):
     result = found(robot_files, "both")
     assert {(c.effect, c.location) for c in result.causes} == {
