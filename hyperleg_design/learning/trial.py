@@ -40,7 +40,7 @@ def trial(
     seed: int = 0,
     alterations: Alterations | None = None,
 ) -> dict[str, float]:
-    """Try a policy: on the test's speed, or on the task's courses.
+    """Try a policy from standing: on the test's speed, or on the task's courses.
 
     Args:
         design: the robot.
@@ -56,6 +56,7 @@ def trial(
         Courses: `finished` (fraction), `time` (mean of the finished [s]), `survival`, `speed`.
     """
     goal = isinstance(task.commands, WaypointCommands)
+    task = task.changed(start=dataclasses.replace(task.start, stride_share=0.0))
     return (_course if goal else _walk)(design, task, policy, simulations, seed, alterations)
 
 

@@ -196,10 +196,15 @@ def joint_limits(state: State, robot: Robot, share: float = 0.95) -> np.ndarray:
 
 @term()
 def human_cycle(state: State, robot: Robot, width: float = 0.25) -> np.ndarray:
-    """exp(-d^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human walking."""
-    motion = state.motion
+    """exp(-d^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human walking; with
+    waypoints, v_cmd is the speed cap toward the present one.
+    """
+    motion, goal = state.motion, state.goal
     away = human_gait.distance(robot.layout.joints, motion.joint_position, motion.joint_velocity)
-    error = state.command[:, :2] - motion.walking_velocity
+    commanded = state.command[:, :2]
+    if goal is not None:
+        commanded = goal.offset * (goal.speed_cap / np.maximum(goal.distance, 1e-9))[:, None]
+    error = commanded - motion.walking_velocity
     return np.exp(-(away**2) - np.einsum("ni,ni->n", error, error) / width)
 
 
