@@ -4,12 +4,13 @@
 | file | holds |
 |---|---|
 | `policy.onnx` | the last policy, weights in single precision, stored once (0.8 MB with three
-layers of 512, 256, 128) | | `late_*.onnx` | late policies before it, earliest first | | `run.json`
+layers of 512, 256, 128) | | `critic.onnx` | its critic, for trainings that go on from it (older
+ones have none) | | `late_*.onnx` | late policies before it, earliest first | | `run.json`
 | what was trained: task, design, preset (all resolved), seed, command, versions, commit | |
 `progress.jsonl` | the learning curve, at most `CURVE_ROWS` rows |
 
 A folder of finished trainings (`results/campaign`) has the same form and more files; `pack` keeps
-the four above.
+the five above.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ from hyperleg_design.writing import output_folder, write_text
 
 POLICIES = "policies"
 """Folder of the shipped policies in `sim/`."""
-POLICY, LATE, RUN, PROGRESS = "policy.onnx", "late_*.onnx", "run.json", "progress.jsonl"
+POLICY, CRITIC, LATE = "policy.onnx", "critic.onnx", "late_*.onnx"
+RUN, PROGRESS = "run.json", "progress.jsonl"
 CURVE_ROWS = 200
 """Rows of a packed learning curve."""
 CURVE = ("steps", "stage", "assist", "reward", "speed", "falls", "cost_of_transport")
@@ -226,7 +228,8 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
         if not (training / POLICY).is_file():
             found.append(Packed(training.name, 0, 0))
             continue
-        files = [training / POLICY, *sorted(training.glob(LATE)), training / RUN]
+        policies = [training / POLICY, *sorted(training.glob(LATE))]
+        files = [*policies, training / CRITIC, training / RUN]
         with output_folder(Path(target) / training.name) as folder:
             for file in files:
                 if file.is_file():
@@ -237,7 +240,7 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
             )
         made = Path(target) / training.name
         found.append(
-            Packed(training.name, len(files) - 1, sum(f.stat().st_size for f in made.iterdir()))
+            Packed(training.name, len(policies), sum(f.stat().st_size for f in made.iterdir()))
         )
     return found
 

@@ -32,23 +32,28 @@ if TYPE_CHECKING:
 
 FORMAT = "hyperleg-policy-1"
 """Of the metadata."""
+CRITIC_FORMAT = "hyperleg-critic-1"
+"""Of the metadata of a critic."""
 TOLERANCE = 1e-5
 """Largest difference between torch and ONNX Runtime, over 1 + |action|."""
 OPSET = 18
 
 
-def export_policy(path: Path, actor: MLPModel, metadata: dict[str, Any]) -> Path:
-    """Write the deterministic policy of an actor, and check it against torch.
+def export_policy(
+    path: Path, actor: MLPModel, metadata: dict[str, Any], form: str = FORMAT
+) -> Path:
+    """Write the deterministic policy of an actor, or a critic, and check it against torch.
 
     Args:
         path: of the file.
         actor: the network with its normaliser.
         metadata: what goes into the file besides `format`; texts as they are, the rest as JSON.
+        form: the file's format, `FORMAT` or `CRITIC_FORMAT`.
 
     Raises:
         OutputError: ONNX Runtime disagrees with torch, or the file cannot be written.
     """
-    content = _as_onnx(actor, {"format": FORMAT, **metadata})
+    content = _as_onnx(actor, {"format": form, **metadata})
     difference = largest_difference(content, actor)
     if not difference <= TOLERANCE:
         raise OutputError(

@@ -6,12 +6,13 @@ import json
 from pathlib import Path
 from typing import Any
 
-RUN, CHECKPOINT, STATUS, PROGRESS, POLICY = (
+RUN, CHECKPOINT, STATUS, PROGRESS, POLICY, CRITIC = (
     "run.json",
     "checkpoint.pt",
     "status.json",
     "progress.jsonl",
     "policy.onnx",
+    "critic.onnx",
 )
 
 

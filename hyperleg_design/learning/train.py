@@ -8,7 +8,8 @@ A training lives in a folder:
 | | `checkpoint.pt` | all that its future depends on; written whole or not at all | | `status.json`
 | how far it is, with the latest measures | | `progress.jsonl` | measures of every iteration, and
 trials | | `late_*.onnx`, `policy.onnx` | late policies, and the last one; `policy.onnx` is there
-when the training is done | | `events.*` | the same for TensorBoard |
+when the training is done | | `critic.onnx` | the last critic: what a training that starts from the
+policy goes on with | | `events.*` | the same for TensorBoard |
 """
 
 from __future__ import annotations
@@ -31,14 +32,27 @@ from hyperleg_design import provenance
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.algorithm import IterationPPO, as_tensors, make_algorithm
 from hyperleg_design.learning.checkpoint import load_checkpoint, save_checkpoint
-from hyperleg_design.learning.export import export_policy
+from hyperleg_design.learning.export import CRITIC_FORMAT, export_policy
 from hyperleg_design.learning.meter import Meter
 from hyperleg_design.learning.preset import Preset, load_preset
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.learning.schedule import Schedule
-from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, STATUS
+from hyperleg_design.learning.status import (
+    CHECKPOINT,
+    CRITIC,
+    POLICY,
+    PROGRESS,
+    RUN,
+    STATUS,
+)
 from hyperleg_design.learning.trial import trial
-from hyperleg_design.learning.warm_start import StartPolicy, read_start, start_actor
+from hyperleg_design.learning.warm_start import (
+    StartPolicy,
+    fits_critic,
+    read_start,
+    start_actor,
+    start_critic,
+)
 from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.environment import Environment
@@ -182,7 +196,14 @@ class Training:
         self.processor_seconds = 0.0
         """Processor time of the same [s]: the clock that other work on the machine leaves alone."""
         self._stop = False
-        self._critic_only = int(preset.warm_start.critic_iterations) if start is not None else 0
+        columns = list(self.environment.observation_columns["critic"])
+        self._critic = (
+            start.critic
+            if start and fits_critic(self.algorithm.critic, start, task.name, columns)
+            else None
+        )
+        fresh = start is not None and self._critic is None
+        self._critic_only = int(preset.warm_start.critic_iterations) if fresh else 0
         if (folder / CHECKPOINT).exists():
             self._load()
         elif start is not None:
@@ -230,6 +251,7 @@ class Training:
         done = schedule.iteration >= schedule.total
         self.save()
         if done:
+            self._export_critic()
             self._export(POLICY)
             write_json(
                 self.folder / STATUS, _finite({**measures, "left": 0.0, "pid": None, "done": True})
@@ -361,6 +383,8 @@ class Training:
             first,
             float(warm.deviation),
         )
+        if self._critic is not None:
+            start_critic(self.algorithm.critic, self.algorithm.actor, self._critic)
 
     def _bootstrap(self, step: Any, reward: torch.Tensor) -> None:
         """An episode that was cut, not lost, goes on in value: add what the critic expects of its
@@ -416,6 +440,14 @@ class Training:
             "joints": list(self.environment.layout.joints),
         }
         export_policy(self.folder / name, self.algorithm.get_policy(), metadata)
+
+    def _export_critic(self) -> None:
+        deviations = self.algorithm.get_policy().distribution.log_std_param.detach().exp()
+        metadata = {
+            "columns": self.environment.observation_columns["critic"],
+            "action_deviation": deviations.tolist(),
+        }
+        export_policy(self.folder / CRITIC, self.algorithm.critic, metadata, CRITIC_FORMAT)
 
     def _load(self) -> None:
         content = load_checkpoint(self.folder / CHECKPOINT)

@@ -4,12 +4,17 @@ Where both tasks take the same kind of commands, these columns keep their weight
 becomes a waypoint task, the old command becomes part of the first layer's bias, so that the new
 policy begins by doing what the old one did under that command; columns that only the new task has
 begin without weight. The critic starts anew, alone for some iterations.
+
+A finished training writes its critic beside its policy. A training of the same task that starts
+from this policy takes over that critic and the deviation of the actions, and so goes on where the
+first one ended, but for the optimiser's moments and the simulations' states.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +23,8 @@ import numpy as np
 import torch
 
 from hyperleg_design.errors import InputError, in_short
-from hyperleg_design.learning.export import FORMAT
+from hyperleg_design.learning.export import CRITIC_FORMAT, FORMAT
+from hyperleg_design.learning.status import CRITIC, POLICY
 
 if TYPE_CHECKING:
     from rsl_rl.models import MLPModel
@@ -49,19 +55,62 @@ class StartPolicy:
     posture: dict[str, float]
     """Default posture that its task states [deg]."""
     source: dict[str, Any]
-    """What `run.json` says of it: task, variant, seed, steps, commit and SHA-256 of the file."""
+    """What `run.json` says of it: task, variant, seed, steps, commit and SHA-256 of the file, and
+    of its critic's."""
+    critic: StartCritic | None = None
+    """Critic of the same training; None where there is none beside the policy."""
+
+
+@dataclass(frozen=True, eq=False)
+class StartCritic:
+    """The critic that judged a policy at the end of its training."""
+
+    columns: tuple[str, ...]
+    """Names of its observation's numbers."""
+    mean: np.ndarray
+    """Of its normaliser, `(size,)`."""
+    deviation: np.ndarray
+    """Of its normaliser, `(size,)`."""
+    weights: tuple[np.ndarray, ...]
+    """Of each layer, `(outputs, inputs)`."""
+    biases: tuple[np.ndarray, ...]
+    """Of each layer, `(outputs,)`."""
+    action_deviation: np.ndarray
+    """Standard deviation of the policy's actions, `(J,)`."""
 
 
 def read_start(path: str | Path) -> StartPolicy:
-    """Read a policy that `hyperleg train` exported.
+    """Read a policy that `hyperleg train` exported, and the critic beside it, if any.
 
     Raises:
-        InputError: missing, truncated, or no such policy.
+        InputError: missing, truncated, or no such policy or critic.
     """
+    path = Path(path)
+    told, network, digest = _read_network(path, FORMAT)
+    source = {key: told[key] for key in ("variant", "seed", "steps", "commit") if key in told}
+    task = json.loads(told["task"])
+    source |= {"task": task["name"], "sha256": digest}
+    critic = None
+    if path.name == POLICY and (path.parent / CRITIC).is_file():
+        extra, judged, source["critic_sha256"] = _read_network(path.parent / CRITIC, CRITIC_FORMAT)
+        critic = StartCritic(
+            **judged, action_deviation=np.array(json.loads(extra["action_deviation"]))
+        )
+    return StartPolicy(
+        **network,
+        joints=tuple(json.loads(told["joints"])),
+        commands=task["commands"]["kind"],
+        posture={str(k): float(v) for k, v in task.get("posture_deg", {}).items()},
+        source=source,
+        critic=critic,
+    )
+
+
+def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any], str]:
+    """Metadata, columns with normaliser and layers, and SHA-256 of an exported network."""
     import onnx
     from onnx import numpy_helper
 
-    path = Path(path)
     where = f"{path.parent.name}/{path.name}"
     try:
         content = path.read_bytes()
@@ -78,12 +127,12 @@ def read_start(path: str | Path) -> StartPolicy:
             where, "", None, f"is no ONNX file, or is truncated ({in_short(error, 80)})"
         ) from None
     told = {entry.key: entry.value for entry in model.metadata_props}
-    if told.get("format") != FORMAT:
+    if told.get("format") != form:
         raise InputError(
             where,
             "format",
             told.get("format"),
-            f"expects a policy made by `hyperleg train` ({FORMAT})",
+            f"expects a file made by `hyperleg train` ({form})",
         )
     arrays = {
         entry.name: numpy_helper.to_array(entry).astype(np.float64)
@@ -93,23 +142,14 @@ def read_start(path: str | Path) -> StartPolicy:
         int(name.removeprefix("weight_")) for name in arrays if name.startswith("weight_")
     )
     columns = tuple(json.loads(told["columns"]))
-    source = {key: told[key] for key in ("variant", "seed", "steps", "commit") if key in told}
-    task = json.loads(told["task"])
-    source |= {
-        "task": task["name"],
-        "sha256": hashlib.sha256(content).hexdigest(),
+    network = {
+        "columns": columns,
+        "mean": arrays.get("mean", np.zeros(len(columns))).reshape(-1),
+        "deviation": arrays.get("deviation", np.ones(len(columns))).reshape(-1),
+        "weights": tuple(arrays[f"weight_{i}"] for i in layers),
+        "biases": tuple(arrays[f"bias_{i}"] for i in layers),
     }
-    return StartPolicy(
-        columns=columns,
-        joints=tuple(json.loads(told["joints"])),
-        mean=arrays.get("mean", np.zeros(len(columns))).reshape(-1),
-        deviation=arrays.get("deviation", np.ones(len(columns))).reshape(-1),
-        weights=tuple(arrays[f"weight_{i}"] for i in layers),
-        biases=tuple(arrays[f"bias_{i}"] for i in layers),
-        commands=task["commands"]["kind"],
-        posture={str(k): float(v) for k, v in task.get("posture_deg", {}).items()},
-        source=source,
-    )
+    return told, network, hashlib.sha256(content).hexdigest()
 
 
 def start_actor(
@@ -179,15 +219,55 @@ def start_actor(
             (command - start.mean[folded]) / start.deviation[folded]
         )
     values = [(first, bias), *zip(start.weights[1:], start.biases[1:], strict=True)]
+    _put(actor, values, mean, scale)
     with torch.no_grad():
-        for layer, (weight, offset) in zip(linear, values, strict=True):
+        actor.distribution.log_std_param.fill_(float(np.log(deviation)))
+
+
+def fits_critic(critic: MLPModel, start: StartPolicy, task: str, columns: list[str]) -> bool:
+    """Whether a training can take over the critic that judged a policy.
+
+    Args:
+        critic: of the new training.
+        start: the policy.
+        task: name of the new training's task.
+        columns: names of the critic's observation's numbers.
+
+    Returns:
+        Whether there is one, of the same task, observation and layers.
+    """
+    old = start.critic
+    if old is None or start.source["task"] != task or list(old.columns) != columns:
+        return False
+    linear = [layer for layer in critic.mlp if isinstance(layer, torch.nn.Linear)]
+    return [w.shape for w in old.weights] == [tuple(layer.weight.shape) for layer in linear]
+
+
+def start_critic(critic: MLPModel, actor: MLPModel, old: StartCritic) -> None:
+    """Give a critic the weights of the one that judged the policy, and the actor the deviation that
+    its actions had.
+    """
+    _put(critic, zip(old.weights, old.biases, strict=True), old.mean, old.deviation)
+    with torch.no_grad():
+        actor.distribution.log_std_param.copy_(torch.from_numpy(np.log(old.action_deviation)))
+
+
+def _put(
+    network: MLPModel,
+    layers: Iterable[tuple[np.ndarray, np.ndarray]],
+    mean: np.ndarray,
+    deviation: np.ndarray,
+) -> None:
+    """Set weights, biases and normaliser of a network."""
+    linear = [layer for layer in network.mlp if isinstance(layer, torch.nn.Linear)]
+    with torch.no_grad():
+        for layer, (weight, offset) in zip(linear, layers, strict=True):
             layer.weight.copy_(torch.from_numpy(weight))
             layer.bias.copy_(torch.from_numpy(offset))
-        if actor.obs_normalization:
-            normaliser = actor.obs_normalizer
-            spread = torch.from_numpy(scale - float(normaliser.eps)).clamp_min(1e-6)
+        if network.obs_normalization:
+            normaliser = network.obs_normalizer
+            spread = torch.from_numpy(deviation - float(normaliser.eps)).clamp_min(1e-6)
             normaliser._mean.copy_(torch.from_numpy(mean)[None])
             normaliser._std.copy_(spread[None])
             normaliser._var.copy_((spread**2)[None])
             normaliser.count.fill_(SEEN)
-        actor.distribution.log_std_param.fill_(float(np.log(deviation)))

@@ -196,8 +196,8 @@ def joint_limits(state: State, robot: Robot, share: float = 0.95) -> np.ndarray:
 
 @term()
 def human_cycle(state: State, robot: Robot, width: float = 0.25) -> np.ndarray:
-    """exp(-d^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human walking; with
-    waypoints, v_cmd is the speed cap toward the present one.
+    """exp(-d^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human walking;
+    with waypoints, v_cmd is the speed cap toward the present one.
     """
     motion, goal = state.motion, state.goal
     away = human_gait.distance(robot.layout.joints, motion.joint_position, motion.joint_velocity)

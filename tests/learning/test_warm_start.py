@@ -16,6 +16,7 @@ ort = pytest.importorskip("onnxruntime")
 pytest.importorskip("rsl_rl")
 pytest.importorskip("tensorboard")
 
+from hyperleg_design.learning.algorithm import as_tensors  # noqa: E402
 from hyperleg_design.learning.preset import WarmStart  # noqa: E402
 from hyperleg_design.learning.train import Training, describe, train  # noqa: E402
 from hyperleg_design.learning.warm_start import read_start  # noqa: E402
@@ -34,9 +35,14 @@ def begun(
     tiny: Preset, walker: Path, folder: Path, design: str = "toe", task: str | Task = "goal"
 ) -> Training:
     task, robot = load_task(task) if isinstance(task, str) else task, load_design(design)
-    return Training(
-        task, robot, 0, tiny, folder, 1, describe(task, robot, 0, tiny), read_start(walker)
-    )
+    start = read_start(walker)
+    description = {**describe(task, robot, 0, tiny), "start": start.source}
+    return Training(task, robot, 0, tiny, folder, 1, description, start)
+
+
+def begun_from_checkpoint(tiny: Preset, folder: Path) -> Training:
+    task, robot = load_task("goal"), load_design("toe")
+    return Training(task, robot, 0, tiny, folder, 1, describe(task, robot, 0, tiny))
 
 
 def test_it_begins_by_doing_what_the_walk_did(tiny: Preset, walker: Path, tmp_path: Path) -> None:
@@ -74,6 +80,41 @@ def test_from_a_policy_of_the_same_task_it_goes_on_as_it_was(
     np.testing.assert_allclose(
         training.policy(observation), expected, atol=2e-4 * (1 + np.abs(expected).max())
     )
+    training.environment.close()
+
+
+def test_a_training_of_the_same_task_goes_on_with_critic_and_noise(
+    tiny: Preset, tmp_path: Path
+) -> None:
+    """What it starts with is what the first training ended with, not the preset's deviation."""
+    assert train("goal", "toe", 0, tiny, tmp_path / "first")
+    first, policy = tmp_path / "first", tmp_path / "first" / "policy.onnx"
+    training = begun(tiny, policy, tmp_path / "next", task="goal")
+    ended = begun_from_checkpoint(tiny, first)
+    before, after = ended.algorithm, training.algorithm
+    observation = {name: values[:4] for name, values in training.observations.items()}
+    states = as_tensors({name: values.numpy() for name, values in observation.items()})
+    with torch.no_grad():
+        np.testing.assert_allclose(after.critic(states), before.critic(states), atol=1e-4)
+    np.testing.assert_allclose(
+        after.actor.distribution.log_std_param.detach(),
+        before.actor.distribution.log_std_param.detach(),
+        atol=1e-6,
+    )
+    assert training._critic_only == 0
+    (first / "critic.onnx").unlink()
+    without = begun(tiny, policy, tmp_path / "without", task="goal")
+    assert without._critic_only == int(WarmStart().critic_iterations)
+    assert without.description["start"] != training.description["start"]
+    for one in (training, ended, without):
+        one.environment.close()
+
+
+def test_another_tasks_critic_is_left(tiny: Preset, walker: Path, tmp_path: Path) -> None:
+    start = read_start(walker)
+    assert start.critic is not None
+    training = begun(tiny, walker, tmp_path)
+    assert training._critic_only == int(WarmStart().critic_iterations)
     training.environment.close()
 
 

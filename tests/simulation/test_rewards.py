@@ -126,12 +126,19 @@ def test_tilt_is_the_sine_squared_of_the_lean(state, robot):
 
 def test_human_cycle_pays_for_the_cycle_at_the_commanded_velocity(state, robot):
     places, phases = human_gait.cycle(robot.layout.joints)
-    motion = state.motion
+    motion, goal = state.motion, state.goal
     motion.joint_position[:, places] = phases[7, : len(places)] * human_gait.ANGLE
     motion.joint_velocity[:, places] = phases[7, len(places) :] * human_gait.RATE
+    # toward the waypoint at its cap: 1.0 m/s ahead, 3.0 m/s to the left
+    np.testing.assert_allclose(
+        value("human_cycle", state, robot),
+        np.exp(-np.array([0.2**2 + 0.1**2, 1.2**2 + 2.9**2]) / 0.25),
+    )
+    state.goal = None
     np.testing.assert_allclose(
         value("human_cycle", state, robot), [1.0, np.exp(-(0.2**2 + 0.1**2) / 0.25)]
     )
+    state.goal = goal
     motion.joint_position[:, places] += 2 * human_gait.ANGLE
     assert np.all(value("human_cycle", state, robot) < 0.5)
 
