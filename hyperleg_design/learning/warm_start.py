@@ -87,7 +87,9 @@ def read_start(path: str | Path) -> StartPolicy:
     """
     path = Path(path)
     told, network, digest = _read_network(path, FORMAT)
-    source = {key: told[key] for key in ("variant", "seed", "steps", "commit") if key in told}
+    source: dict[str, Any] = {
+        key: told[key] for key in ("variant", "seed", "steps", "commit") if key in told
+    }
     task = json.loads(told["task"])
     source |= {"task": task["name"], "sha256": digest}
     critic = None
