@@ -22,7 +22,7 @@ class Chosen(Printing):
     design: str = "hyperleg"
     """Shipped name or YAML file; `hyperleg list` shows what is shipped."""
     variant: str = ""
-    """Ablation to make of it: toe, toe_locked, toe_removed_matched or toe_removed."""
+    """Ablation to make of it: toe, toe_locked, toe_removed_matched, toe_removed or toe_passive."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """PATH=VALUE, such as toe.mass=0.3."""
     set_file: Annotated[

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import masses, transmission
-from hyperleg_design.robot.names import JOINTS, VARIANTS
+from hyperleg_design.robot.names import JOINTS, LAYOUTS, PASSIVE, VARIANTS
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.hyperleg import HyperLeg
@@ -20,7 +20,16 @@ DESCRIPTION = {
     "toe_removed_matched": "toe joint and motor gone; total mass, sole and foot length kept by "
     "ballast at the motor's place",
     "toe_removed": "toe joint and motor gone with their mass; the sole keeps its length",
+    PASSIVE: "a spring and a damper at the toe in place of the motor; total mass kept by ballast "
+    "at the motor's place",
 }
+
+
+def states(variant: str) -> tuple[str, bool]:
+    """What a toe layout is: `toe.joint`, and whether the toe's motor is installed."""
+    if variant == "toe":
+        return "active", True
+    return "passive" if variant == PASSIVE else "locked", variant == "toe_locked"
 
 
 def ablate(design: Biped, variant: str) -> Biped:
@@ -28,7 +37,7 @@ def ablate(design: Biped, variant: str) -> Biped:
 
     Args:
         design: a robot or batch with an active toe.
-        variant: one of `VARIANTS`.
+        variant: one of `LAYOUTS`.
 
     Returns:
         A design of the same batch shape whose `variant` is the one asked for.
@@ -36,8 +45,8 @@ def ablate(design: Biped, variant: str) -> Biped:
     Raises:
         InputError: no such variant, or the toe is gone already.
     """
-    if variant not in VARIANTS:
-        raise InputError("variant", "", variant, f"expects one of {', '.join(VARIANTS)}")
+    if variant not in LAYOUTS:
+        raise InputError("variant", "", variant, f"expects one of {', '.join(LAYOUTS)}")
     if variant == design.variant:
         return design
     if design.variant != "toe":
@@ -47,10 +56,9 @@ def ablate(design: Biped, variant: str) -> Biped:
             design.variant,
             f"has no active toe to make {variant} of; start from the toe variant",
         )
-    values: dict[str, Any] = {"toe.joint": "locked"}
-    if variant != "toe_locked":
-        values["actuators.toe_installed"] = False
-    if variant == "toe_removed_matched":
+    joint, installed = states(variant)
+    values: dict[str, Any] = {"toe.joint": joint, "actuators.toe_installed": installed}
+    if variant in ("toe_removed_matched", PASSIVE):
         without = masses.mass_table(design.with_values(values, f"variant {variant}"))
         values["masses.thigh_ballast"] = (
             design.masses.thigh_ballast + (masses.mass_table(design).total - without.total) / 2

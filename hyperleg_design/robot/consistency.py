@@ -89,7 +89,7 @@ def check_design(design: HyperLeg) -> None:
         "foot.cross_mass",
         "must be below foot.mass, in which it is counted",
     )
-    if design.toe.joint == "active":
+    if design.toe.joint != "locked":
         require(
             np.asarray(design.toe.mass) > 1e-6,
             "toe.mass",
@@ -101,6 +101,13 @@ def check_design(design: HyperLeg) -> None:
             "actuators.toe_installed",
             False,
             "an active toe needs its motor; set toe.joint: locked",
+        )
+    if design.toe.joint == "passive" and design.actuators.toe_installed:
+        raise InputError(
+            where,
+            "actuators.toe_installed",
+            True,
+            "a passive toe has a spring and no motor; set it to false",
         )
 
     _check_inertia(design, where)

@@ -19,15 +19,18 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import parse_yaml, read_yaml, short_name
 from hyperleg_design.robot import parameters
-from hyperleg_design.robot.ablation import ablate
+from hyperleg_design.robot.ablation import ablate, states
 from hyperleg_design.robot.consistency import check_design
-from hyperleg_design.robot.hyperleg import HyperLeg
+from hyperleg_design.robot.hyperleg import SPRING_LEAVES, HyperLeg
 from hyperleg_design.robot.masses import check_printed, lapsed
-from hyperleg_design.robot.names import VARIANTS
+from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import Origin
 
 if TYPE_CHECKING:
     from typing import Self
+
+SPRING = tuple(f"toe.{leaf}" for leaf in SPRING_LEAVES)
+"""Paths of the leaves that only a passive toe has."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,7 +83,7 @@ def load_design(
             with the leaves that differ and the `variant:` to make of it.
         overrides: mapping of dotted paths to values, or texts `path=value`.
         overlays: YAML files with nested leaves, applied in order before `overrides`.
-        variant: ablation to make of it, one of `VARIANTS`.
+        variant: toe layout to make of it, one of `LAYOUTS`.
 
     Returns:
         The validated design, one robot.
@@ -106,6 +109,10 @@ def load_design(
                 path,
                 value,
                 f"the variant {made.variant} sets this itself; use another variant or leave it out",
+            )
+        if path in SPRING and made.toe.joint != "passive":
+            raise InputError(
+                "--set", path, value, f"only {PASSIVE} has a spring at the toe; start from it"
             )
     return made
 
@@ -137,8 +144,8 @@ def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:
     if not isinstance(data, Mapping):
         raise InputError(where, "", data, "expects a mapping of a design's sections")
     variant = data.get("variant", "toe")
-    if variant not in VARIANTS:
-        raise InputError(where, "variant", variant, f"expects one of {', '.join(VARIANTS)}")
+    if variant not in LAYOUTS:
+        raise InputError(where, "variant", variant, f"expects one of {', '.join(LAYOUTS)}")
     rest = {k: v for k, v in data.items() if k not in ("name", "variant")}
     return _build(rest, str(data.get("name", where)), where, {}, variant)
 
@@ -156,8 +163,8 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
         )
         raise InputError(where, "family", data["family"], remedy)
     variant = data.get("variant")
-    if variant is not None and variant not in VARIANTS:
-        raise InputError(where, "variant", variant, f"expects one of {', '.join(VARIANTS)}")
+    if variant is not None and variant not in LAYOUTS:
+        raise InputError(where, "variant", variant, f"expects one of {', '.join(LAYOUTS)}")
     name = data.get("name", re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem))
     rest = {k: v for k, v in data.items() if k not in ("base", "variant", "name", "family")}
     if "base" not in data:
@@ -217,8 +224,8 @@ def _build(
     except InputError as error:
         raise InputError(where, error.field, error.value, error.remedy) from None
     check_printed(design, where)
-    stated = (design.toe.joint == "locked", design.actuators.toe_installed)
-    if variant != "toe" and stated != (True, variant == "toe_locked"):
+    stated = (design.toe.joint, design.actuators.toe_installed)
+    if variant != "toe" and stated != states(variant):
         remedy = (
             "does not fit toe.joint and actuators.toe_installed; a whole design states the "
             "variant that it is, `base:` makes one of another"

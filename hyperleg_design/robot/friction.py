@@ -57,7 +57,8 @@ def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
 
     Returns:
         Coulomb [Nm] and viscous [Nms/rad] friction, each `(..., joints)`; of HyperLeg, of all
-        seven in the order of `JOINTS`, where a locked toe's has no effect.
+        seven in the order of `JOINTS`, where a locked toe's has no effect and a passive toe's
+        damper is part of the viscous one.
 
     Raises:
         InputError: no such law.
@@ -72,7 +73,11 @@ def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
             design.friction.law,
             f"expects one of {', '.join(sorted(_LAWS))}",
         )
-    return _LAWS[design.friction.law](design)
+    coulomb, viscous = _LAWS[design.friction.law](design)
+    if design.toe.joint == "passive":
+        place = np.arange(len(JOINTS)) == JOINTS.index("toe")
+        viscous = viscous + np.expand_dims(design.toe.damping, -1) * place
+    return coulomb, viscous
 
 
 @friction_law("declared")

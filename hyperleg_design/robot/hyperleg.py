@@ -31,6 +31,9 @@ from hyperleg_design.robot.sections import (
     Transmission,
 )
 
+SPRING_LEAVES = ("stiffness", "damping")
+"""Leaves of the section `toe` that only a passive toe has."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HyperLeg(RobotDesign):
@@ -63,8 +66,16 @@ class HyperLeg(RobotDesign):
     @property
     def joint_sections(self) -> dict[str, Any]:
         """Joints that move, by name: all seven, or without the toe where that is locked."""
-        names = JOINTS if self.toe.joint == "active" else JOINTS[:-1]
+        names = JOINTS[:-1] if self.toe.joint == "locked" else JOINTS
         return {name: getattr(self.joints, name) for name in names}
+
+    def to_mapping(self) -> dict[str, Any]:
+        """All leaves as nested plain mappings; without the spring where the toe has none."""
+        result = super().to_mapping()
+        if self.toe.joint != "passive":
+            for leaf in SPRING_LEAVES:
+                del result["toe"][leaf]
+        return result
 
     @property
     def every_actuator(self) -> tuple[Any, ...]:

@@ -21,6 +21,7 @@ from hyperleg_design.robot import description, transmission
 from hyperleg_design.robot.described import prefixed
 from hyperleg_design.robot.dimensions import standing_height
 from hyperleg_design.robot.gear import rotor_inertia
+from hyperleg_design.robot.hyperleg import HyperLeg
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.tree import Tree, build_tree
 
@@ -82,6 +83,7 @@ def mujoco_spec(design: RobotDesign, *, friction: bool = True, floor: bool = Tru
             design.stop_section.impedance,
             *STOP_IMPEDANCE_SHAPE,
         ]
+    _add_springs(spec, design)
     _add_drives(spec, design)
     _add_sensors(spec, design, tree)
     if floor:
@@ -196,6 +198,17 @@ def _add_drives(spec: mujoco.MjSpec, design: RobotDesign) -> None:
                 ctrllimited=True,
                 ctrlrange=[-peak, peak],
             )
+
+
+def _add_springs(spec: mujoco.MjSpec, design: RobotDesign) -> None:
+    """Springs of passive toes; their dampers are part of the joint's viscous friction."""
+    if not isinstance(design, HyperLeg) or design.toe.joint != "passive":
+        return
+    for side in design.copies:
+        joint = spec.joint(prefixed(side, "toe"))
+        stiffness = float(design.toe.stiffness)
+        joint.stiffness = [stiffness, 0.0, 0.0] if np.ndim(joint.stiffness) else stiffness
+        joint.springref = float(np.deg2rad(design.joints.toe.default_deg))
 
 
 def _add_sensors(spec: mujoco.MjSpec, design: RobotDesign, tree: Tree) -> None:

@@ -17,5 +17,9 @@ SEGMENTS = ("pelvis", "thigh", "shank", "foot", "toe")
 VARIANTS = ("toe", "toe_locked", "toe_removed_matched", "toe_removed")
 """Ablations of the active toe, from nothing taken away to everything."""
 
+PASSIVE = "toe_passive"
+"""The toe on a spring and a damper in place of its motor, at equal mass."""
+LAYOUTS = (*VARIANTS, PASSIVE)
+"""All toe layouts that can be made of a robot with an active toe."""
 POSTURES = ("walking", "standing")
 """Postures for which the paper prints reductions."""

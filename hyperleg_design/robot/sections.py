@@ -100,8 +100,12 @@ class Toe(_Checked):
 
     mass: Any = number("kg", 0, 10)
     """Mass [kg]; zero only where the toe is locked."""
-    joint: Any = text("active", "locked", default="active")
-    """`active`, or `locked` straight to the foot."""
+    joint: Any = text("active", "locked", "passive", default="active")
+    """`active`, `locked` straight to the foot, or `passive`: a spring and a damper, no motor."""
+    stiffness: Any = number("Nm/rad", 0, 1000, default=15.0)
+    """Of the spring of a passive toe, which rests at the joint's default posture [Nm/rad]."""
+    damping: Any = number("Nm s/rad", 0, 50, default=0.3)
+    """Of the damper of a passive toe, added to the joint's viscous friction [Nm s/rad]."""
     length: Any = number("m", 0.005, 0.3)
     """Tip ahead of the toe axis [m]."""
     axis_height: Any = number("m", 0.002, 0.2)

@@ -155,9 +155,13 @@ def motor_torque(
 ) -> np.ndarray:
     """Motor torques that give the joint torques, `(..., joints)` -> `(..., motors)` [Nm].
 
-    Where motors outnumber joints, those of least Joule heat, given `power_constant` [W/Nm^2] `(...,
-    motors)` (equal ones by default): tau = C^-1 M^T (M C^-1 M^T)^-1 tau_joint.
+    A joint that no motor moves, such as a passive toe, is left to its spring: its torque has no
+    effect. Where motors outnumber joints, those of least Joule heat, given `power_constant`
+    [W/Nm^2] `(..., motors)` (equal ones by default): tau = C^-1 M^T (M C^-1 M^T)^-1 tau_joint.
     """
+    moved = driven_rows(matrix)
+    if not moved.all():
+        return motor_torque(matrix[..., moved, :], torque[..., moved], power_constant)
     if matrix.shape[-1] == matrix.shape[-2]:
         return np.linalg.solve(matrix, torque[..., None])[..., 0]
     ease = 1.0 / (
@@ -169,6 +173,12 @@ def motor_torque(
         weighted,
         np.linalg.solve(weighted @ np.swapaxes(matrix, -1, -2), torque[..., None])[..., 0],
     )
+
+
+def driven_rows(matrix: np.ndarray) -> np.ndarray:
+    """Whether any motor moves each joint, in any robot of the batch, `(joints,)`."""
+    reached = np.any(matrix != 0, -1)
+    return np.asarray(reached.reshape(-1, reached.shape[-1]).any(0))
 
 
 def reflected_inertia(matrix: np.ndarray, rotor_inertia: np.ndarray) -> np.ndarray:
@@ -212,7 +222,7 @@ def single_joint_speed(design: RobotDesign, posture: str = "walking") -> np.ndar
         posture: `standing` or `walking`, the paper's two; Table I prints the walking one.
 
     Returns:
-        Speeds at the joints [rad/s].
+        Speeds at the joints [rad/s]; infinite where no motor moves a joint.
     """
     free = motor_arrays(design).no_load_speed[..., : len(motor_names(design))]
     matrix = np.abs(joint_from_motor(design, posture))

@@ -90,6 +90,7 @@ def _leg_joints(design: Design, side: str, sign: float) -> list[TreeJoint]:
     for index, (name, child) in enumerate(zip(JOINTS, LEG_LINKS, strict=True)):
         joint: Any = getattr(design.joints, name)
         fixed = name not in moving
+        still = fixed or not np.isfinite(speed[index])  # no motor moves a passive toe
         made.append(
             TreeJoint(
                 name=f"{side}_{name}",
@@ -100,8 +101,8 @@ def _leg_joints(design: Design, side: str, sign: float) -> list[TreeJoint]:
                 fixed=fixed,
                 lower=float(np.deg2rad(joint.lower_deg)),
                 upper=float(np.deg2rad(joint.upper_deg)),
-                effort=0.0 if fixed else float(effort[index]),
-                velocity=0.0 if fixed else float(speed[index]),
+                effort=0.0 if still else float(effort[index]),
+                velocity=0.0 if still else float(speed[index]),
                 coulomb=float(coulomb[index]),
                 viscous=float(viscous[index]),
                 default=float(np.deg2rad(joint.default_deg)),

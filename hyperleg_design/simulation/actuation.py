@@ -99,11 +99,16 @@ def actuation_model(design: Design) -> ActuationModel:
 
 def motor_from_joint(matrix: np.ndarray, power_constant: np.ndarray) -> np.ndarray:
     """The linear map from joint torques to motor torques, `(..., motors, joints)`: M^-1, or that of
-    least Joule heat.
+    least Joule heat; zero for a joint that no motor moves.
 
     C^-1 M^T (M C^-1 M^T)^-1 with C the motors' power constants [W/Nm^2]; where motors outnumber
     joints it leaves the others at the cheapest.
     """
+    moved = transmission.driven_rows(matrix)
+    if not moved.all():
+        inverse = np.zeros((*matrix.shape[:-2], matrix.shape[-1], matrix.shape[-2]))
+        inverse[..., moved] = motor_from_joint(matrix[..., moved, :], power_constant)
+        return inverse
     if matrix.shape[-1] == matrix.shape[-2]:
         return np.linalg.inv(matrix)
     weighted = matrix / np.asarray(power_constant)[..., None, :]

@@ -48,13 +48,16 @@ def analyze(design: RobotDesign) -> dict[str, Any]:
         its tree out, what `tree_analysis.analyze_tree` returns.
 
     Raises:
-        InputError: a batch of designs.
+        InputError: a batch of designs, or a passive toe.
     """
     if isinstance(design, TreeDesign):
         return analyze_tree(design)
     design = cast("Design", design)
     if design.batch_shape:
         raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
+    if design.toe.joint == "passive":
+        remedy = "needs a motor for every joint that moves; a toe on a spring is simulated only"
+        raise InputError(design.name, "toe.joint", design.toe.joint, remedy)
     table = mass_table(design)
     joints = transmission.joint_names(design)
     matrix = {posture: transmission.joint_from_motor(design, posture) for posture in POSTURES}

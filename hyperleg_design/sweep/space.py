@@ -34,10 +34,10 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import parameters
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.design import Design
+from hyperleg_design.robot.design import SPRING, Design
 from hyperleg_design.robot.load import load_robot, walker
 from hyperleg_design.robot.motors import find_motor
-from hyperleg_design.robot.names import VARIANTS
+from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import leaves
 from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.axis import Axis, read_axis
@@ -238,6 +238,10 @@ def sweep_from_mapping(
         raise InputError(where, "sampling", sampling, f"expects one of {', '.join(SAMPLINGS)}")
     variants = _variants(data.get("variants"), base, where)
     axes = _axes(data["axes"], base, where, grid=sampling == "grid")
+    for axis in axes:
+        if set(axis.paths) & set(SPRING) and set(variants) != {PASSIVE}:
+            remedy = f"only {PASSIVE} has a spring at the toe; expects variants: [{PASSIVE}]"
+            raise InputError(where, f"axes.{axis.name}", list(variants), remedy)
     chosen = _measures(data.get("measures"), base, where)
     evaluated = _evaluated(data.get("evaluate", []), where)
     if evaluated:
@@ -295,15 +299,15 @@ def _variants(found: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
     found = ["toe"] if found is None else found
     if not isinstance(found, list) or not found or len(set(map(str, found))) < len(found):
         raise InputError(
-            where, "variants", found, f"expects a list of different ones of {', '.join(VARIANTS)}"
+            where, "variants", found, f"expects a list of different ones of {', '.join(LAYOUTS)}"
         )
     for variant in found:
-        if variant not in VARIANTS:
+        if variant not in LAYOUTS:
             raise InputError(
                 where,
                 "variants",
                 variant,
-                parameters.unknown(str(variant), list(VARIANTS)).replace(
+                parameters.unknown(str(variant), list(LAYOUTS)).replace(
                     "such field", "such variant"
                 ),
             )

@@ -8,9 +8,11 @@ from hypothesis import strategies as st
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.ablation import DESCRIPTION, ablate, confound, variants
+from hyperleg_design.robot.design import design_from_mapping, load_design
+from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.masses import actuator_mass, mass_table
 from hyperleg_design.robot.motors import catalogue
-from hyperleg_design.robot.names import VARIANTS
+from hyperleg_design.robot.names import PASSIVE, VARIANTS
 
 
 def test_masses_of_the_papers_ablations(hyperleg):
@@ -67,7 +69,47 @@ def test_the_papers_confound(hyperleg):
         assert found[name]["lost"]["ankle_roll"] == 0
         assert (found[name]["motors"], found[name]["joints"]) == (6, 6)
     assert (found["toe_locked"]["motors"], found["toe_locked"]["joints"]) == (7, 6)
-    assert {found[name]["removes"] for name in VARIANTS} == set(DESCRIPTION.values())
+    assert {found[name]["removes"] for name in VARIANTS} == {DESCRIPTION[n] for n in VARIANTS}
+
+
+def test_a_passive_toe_is_a_spring_at_equal_mass(hyperleg):
+    passive = ablate(hyperleg.with_values({"toe.stiffness": 20.0}), PASSIVE)
+    assert mass_table(passive).total == pytest.approx(32.0, abs=1e-12)
+    matrix = transmission.joint_from_motor(passive)
+    assert matrix.shape == (7, 6)
+    np.testing.assert_array_equal(matrix[6], 0.0)
+    matched = ablate(hyperleg, "toe_removed_matched")
+    np.testing.assert_array_equal(matrix[:6], transmission.joint_from_motor(matched))
+    torque = np.array([1.0, -2.0, 3.0, 20.0, 10.0, 1.0, 5.0])
+    motor = transmission.motor_torque(matrix, torque)
+    np.testing.assert_allclose(matrix @ motor, np.r_[torque[:6], 0.0], atol=1e-12)
+    with pytest.raises(InputError, match="start from the toe variant"):
+        ablate(passive, "toe_locked")
+
+
+def test_friction_of_a_passive_toe_is_the_joints_part_and_its_damper(hyperleg):
+    (coulomb, viscous), (own, of_joint) = (
+        joint_friction(d)
+        for d in (ablate(hyperleg.with_values({"toe.damping": 0.5}), PASSIVE), hyperleg)
+    )
+    share = 1.0 - hyperleg.friction.motor_share
+    assert coulomb[6] == pytest.approx(own[6] * share)
+    assert viscous[6] == pytest.approx(of_joint[6] * share + 0.5)
+    matched = joint_friction(ablate(hyperleg, "toe_removed_matched"))
+    np.testing.assert_array_equal(coulomb[:6], matched[0][:6])
+
+
+def test_only_a_passive_toe_has_a_spring():
+    passive = load_design("toe_passive", overrides={"toe.stiffness": 30.0})
+    assert (passive.toe.stiffness, passive.variant) == (30.0, PASSIVE)
+    assert passive.origins["toe.damping"].label == "assumed"
+    again = design_from_mapping(passive.to_mapping(), "again")
+    assert (again.toe.stiffness, again.variant) == (30.0, PASSIVE)
+    assert not {"stiffness", "damping"} & set(load_design("toe").to_mapping()["toe"])
+    with pytest.raises(InputError, match="only toe_passive has a spring"):
+        load_design("toe", overrides={"toe.stiffness": 30.0})
+    with pytest.raises(InputError, match="no motor"):
+        load_design(overrides={"toe.joint": "passive"})
 
 
 def test_a_batch_is_ablated_as_a_whole(hyperleg):

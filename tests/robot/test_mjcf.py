@@ -232,3 +232,20 @@ def test_writing_leaves_mujocos_precision_alone(hyperleg):
 def test_a_batch_has_no_model(hyperleg):
     with pytest.raises(InputError, match="batch"):
         mujoco_model(hyperleg.with_values({"toe.mass": np.array([0.2, 0.3])}))
+
+
+def test_a_passive_toe_is_pulled_to_its_default_posture_by_its_spring_alone(hyperleg):
+    passive = ablate(hyperleg.with_values({"toe.stiffness": 12.0}), "toe_passive")
+    made = mujoco_model(passive)
+    data = standing(made)
+    data.joint("left_toe").qpos = -0.3
+    mujoco.mj_forward(made, data)
+    force = np.zeros(made.nv)
+    force[made.joint("left_toe").dofadr[0]] = 12.0 * 0.3
+    np.testing.assert_allclose(data.qfrc_spring, force, atol=1e-12)
+    toes = [made.joint(f"{side}_toe").id for side in ("left", "right")]
+    moved = [made.wrap_objid[i] for i in range(made.nwrap)]
+    assert not set(toes) & set(moved)
+    active = mujoco_model(hyperleg)
+    assert not active.jnt_stiffness.any()
+    assert active.body_mass.sum() == pytest.approx(made.body_mass.sum(), abs=1e-9)

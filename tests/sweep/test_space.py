@@ -39,6 +39,16 @@ def test_shipped_sweeps_read(name):
     assert 0 < sweep.size < 20_000
 
 
+def test_only_a_passive_toes_spring_can_be_swept():
+    axes = {"toe.stiffness": {"values": [5.0, 20.0]}}
+    sweep = sweep_from_mapping({"design": "hyperleg", "variants": ["toe_passive"], "axes": axes})
+    designs = sweep.design(sweep.samples(), "toe_passive")
+    np.testing.assert_array_equal(designs["toe.stiffness"], [5.0, 20.0])
+    assert designs["toe.joint"] == "passive"
+    with pytest.raises(InputError, match="only toe_passive has a spring"):
+        sweep_from_mapping({"design": "hyperleg", "variants": ["toe"], "axes": axes})
+
+
 def test_a_grid_has_every_combination_once():
     sweep = sweep_from_mapping(
         {"design": "hyperleg", "variants": ["toe", "toe_locked"], "axes": GRID}
