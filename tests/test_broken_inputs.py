@@ -200,6 +200,7 @@ CASES: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("evaluate", "empty.onnx", *OUT), ("empty.onnx",)),
     (("evaluate", "garbage.onnx", "--overlay", "none.yaml", *OUT), ("none.yaml",)),
     (("evaluate", "walk-toe-0", "--protocol", "swim", *OUT), ("swim",)),
+    (("evaluate", "walk-toe-0", "--swap", "toe_motor_to_ankle", *OUT), ("toe_removed_matched",)),
     (("evaluate", "walk-toe-0", "--protocol", "protocol.yaml", *OUT), ("protocol.yaml",)),
     (("evaluate", "garbage.onnx", "--out", "notes.txt"), ("notes.txt",)),
     (("replay", "none.onnx", "--gif", "a.gif"), ("none.onnx", "walk-toe-0")),

@@ -189,6 +189,8 @@ class Compare(Printing):
     """Add what the shipped policies do on each under this protocol (a minute a design)."""
     seeds: Annotated[int, AtLeast(1)] = 3
     """Trainings of each design that are evaluated, at most."""
+    swap: Literal["", "lock_toe", "toe_motor_alone", "toe_motor_to_ankle"] = ""
+    """With --evaluate: change of the toe that the policies were not trained for."""
 
     def run(self) -> None:
         """Compare them."""
@@ -202,6 +204,7 @@ class Compare(Printing):
             [walker(d, "compare --evaluate") for d in designs] if self.evaluate else [],
             self.evaluate,
             seeds=self.seeds,
+            swap=self.swap,
         )
         for protocol, entries in walks.items():
             for entry, walked in zip(found.values(), entries, strict=True):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
@@ -14,6 +14,9 @@ from hyperleg_design.cli.output import Printing, emit, require
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.robot.design import Design, changed, load_design
+
+if TYPE_CHECKING:
+    from hyperleg_design.simulation.alteration import Alterations
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,6 +145,8 @@ class Evaluate(Printing):
     """Processes side by side."""
     overlay: str = ""
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
+    swap: Literal["", "lock_toe", "toe_motor_alone", "toe_motor_to_ankle"] = ""
+    """Change of the toe that the policies were not trained for; none by default."""
     logs: Path | None = None
     """Folder to write a log of every trial to, as `hyperleg gap` reads them; none by default."""
     lerobot: Path | None = None
@@ -150,8 +155,9 @@ class Evaluate(Printing):
     def run(self) -> None:
         """Evaluate them."""
         from hyperleg_design.evaluation.evaluate import evaluate_many
-        from hyperleg_design.evaluation.result import write_results
+        from hyperleg_design.evaluation.result import swapped, write_results
         from hyperleg_design.report.evaluation_text import evaluation_rows, evaluation_text
+        from hyperleg_design.simulation.toe_swap import Swap
         from hyperleg_design.writing import check_output_folder
 
         if not self.policies:
@@ -164,7 +170,11 @@ class Evaluate(Printing):
             from hyperleg_design.gap.playback.overlay import read_overlay, write_overlay
 
             overlay = read_overlay(self.overlay)
-        alterations = overlay.alterations if overlay else None
+        alterations: Alterations | None = overlay.alterations if overlay else None
+        if self.swap:
+            if overlay:
+                raise InputError("evaluate", "swap", self.swap, "cannot be used with an overlay")
+            alterations = Swap(self.swap)
         found = evaluate_many(
             self.policies,
             self.protocol or None,
@@ -173,6 +183,8 @@ class Evaluate(Printing):
             kept=1 if self.logs is None and self.lerobot is None else sys.maxsize,
             alterations=alterations,
         )
+        if self.swap:
+            found = [swapped(one, self.swap) for one in found]
         folder = write_results(self.out, found)
         written = []
         if self.logs is not None:

@@ -45,8 +45,7 @@ FLOWS = (
 def ledger(trial: Trial, first: int = 0, last: int | None = None) -> EnergyLedger:
     """Ledger of all motors between two samples, `(t, K)`."""
     part = slice(first, last)
-    legs = trial.layout.leg_motors
-    constants = np.tile(motor_arrays(trial.design).power_constant[:legs], 2)
+    constants = power_constants(trial)
     electrical = trial.design.electrical
     return energy_ledger(
         trial.motor_torque[part],
@@ -56,6 +55,13 @@ def ledger(trial: Trial, first: int = 0, last: int | None = None) -> EnergyLedge
         electrical.efficiency_out,
         electrical.efficiency_regen,
     )
+
+
+def power_constants(trial: Trial) -> np.ndarray:
+    """Joule heat over squared torque of all motors of a trial, as simulated [W/Nm^2], `(K,)`."""
+    if trial.power_constant is not None:
+        return trial.power_constant
+    return np.tile(motor_arrays(trial.design).power_constant[: trial.layout.leg_motors], 2)
 
 
 def flows(entries: EnergyLedger) -> dict[str, float]:
@@ -106,7 +112,7 @@ def cycle_power(
     joints, motors = (
         slice(foot * n, (foot + 1) * n) for n in (layout.leg_joints, layout.leg_motors)
     )
-    constants = motor_arrays(trial.design).power_constant[: layout.leg_motors]
+    constants = power_constants(trial)[motors]
     mechanical = joint_power(trial.driven_joint_torque[:, joints], trial.joint_velocity[:, joints])
     joule = constants * trial.motor_torque[:, motors] ** 2
     names = tuple(name.split("_", 1)[1] for name in layout.joints[joints])

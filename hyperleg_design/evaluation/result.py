@@ -18,7 +18,12 @@ from hyperleg_design.evaluation.course import in_start_frame
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, policy_name
 from hyperleg_design.evaluation.protocol import protocol_mapping
 from hyperleg_design.evaluation.rollout import ARRIVED
-from hyperleg_design.evaluation.training_fit import UNKNOWN, TrainingFit, training_fit
+from hyperleg_design.evaluation.training_fit import (
+    UNKNOWN,
+    ZERO_SHOT,
+    TrainingFit,
+    training_fit,
+)
 from hyperleg_design.provenance import git_commit, versions
 from hyperleg_design.writing import output_folder, write_bytes, write_json
 
@@ -125,6 +130,17 @@ def evaluation_of(
         cycles=list(cycles),
         robot=design,
         trained=training_fit(policy, design),
+    )
+
+
+def swapped(evaluation: Evaluation, swap: str) -> Evaluation:
+    """An evaluation whose name says that the robot was swapped, and that the policy was not trained
+    for that.
+    """
+    return dataclasses.replace(
+        evaluation,
+        policy=f"{evaluation.policy} with {swap}",
+        trained=TrainingFit(ZERO_SHOT, evaluation.trained.changed, evaluation.trained.outside),
     )
 
 

@@ -91,6 +91,9 @@ class Trial:
     them."""
     base_angular_velocity: np.ndarray | None = None
     """In the pelvis's frame [rad/s], `(t, 3)`; None where nobody recorded it."""
+    power_constant: np.ndarray | None = None
+    """Joule heat over squared torque of each motor [W/Nm^2], `(K,)`, where alterations make it
+    another than the design's."""
     told: Mapping[str, np.ndarray] = field(default_factory=dict)
     """What drives and sensors told, where alterations make that another thing; see
     `simulation.told.Told`."""
@@ -222,6 +225,7 @@ def record(
             outcome=outcomes[i],
             end_time=float(ended_at[i]),
             divergence=divergences.get(i),
+            power_constant=_power_constant(environment, i),
             told={
                 name: values[i, : length[i]]
                 for name, values in store.items()
@@ -231,6 +235,19 @@ def record(
         )
         for i in range(count)
     ]
+
+
+def _power_constant(environment: Environment, simulation: int) -> np.ndarray | None:
+    """Power constants of one simulation's motors where alterations changed them, `(K,)`."""
+    for chunk in environment.chunks:
+        chain, row = chunk.drive.chain, simulation - chunk.first
+        if chain is None or not 0 <= row < chunk.count:
+            continue
+        altered, nominal = chain.machine.power_constant, chain.nominal.power_constant
+        if altered is nominal:
+            return None
+        return np.array(np.broadcast_to(altered, (chunk.count, altered.shape[-1]))[row])
+    return None
 
 
 def resolved(policy: Policy, design: Design | None, task: Task | None) -> tuple[Design, Task]:

@@ -7,11 +7,15 @@ import pytest
 
 from hyperleg_design.evaluation import rollout
 from hyperleg_design.evaluation.policy import Scripted, standing
+from hyperleg_design.evaluation.power import ledger, power_constants
 from hyperleg_design.evaluation.rollout import record
+from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.settings import Limits, Physics, Start
 from hyperleg_design.simulation.tasks import load_task
+from hyperleg_design.simulation.toe_swap import ANKLES, SHARE, Swap
 
 
 @pytest.fixture
@@ -24,6 +28,21 @@ def environment(design):
         )
 
     return made
+
+
+def test_heat_is_that_of_the_motors_as_simulated():
+    """A swap that makes ankle motors larger lowers their heat at the same torque, and no other."""
+    matched = load_design("toe_removed_matched")
+    task = load_task("walk").changed(physics=Physics(), limits=Limits(duration=10))
+    made = Environment(matched, task, simulations=2, alterations=Swap("toe_motor_to_ankle"))
+    trial = record(standing(12), made, 0.2)[1]
+    nominal = np.tile(motor_arrays(matched).power_constant[:6], 2)
+    ratio = np.where([name in ANKLES for name in trial.layout.motors], 1 / SHARE, 1.0)
+    np.testing.assert_allclose(power_constants(trial), nominal * ratio)
+    joule = ledger(trial).mean_power().joule
+    np.testing.assert_allclose(joule, nominal * ratio * (trial.motor_torque**2).mean(0), rtol=1e-9)
+    plain = record(standing(12), Environment(matched, task, simulations=1), 0.2)[0]
+    assert plain.power_constant is None
 
 
 def test_signals_are_continuous_and_carry_the_weight(environment):

@@ -240,7 +240,12 @@ MEASURED = {
 
 
 def compare_walks(
-    designs: list[Design], protocols: Sequence[str], *, seeds: int = 3, workers: int = 2
+    designs: list[Design],
+    protocols: Sequence[str],
+    *,
+    seeds: int = 3,
+    workers: int = 2,
+    swap: str = "",
 ) -> dict[str, dict[str, Any]]:
     """What shipped policies of each design's toe layout do on it.
 
@@ -249,14 +254,17 @@ def compare_walks(
         protocols: `walk`, `t_test`.
         seeds: trainings of each.
         workers: processes side by side.
+        swap: one of `SWAPS`, of all designs; none by default.
 
     Returns:
         By protocol, in the order of `designs`: `policy` (whether it was trained for the design) and
         the measures of `MEASURED`, each with mean, low and high.
     """
     from hyperleg_design.evaluation.evaluate import evaluate_many
+    from hyperleg_design.evaluation.result import swapped
     from hyperleg_design.evaluation.shipped import policies_for
     from hyperleg_design.report.evaluation_text import evaluation_rows
+    from hyperleg_design.simulation.toe_swap import Swap
 
     found: dict[str, Any] = {}
     for protocol in protocols:
@@ -271,7 +279,9 @@ def compare_walks(
             designs=[design for _, design, _ in jobs],
             workers=workers,
             kept=0,
+            alterations=Swap(swap) if swap else None,
         )
+        done = [swapped(one, swap) for one in done] if swap else done
         found[protocol] = []
         for i in range(len(designs)):
             own = [e for e, (j, _, _) in zip(done, jobs, strict=True) if j == i]
