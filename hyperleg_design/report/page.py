@@ -33,6 +33,8 @@ class Picture:
     """Path relative to the page."""
     caption: str
     wide: bool = True
+    chart: bool = False
+    """Whether it is lines on white, which a dark scheme may show inverted."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,8 @@ class Details:
 
     summary: str
     content: Sequence[Any]
+    unfolded: bool = False
+    """Whether it is open at first."""
 
 
 @dataclass(frozen=True)
@@ -99,6 +103,11 @@ def number(value: Any, digits: int = 4) -> str:
 
 def render(page: Page) -> str:
     """The page as HTML."""
+    return fill("page.html", page=page)
+
+
+def fill(template: str, **values: Any) -> str:
+    """One of the templates beside this file, filled with values."""
     import jinja2
 
     environment = jinja2.Environment(
@@ -109,4 +118,4 @@ def render(page: Page) -> str:
     )
     environment.filters["number"] = number
     environment.tests["kind"] = lambda value, name: type(value).__name__ == name
-    return environment.get_template("page.html").render(page=page)
+    return environment.get_template(template).render(**values)

@@ -24,6 +24,8 @@ KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 RESIDUALS = ("motion", "drive", "control", "base", "ground")
 """Rows that a trace can fill; `gap/signals/signals.py` says what each compares."""
 
+PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "imu": "IMU"}
+"""Words of identifiers that have a spelling of their own."""
 Change = Mapping[tuple[str, str], Mapping[str, float]]
 """Values of parameters by (effect, location): what is added to a simulation; empty, the simulation
 as it is."""
@@ -199,6 +201,11 @@ class Effect(ABC):
         with its unit.
         """
         return {}
+
+    @property
+    def title(self) -> str:
+        """Its name inside a sentence: `Coulomb friction`, `payload`."""
+        return " ".join(PROPER.get(word, word) for word in self.identifier.split("_"))
 
     @property
     def nulls(self) -> np.ndarray:

@@ -9,8 +9,8 @@ from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-from hyperleg_design.report.gap import figures as gap_figures
-from hyperleg_design.report.gap.page import cause_text, write_gap_page
+from hyperleg_design.report.gap import page as gap_page
+from hyperleg_design.report.gap.page import write_gap_page
 from hyperleg_design.report.gap.text import diagnosis_text
 
 PENDULUM = """
@@ -65,17 +65,30 @@ def signals(tmp_path_factory: pytest.TempPathFactory):
     return [condition(log, load_subject(path, [log]))]
 
 
+def written(folder: Path, told: dict, signals) -> str:
+    return write_gap_page(folder, told, signals).read_text()
+
+
 def test_a_named_cause_is_on_the_page_with_its_figures(tmp_path: Path, signals) -> None:
-    told = diagnosis(
-        "explained", causes=[CAUSE], rivals=[{**CAUSE, "effect": "backlash", "parameters": {}}]
-    )
-    text = write_gap_page(tmp_path, told, signals).read_text()
-    assert "coulomb_friction" in text
-    assert "0.17 .. 0.21" in text
-    assert "93 %" in text
-    for name in ("where.png", "trace-1.png", "waterfall.png", "rivals.png"):
+    rival = {**CAUSE, "effect": "backlash", "parameters": {}, "closed": 0.4, "probability": 0.001}
+    text = written(tmp_path, diagnosis("explained", causes=[CAUSE], rivals=[rival]), signals)
+    assert "<h1>Coulomb friction at swing (torque 0.2 Nm) explains the gap.</h1>" in text
+    assert "93 % of the gap beyond the noise floor is gone" in text
+    assert "(95 % interval 90 to 95 %)" in text
+    assert "0.17 to 0.21" in text
+    assert "<b>Backlash</b><br>swing" in text
+    assert "&lt; 0.01" in text
+    assert "hyperleg gap apply" in text
+    for name in ("trace-1.png", "speed-1.png"):
         assert f"figures/{name}" in text
         assert (tmp_path / "figures" / name).read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_phone_and_a_dark_scheme_are_served(tmp_path: Path, signals) -> None:
+    text = written(tmp_path, diagnosis("explained", causes=[CAUSE]), signals)
+    assert 'name="viewport" content="width=device-width' in text
+    assert "prefers-color-scheme: dark" in text
+    assert "max-width: 760px" in text
 
 
 def test_what_to_do_next_is_told(tmp_path: Path, signals) -> None:
@@ -85,41 +98,37 @@ def test_what_to_do_next_is_told(tmp_path: Path, signals) -> None:
             {"effect": "torque_constant", "location": "swing"},
         ]
     ]
-    told = diagnosis(
-        "ambiguous",
-        causes=[CAUSE],
-        equivalent=pair,
-        separating_experiment={"experiment": "hang a known mass", "why": "two loads"},
-    )
-    text = write_gap_page(tmp_path, told, signals).read_text()
-    assert "payload at arm, torque_constant at swing" in text
-    assert "hang a known mass" in text
+    trial = {
+        "name": "hang a known mass",
+        "do": "weigh it first",
+        "minutes": 5,
+        "separates": ["payload at arm", "torque_constant at swing"],
+    }
+    told = diagnosis("ambiguous", causes=[CAUSE], equivalent=pair, separating_experiment=trial)
+    text = written(tmp_path, told, signals)
+    assert "Either payload at arm or torque constant at swing: these logs cannot tell" in text
+    assert "Hang a known mass: weigh it first (5 minutes)." in text
 
 
 @pytest.mark.parametrize("verdict", ["none", "unknown"])
 def test_without_a_cause_nothing_is_claimed(verdict: str, tmp_path: Path, signals) -> None:
-    text = write_gap_page(tmp_path, diagnosis(verdict, where=[]), signals).read_text()
-    assert f"Verdict: {verdict}" in text
-    assert "waterfall" not in text
+    text = written(tmp_path, diagnosis(verdict, where=[]), signals)
+    assert f'class="verdict {verdict}"' in text
+    assert "<h2>Causes</h2>" not in text
+    assert "hyperleg gap apply" not in text
+    assert "<svg" not in text
 
 
-def test_joints_that_chatter_come_first(tmp_path: Path, signals) -> None:
+def test_what_is_left_of_an_unknown_gap_follows_the_verdict(tmp_path: Path, signals) -> None:
     shape = {
-        "shape": "chatter",
+        "shape": "friction_over_position",
         "location": "swing",
-        "says": "swings to and fro by 2 rad/s at 60 Hz",
-        "closed_beyond": 0.0,
-        "gain": 0.0,
+        "says": "swing: friction that depends on where the joint is",
+        "closed_beyond": 0.9,
+        "gain": 20.0,
     }
-    told = diagnosis("unknown", residual_shape=[shape])
-    assert (
-        "What is left first of all: swing chatters"
-        in write_gap_page(tmp_path, told, signals).read_text()
-    )
-    assert (
-        "  left: chatter at swing: swings to and fro by 2 rad/s at 60 Hz"
-        in diagnosis_text(told).splitlines()
-    )
+    text = written(tmp_path, diagnosis("unknown", residual_shape=[shape]), signals)
+    assert '<p class="lead">Left at swing: friction that depends on where the joint is.</p>' in text
 
 
 def test_what_a_joint_shows_at_rest_is_told_and_no_gap_is_said_to_close(
@@ -128,33 +137,45 @@ def test_what_a_joint_shows_at_rest_is_told_and_no_gap_is_said_to_close(
     rest = {"location": "swing", "torque": 0.3, "says": "swing stays where it is: it sticks"}
     told = diagnosis("explained", causes=[CAUSE], at_rest=[rest])
     told["gap"] = {**told["gap"], "closed": 0.0}
-    text = write_gap_page(tmp_path, told, signals).read_text()
-    assert "swing stays where it is: it sticks." in text
-    assert "closes the gap" not in text
+    text = written(tmp_path, told, signals)
+    assert "At rest: swing stays where it is: it sticks." in text
+    assert "is gone on data" not in text
     assert (
         "  at rest, which is in no balance: swing stays where it is: it sticks"
         in diagnosis_text(told).splitlines()
     )
 
 
-def test_causes_read_as_a_sentence() -> None:
-    assert cause_text(CAUSE) == "coulomb_friction at swing (torque 0.2 Nm, 0.17 .. 0.21)"
+def test_a_remainder_and_what_references_lack_stand_below_the_verdict(
+    tmp_path: Path, signals
+) -> None:
+    told = diagnosis(
+        "explained",
+        causes=[CAUSE],
+        remainder=0.18,
+        lacks={"verdict": "explained", "causes": [CAUSE]},
+    )
+    text = written(tmp_path, told, signals)
+    assert "18 % of the gap is left that no effect explains." in text
+    assert "The reference logs already show what the model lacks: Coulomb friction" in text
 
 
 def test_the_robot_is_coloured_by_shares_of_the_whole_gap_and_regimes_are_of_their_own_place(
     tmp_path: Path, signals, monkeypatch
 ) -> None:
-    drawn, draw = [], gap_figures.robot_figure
+    drawn, draw = [], gap_page.robot_svg
     monkeypatch.setattr(
-        gap_figures,
-        "robot_figure",
+        gap_page,
+        "robot_svg",
         lambda subject, shares: drawn.append(shares) or draw(subject, shares),
     )
     where = [
         {"location": "swing", "kind": "joint", "regime": "all", "share": 0.4},
         {"location": "swing", "kind": "joint", "regime": "forward", "share": 0.63},
+        {"location": "robot", "kind": "robot", "regime": "all", "share": 0.6},
     ]
-    text = write_gap_page(tmp_path, diagnosis("unknown", where=where), signals).read_text()
-    assert drawn == [{"swing": 0.4}]
+    text = written(tmp_path, diagnosis("unknown", where=where), signals)
+    assert drawn == [{"swing": 0.4, "robot": 0.6}]
     assert "63 % of its own" in text
     assert "40 % of its own" not in text
+    assert "Share of the gap at each joint; robot 60 %." in text

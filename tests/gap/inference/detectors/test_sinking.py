@@ -136,14 +136,3 @@ def test_two_logs_foretell_each_other(subject, nominal):
         one.closed > 0.8
         for one in found(subject, *(standing(subject, 4 * nominal, seed=s) for s in (1, 2)))
     )
-
-
-def test_the_page_shows_heights_over_loads(subject, nominal, tmp_path):
-    from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
-    from hyperleg_design.report.gap.page import write_gap_page
-
-    signals = [condition(standing(subject, 4 * nominal), subject)]
-    told = diagnose_signals(signals, effects=["ground_compliance"], threads=1)
-    page = write_gap_page(tmp_path, told.mapping(), signals).read_text()
-    assert "figures/sinking-2.png" in page
-    assert (tmp_path / "figures" / "sinking-1.png").read_bytes().startswith(b"\x89PNG")

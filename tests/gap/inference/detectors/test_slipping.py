@@ -147,22 +147,3 @@ def test_without_the_bases_velocity_nothing_is_said(subject):
     assert (
         found(subject, pushed(subject, dry(0.4), lacking=("base_velocity", "base_position"))) == ()
     )
-
-
-def test_the_page_shows_forces_over_speeds(subject, tmp_path):
-    from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
-    from hyperleg_design.report.gap.page import write_gap_page
-
-    signals = [condition(pushed(subject, dry(0.45)), subject)]
-    told = diagnose_signals(signals, effects=["ground_friction"], threads=1)
-    assert (
-        told.rivals[0].effect == "ground_friction"
-    )  # a part of a gap that is unknown: these torques do not carry the robot
-    assert (told.verdict, {one["shape"] for one in told.residual_shape[:2]}) == (
-        "unknown",
-        {"slips"},
-    )
-    page = write_gap_page(tmp_path, told.mapping(), signals).read_text()
-    assert "figures/slipping-1.png" in page
-    assert "times its load" in page
-    assert (tmp_path / "figures" / "slipping-2.png").read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,90 @@
+"""What is left of a gap, in the plainest words that fit: constant and viscous friction before any
+other shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.gap.playback.evidence import Evidence
+
+TURN = 0.05
+"""Speed over which friction turns its direction in this fit [rad/s]."""
+PLAIN = 0.5
+"""Share of the mean square that friction must explain to be named."""
+NEARLY = 0.8
+"""Of what another shape would explain, how much friction must explain to be named instead."""
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Least-squares fit of friction to what is left of one joint's torque."""
+
+    constant: float
+    """[Nm]"""
+    viscous: float
+    """[Nms/rad]"""
+    share: float
+    """Of the mean square that it explains."""
+
+    def sentence(self, joint: str) -> str:
+        """For people."""
+        return (
+            f"Left at {joint}: a torque that goes with its speed as plain friction does: "
+            f"{self.constant:.2g} Nm and {self.viscous:.2g} Nms/rad explain "
+            f"{100 * self.share:.0f} % of it."
+        )
+
+
+def friction(shown: Sequence[Evidence], row: int) -> Friction:
+    """Fit `constant tanh(v / TURN) + viscous v + offset` to what is left of a row in all logs.
+
+    Args:
+        shown: of the motion residual of one robot's logs.
+        row: of the joint.
+    """
+    speed, left = (
+        np.concatenate(part)
+        for part in ([s.speed[:, row] for s in shown], [s.after[:, row] for s in shown])
+    )
+    known = np.isfinite(speed) & np.isfinite(left)
+    speed, left = speed[known], left[known]
+    if len(left) < 10 or not left.any():
+        return Friction(0.0, 0.0, 0.0)
+    columns = np.column_stack([np.tanh(speed / TURN), speed, np.ones_like(speed)])
+    fit, *_ = np.linalg.lstsq(columns, left, rcond=None)
+    # friction resists: a residual is what the motion lacks, so its sign is that of the speed
+    rest = left - columns @ fit
+    share = 1.0 - float(rest @ rest) / float(left @ left)
+    resists = fit[0] >= 0 and fit[0] + fit[1] * float(np.abs(speed).max()) >= 0
+    return Friction(float(fit[0]), float(fit[1]), share if resists else 0.0)
+
+
+def hints(shapes: Sequence[Mapping[str, Any]], shown: Sequence[Evidence]) -> list[str]:
+    """What is left, in sentences: plain friction where it fits nearly as well as what was found,
+    else what was found.
+
+    Args:
+        shapes: `residual_shape` of the diagnosis, the largest first.
+        shown: evidence of its logs, all of one residual.
+    """
+    alike = [one for one in shown if one.residual_name == "motion"]
+    sentences, plainly = [], set()
+    for shape in shapes:
+        place = str(shape["location"])
+        if alike and place in alike[0].rows:
+            if place in plainly:
+                continue
+            fit = friction(alike, alike[0].rows.index(place))
+            if fit.share >= max(PLAIN, NEARLY * float(shape.get("closed_beyond", 0.0))):
+                sentences.append(fit.sentence(place))
+                plainly.add(place)
+                continue
+        says = str(shape["says"]).removeprefix(place).lstrip(": ")
+        where = "" if place == "robot" else f" at {place}"
+        sentences.append(f"Left{where}: {says}.")
+    return sentences

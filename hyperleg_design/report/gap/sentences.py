@@ -1,0 +1,234 @@
+"""A diagnosis in sentences and table rows, for its page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.report.gap.text import chosen
+
+Entry = Mapping[str, Any]
+"""A cause, a rival or another entry, as `diagnosis.json` holds it."""
+NOTHING_LEFT = 0.995
+"""Share closed that counts as the whole gap."""
+LEAST_CLOSED = 0.05
+"""Share of the excess that a cause must close to be said to close the gap."""
+
+MOST_SIZED, MOST_PLACES = 2, 3
+"""Causes that a sentence tells with their sizes, and places of one effect that it names."""
+NEAREST = 0.1
+"""Probability from which the nearest rival of an unknown gap is mentioned beside the verdict."""
+
+
+@dataclass(frozen=True)
+class ValueRow:
+    """One parameter of a cause, ready to be read."""
+
+    name: str
+    value: str
+    interval: str
+    """Of 95 %; empty of a choice."""
+
+
+@dataclass(frozen=True)
+class CauseRow:
+    """One cause or rival, ready to be read."""
+
+    effect: str
+    location: str
+    values: tuple[ValueRow, ...]
+    closed: str
+    probability: str
+
+
+def title(effect: str) -> str:
+    """The name of an effect inside a sentence: `Coulomb friction`, `payload`."""
+    return EFFECTS[effect].title if effect in EFFECTS else effect.replace("_", " ")
+
+
+def cause_row(cause: Entry) -> CauseRow:
+    """A cause, or a rival, with each of its parameters."""
+    values = []
+    for name, value, choice in chosen(cause["effect"], cause["parameters"]):
+        unit = f" {value['unit']}".replace("^2", "²").rstrip()
+        words = name.replace("_", " ")
+        if choice:
+            values.append(ValueRow(words, choice, ""))
+        else:
+            low, high = float(value["low"]), float(value["high"])
+            values.append(
+                ValueRow(words, f"{float(value['value']):.3g}{unit}", f"{low:.3g} to {high:.3g}")
+            )
+    return CauseRow(
+        capital(title(cause["effect"])),
+        str(cause["location"]),
+        tuple(values) or (ValueRow("", "", ""),),
+        share_text(float(cause["closed"])),
+        probability_text(float(cause["probability"])),
+    )
+
+
+def share_text(share: float) -> str:
+    """A share in per cent; a dash where it is none."""
+    return f"{100 * share:.0f} %" if round(100 * share) else "–"
+
+
+def probability_text(value: float) -> str:
+    """A probability with two digits, never a bare zero."""
+    return f"{value:.2f}" if value >= 0.005 else "< 0.01"
+
+
+def verdict_sentence(diagnosis: Entry) -> str:
+    """The verdict in one sentence."""
+    causes, verdict = list(diagnosis["causes"]), str(diagnosis["verdict"])
+    places = joined(places_of(diagnosis)[:2])
+    if verdict == "none":
+        return "These logs show no gap between robot and model."
+    if verdict == "unknown" or not causes:
+        return (
+            f"There is a gap{f' at {places}' if places else ''}, and no effect of the catalogue "
+            "explains it."
+        )
+    if verdict == "ambiguous":
+        sets = [[named(member) for member in group] for group in diagnosis["equivalent"]]
+        together = "; ".join(joined(group, "or") for group in sets)
+        return f"Either {together or phrase(causes)}: these logs cannot tell which."
+    return f"{capital(phrase(causes))} explain{'' if len(causes) > 1 else 's'} the gap."
+
+
+def phrase(causes: Sequence[Entry]) -> str:
+    """All causes in words, one effect at several places said once: `Coulomb friction at elbow (0.25
+    Nm) and payload at hand (0.5 kg)`.
+    """
+    places: dict[str, list[str]] = {}
+    for cause in causes:
+        size = _size(cause) if len(causes) <= MOST_SIZED else ""
+        places.setdefault(str(cause["effect"]), []).append(f"{cause['location']}{size}")
+    return joined(
+        f"{title(effect)} at "
+        f"{joined(where) if len(where) <= MOST_PLACES else f'{len(where)} places'}"
+        for effect, where in places.items()
+    )
+
+
+def _size(cause: Entry) -> str:
+    """The value of a cause's first parameter, in parentheses; empty where it has none."""
+    for value in cause_row(cause).values:
+        if value.interval:
+            return f" ({value.name} {value.value})"
+    return ""
+
+
+def named(entry: Entry) -> str:
+    """An effect and its place, where it has one."""
+    effect, location = title(str(entry.get("effect", ""))), entry.get("location", "")
+    return f"{effect} at {location}" if location else effect
+
+
+def places_of(diagnosis: Entry) -> list[str]:
+    """Places of the gap, the largest share first."""
+    return [str(w["location"]) for w in diagnosis["where"] if w["regime"] == "all"]
+
+
+def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
+    """What follows the verdict: how far the gap shrinks, what remains, what joints do at rest, what
+    the model lacks already.
+
+    Args:
+        diagnosis: as `diagnosis.json` holds it.
+        left: sentences on what is left.
+    """
+    texts, gap = [], diagnosis["gap"]
+    if diagnosis["causes"]:
+        closed = float(gap["closed"])
+        if closed < LEAST_CLOSED and diagnosis.get("at_rest"):
+            texts.append("In motion there is no gap beyond the noise floor.")
+        else:
+            low, high = (100 * float(v) for v in gap["closed_interval"])
+            much = "All" if closed >= NOTHING_LEFT else f"{100 * closed:.0f} %"
+            wide = f" (95 % interval {low:.0f} to {high:.0f} %)" if high - low >= 1 else ""
+            texts.append(
+                f"{much} of the gap beyond the noise floor is gone on data that the fit has not "
+                f"seen{wide}."
+            )
+    remainder = diagnosis.get("remainder")
+    if remainder:
+        texts.append(f"{100 * float(remainder):.0f} % of the gap is left that no effect explains.")
+    if diagnosis["verdict"] == "unknown":
+        nearest = [r for r in diagnosis["rivals"][:1] if float(r["probability"]) >= NEAREST]
+        texts += [f"The nearest of all is {phrase(nearest)}." for _ in nearest]
+        texts += left[:1]
+    texts += [f"At rest: {entry['says']}." for entry in diagnosis.get("at_rest", ())]
+    lacks = diagnosis.get("lacks")
+    if lacks and lacks.get("causes"):
+        texts.append(
+            f"The reference logs already show what the model lacks: {phrase(lacks['causes'])}. "
+            "Correct the model first."
+        )
+    return texts
+
+
+def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
+    """What to do next, each a sentence and a command, which may be empty."""
+    steps, verdict = [], diagnosis["verdict"]
+    experiment = diagnosis["separating_experiment"]
+    if experiment:
+        steps.append((_experiment(experiment), ""))
+    if diagnosis["causes"]:
+        steps.append(
+            (
+                "Add what was named to the simulation, and replay a log that was not used here:",
+                "hyperleg gap apply FOLDER --logs OTHER_LOG --out overlay.yaml",
+            )
+        )
+    referred = bool(diagnosis.get("provenance", {}).get("reference"))
+    if not referred and verdict != "explained":
+        steps.append(
+            (
+                "Give logs of the same motion from when all was well: what the model always lacks "
+                "is then no part of the gap.",
+                "hyperleg gap diagnose ... --reference HEALTHY_LOG",
+            )
+        )
+    if verdict in ("unknown", "none"):
+        steps.append(
+            (
+                "Record motions that show more: they stay inside the robot's limits and tell "
+                "effects apart.",
+                "hyperleg gap excite --robot ROBOT --out motions",
+            )
+        )
+    return steps
+
+
+def _experiment(experiment: Entry) -> str:
+    text = str(experiment.get("do") or experiment.get("experiment") or experiment.get("name", ""))
+    name = experiment.get("name")
+    minutes = experiment.get("minutes")
+    text = f"{capital(str(name))}: {text}" if name and name != text else capital(text)
+    if minutes:
+        text += f" ({float(minutes):g} minutes)"
+    separates = [str(one) for one in experiment.get("separates", ())]
+    return text + (f". It tells apart {joined(separates)}." if len(separates) > 1 else ".")
+
+
+def joined(parts: Iterable[str], word: str = "and") -> str:
+    """Parts as people list them: `a, b and c`."""
+    *first, last = [*parts] or [""]
+    return f"{', '.join(first)} {word} {last}" if first else last
+
+
+def capital(text: str) -> str:
+    """The text with a capital first letter, the rest as it is."""
+    return text[:1].upper() + text[1:]
+
+
+def plain(value: Any) -> str:
+    """Any value of a diagnosis as text."""
+    if isinstance(value, Mapping):
+        return "; ".join(f"{str(k).replace('_', ' ')}: {plain(part)}" for k, part in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(plain(part) for part in value)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.playback.evidence import Evidence
+from hyperleg_design.report.gap.left import friction, hints
+
+
+def shown(left: np.ndarray, speed: np.ndarray) -> list[Evidence]:
+    time = np.arange(len(left)) * 0.01
+    return [
+        Evidence(
+            "run", "motion", ("hinge",), time, left[:, None], 0 * left[:, None], speed[:, None]
+        )
+    ]
+
+
+SPEED = 3 * np.sin(np.arange(3000) * 0.02)
+SHAPE = {"location": "hinge", "says": "a torque that drifts with time", "closed_beyond": 0.9}
+
+
+def test_friction_is_recovered() -> None:
+    fit = friction(shown(0.3 * np.sign(SPEED) + 0.1 * SPEED, SPEED), 0)
+    assert fit.constant == pytest.approx(0.3, rel=0.05)
+    assert fit.viscous == pytest.approx(0.1, rel=0.1)
+    assert fit.share > 0.99
+
+
+def test_what_drives_the_joint_is_no_friction() -> None:
+    assert friction(shown(-0.3 * np.sign(SPEED), SPEED), 0).share == 0.0
+
+
+def test_plain_friction_is_said_once_instead_of_other_shapes() -> None:
+    (sentence,) = hints([SHAPE, SHAPE], shown(0.3 * np.sign(SPEED), SPEED))
+    assert sentence.startswith("Left at hinge: a torque that goes with its speed as plain friction")
+
+
+def test_another_shape_is_said_where_friction_does_not_fit() -> None:
+    rng = np.random.default_rng(0)
+    assert hints([SHAPE], shown(rng.normal(size=3000), SPEED)) == [
+        "Left at hinge: a torque that drifts with time."
+    ]

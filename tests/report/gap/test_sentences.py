@@ -1,0 +1,87 @@
+from __future__ import annotations
+
+from hyperleg_design.report.gap.sentences import (
+    cause_row,
+    joined,
+    next_steps,
+    phrase,
+    probability_text,
+    share_text,
+    verdict_sentence,
+)
+
+
+def cause(effect: str, location: str, **parameters: tuple[float, str]) -> dict:
+    values = {
+        name: {"value": v, "low": 0.9 * v, "high": 1.1 * v, "unit": unit}
+        for name, (v, unit) in parameters.items()
+    }
+    return {
+        "effect": effect,
+        "location": location,
+        "probability": 0.9,
+        "closed": 0.5,
+        "parameters": values,
+    }
+
+
+def diagnosis(verdict: str, causes: list[dict], **changes: object) -> dict:
+    plain = {"verdict": verdict, "causes": causes, "equivalent": [], "where": []}
+    return plain | {"separating_experiment": None} | changes
+
+
+FRICTION = [cause("coulomb_friction", place, torque=(0.2, "Nm")) for place in "abcd"]
+
+
+def test_one_effect_at_several_places_is_said_once() -> None:
+    assert phrase(FRICTION[:1]) == "Coulomb friction at a (torque 0.2 Nm)"
+    assert phrase(FRICTION[:3]) == "Coulomb friction at a, b and c"
+    assert phrase(FRICTION) == "Coulomb friction at 4 places"
+    both = [FRICTION[0], cause("rotor_inertia", "b", inertia=(0.01, "kg m^2"))]
+    assert phrase(both) == (
+        "Coulomb friction at a (torque 0.2 Nm) and rotor inertia at b (inertia 0.01 kg m²)"
+    )
+
+
+def test_each_verdict_is_one_sentence() -> None:
+    assert verdict_sentence(diagnosis("none", [])).endswith("no gap between robot and model.")
+    unknown = diagnosis("unknown", [], where=[{"location": "a", "regime": "all", "share": 1.0}])
+    assert verdict_sentence(unknown).startswith("There is a gap at a, and no effect")
+    assert verdict_sentence(diagnosis("explained", FRICTION[:2])) == (
+        "Coulomb friction at a (torque 0.2 Nm) and b (torque 0.2 Nm) explain the gap."
+    )
+    pair = [[{"effect": "payload", "location": "arm"}, {"effect": "imu_bias", "location": "gyro"}]]
+    assert verdict_sentence(diagnosis("ambiguous", FRICTION[:1], equivalent=pair)) == (
+        "Either payload at arm or IMU bias at gyro: these logs cannot tell which."
+    )
+
+
+def test_parameters_are_rows_with_their_intervals() -> None:
+    row = cause_row(cause("rotor_inertia", "b", inertia=(0.01, "kg m^2")))
+    assert (row.effect, row.location, row.closed, row.probability) == (
+        "Rotor inertia",
+        "b",
+        "50 %",
+        "0.90",
+    )
+    assert [(v.name, v.value, v.interval) for v in row.values] == [
+        ("inertia", "0.01 kg m²", "0.009 to 0.011")
+    ]
+
+
+def test_steps_go_with_the_verdict() -> None:
+    assert [command.split()[2] for _, command in next_steps(diagnosis("explained", FRICTION))] == [
+        "apply"
+    ]
+    assert [command.split()[2] for _, command in next_steps(diagnosis("unknown", []))] == [
+        "diagnose",
+        "excite",
+    ]
+
+
+def test_small_numbers_read_well() -> None:
+    assert (share_text(0.001), share_text(0.456)) == ("–", "46 %")
+    assert (probability_text(0.001), probability_text(0.5)) == ("< 0.01", "0.50")
+    assert joined([]) == ""
+    assert joined(["a"]) == "a"
+    assert joined(["a", "b", "c"], "or") == "a, b or c"
