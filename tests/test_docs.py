@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import runpy
+import subprocess
 import sys
 from pathlib import Path
 
@@ -66,9 +67,18 @@ def test_a_tutorial_runs_as_it_stands(page, tmp_path, monkeypatch, capsys):
 
 
 def run(line: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A command of a tutorial: `hyperleg VERB ...` or `python FILE ...`, in this process."""
+    """A command of a tutorial: `hyperleg VERB ...` or `python FILE ...`.
+
+    It runs in this process, except for `hyperleg train`, which replaces the process that calls it.
+    """
     program, *arguments = line.split()
-    if program == "python":
+    if arguments[0] == "train":
+        pytest.importorskip("rsl_rl")
+        call = [sys.executable, "-m", "hyperleg_design.cli", *arguments]
+        done = subprocess.run(call, capture_output=True, text=True, check=False)
+        assert done.returncode == (3 if "--iterations" in arguments else 0), done.stderr
+        print(done.stdout)
+    elif program == "python":
         monkeypatch.setattr(sys, "argv", arguments)
         runpy.run_path(arguments[0], run_name="__main__")
     else:

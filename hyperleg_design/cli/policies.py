@@ -35,6 +35,8 @@ class Train:
     """ONNX policy of another task to start from; from scratch by default."""
     out: Path
     """Folder of the training."""
+    iterations: Annotated[int | None, AtLeast(1)] = None
+    """Iterations after which to stop with a checkpoint; by default the training runs to its end."""
     threads: Annotated[int, AtLeast(1)] = 1
     """Of this process; two trainings of one thread each are the best use of two cores."""
     overlay: str = ""
@@ -54,15 +56,15 @@ class Train:
             "threads": self.threads,
         }
         given |= {"start": self.start} if self.start else {}
+        given |= {} if self.iterations is None else {"iterations": self.iterations}
         arguments = [f"--{key}={value}" for key, value in given.items()]
         if not self.overlay:
             launch.run_here(arguments, self.threads)
         from hyperleg_design.gap.playback.overlay import read_overlay
 
         overlay = read_overlay(self.overlay)
-        overlay.alterations(
-            load_design(self.design)
-        )  # a wrong place is told before the process is replaced
+        # A wrong place is an error here, before this process is replaced.
+        overlay.alterations(load_design(self.design))
         if not launch.surrounded():
             launch.run_here(
                 ["train", *arguments, f"--overlay={self.overlay}"],

@@ -1,5 +1,7 @@
-"""`python -m hyperleg_design.learning --task=walk --design=toe --seed=0 --preset=laptop
---out=FOLDER`: one training.
+"""Run one training in this process.
+
+Usage: `python -m hyperleg_design.learning --task=walk --design=toe --seed=0 --preset=laptop
+--out=FOLDER`.
 """
 
 from __future__ import annotations
@@ -21,12 +23,16 @@ def main(
     alterations: Alterations | None = None,
     overlay: Mapping[str, Any] | None = None,
 ) -> int:
-    """Exit status: 0 done, 3 stopped with a checkpoint, 2 an error.
+    """Run or continue one training, and say how it ended.
 
     Args:
-        arguments: of the command line; the process's own by default.
-        alterations: as `train` takes them.
-        overlay: as `train` takes it.
+        arguments: options of the command line; the options of this process by default.
+        alterations: changes of the simulated robot, as `train` takes them.
+        overlay: description of these changes, as `train` takes it.
+
+    Returns:
+        The exit status: 0 when the training is done, 3 when it stopped with a checkpoint before
+        its end, and 2 after an error.
     """
     parser = argparse.ArgumentParser(
         prog="python -m hyperleg_design.learning", description="One training, or the rest of one."
@@ -39,6 +45,7 @@ def main(
         )
     parser.add_argument("--start")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--iterations", type=int)
     parser.add_argument("--threads", type=int, default=1)
     given = parser.parse_args(arguments)
     if arguments is None and not launch.surrounded():
@@ -54,6 +61,7 @@ def main(
             given.out,
             start=given.start,
             threads=given.threads,
+            iterations=given.iterations,
             alterations=alterations,
             overlay=overlay,
             show=_show,

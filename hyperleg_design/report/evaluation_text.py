@@ -12,8 +12,7 @@ from hyperleg_design.evaluation.statistics import Estimate, estimate, share
 from hyperleg_design.report.text import table
 
 if TYPE_CHECKING:
-    from hyperleg_design.evaluation.measures import OUTCOMES, T_TEST, WALK
-from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.evaluation.result import Evaluation
 
 UNITS = {
     name: measure.unit
@@ -24,11 +23,16 @@ UNITS = {
 
 
 def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
-    """One row a variant and measure: mean with its interval over seeds and trials.
+    """Summarise evaluations: the mean of every measure, with its interval over seeds and trials.
+
+    Args:
+        evaluations: trials of one or more policies, with the same measures.
 
     Returns:
-        `variant`, `design`, `trained` (see `TrainingFit`), `protocol`, `measure`, `unit`, `mean`,
-        `low`, `high` (None where there is none), `seeds`, `trials`, `missing`.
+        One row for each protocol, variant, design and measure, with `variant`, `design`,
+        `trained` (see `TrainingFit`), `protocol`, `measure`, `unit` (empty for a number without
+        unit), `mean`, `low` and `high` (None where there is no interval), `seeds`, `trials`, and
+        `missing`, the number of trials without a value.
     """
     trials = trial_table(evaluations)
     rows = []
@@ -37,7 +41,7 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
         for measure in evaluations[0].measures[0]:
             if measure not in part:
                 continue
-            found = (share if measure in OUTCOMES else estimate)(
+            interval = (share if measure in OUTCOMES else estimate)(
                 list(by_checkpoint(part, measure).values())
             )
             rows.append(
@@ -48,24 +52,24 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
                     "protocol": str(protocol),
                     "measure": measure,
                     "unit": UNITS.get(measure, ""),
-                    **_plain(found),
+                    **_plain(interval),
                 }
             )
     return rows
 
 
-def _plain(found: Estimate) -> dict[str, Any]:
-    numbers = {k: getattr(found, k) for k in ("mean", "low", "high")}
+def _plain(value: Estimate) -> dict[str, Any]:
+    numbers = {k: getattr(value, k) for k in ("mean", "low", "high")}
     return {
         **{k: v if math.isfinite(v) else None for k, v in numbers.items()},
-        "seeds": found.seeds,
-        "trials": found.trials,
-        "missing": found.missing,
+        "seeds": value.seeds,
+        "trials": value.trials,
+        "missing": value.missing,
     }
 
 
 def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
-    """The same for a terminal."""
+    """Lay out the rows of `evaluation_rows` as a table for a terminal, with units."""
     cells = []
     for row in rows:
         numbers = ["" if row[k] is None else row[k] for k in ("mean", "low", "high")]
@@ -74,7 +78,7 @@ def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
                 row["variant"],
                 row["trained"],
                 row["measure"],
-                row["unit"],
+                row["unit"] or "-",
                 *numbers,
                 row["seeds"],
                 row["trials"],
