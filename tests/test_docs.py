@@ -97,7 +97,9 @@ def in_navigation(entries: object) -> set[str]:
 def test_pages_of_the_navigation_exist_and_have_content():
     text = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
     linked = in_navigation(yaml.safe_load(text)["nav"])
-    there = {str(page.relative_to(ROOT / "docs")) for page in (ROOT / "docs").rglob("*.md")}
-    assert linked <= there
+    docs = ROOT / "docs"
+    there = {str(page.relative_to(docs)) for page in docs.rglob("*.md")}
+    notebooks = {str(page.relative_to(docs)) for page in docs.rglob("*.ipynb")}
+    assert linked == there | notebooks
     for page in there:
         assert len((ROOT / "docs" / page).read_text(encoding="utf-8").split()) >= 25, page
