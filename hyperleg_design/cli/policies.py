@@ -13,7 +13,9 @@ from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit, require
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import load_policy
-from hyperleg_design.robot.design import Design, changed, load_design
+from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.design import changed
+from hyperleg_design.robot.load import load_robot, walker
 
 if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alterations
@@ -64,7 +66,7 @@ class Train:
 
         overlay = read_overlay(self.overlay)
         # A wrong place is an error here, before this process is replaced.
-        overlay.alterations(load_design(self.design))
+        overlay.alterations(walker(load_robot(self.design), "overlay"))
         if not launch.surrounded():
             launch.run_here(
                 ["train", *arguments, f"--overlay={self.overlay}"],
@@ -211,10 +213,10 @@ class Evaluate(Printing):
                 f"tables in {folder}" + (f"; {len(written)} logs in {self.logs}" if written else "")
             )
 
-    def _design(self, policy: str) -> Design | None:
+    def _design(self, policy: str) -> RobotDesign | None:
         """The robot for a policy; None for the policy's own, unchanged."""
         if self.design:
-            return load_design(
+            return load_robot(
                 self.design,
                 overrides=self.set,
                 overlays=self.set_file,

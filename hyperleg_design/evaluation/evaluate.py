@@ -23,7 +23,7 @@ from hyperleg_design.simulation.commands import WaypointCommands
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.tasks import Task
 
@@ -32,7 +32,7 @@ def evaluate(
     policy: Policy | str | Path,
     protocol: Protocol | str | Path | None = None,
     *,
-    design: Design | None = None,
+    design: RobotDesign | None = None,
     task: Task | None = None,
     threads: int | None = None,
     alterations: Alterations | None = None,
@@ -72,7 +72,7 @@ def evaluate(
 
 def evaluate_designs(
     policy: Policy | str | Path,
-    designs: Design,
+    designs: RobotDesign,
     protocol: Protocol | str | Path | None = None,
     *,
     task: Task | None = None,
@@ -118,7 +118,7 @@ def evaluate_many(
     workers: int = 2,
     kept: int | Sequence[int] = 1,
     overrides: Sequence[Mapping[str, Any]] | None = None,
-    designs: Sequence[Design | None] | None = None,
+    designs: Sequence[RobotDesign | None] | None = None,
     alterations: Alterations | None = None,
     progress: Callable[[Evaluation], None] | None = None,
 ) -> list[Evaluation]:
@@ -187,7 +187,7 @@ def _evaluated(
         dict[str, object] | None,
         int,
         Mapping[str, Any],
-        Design | None,
+        RobotDesign | None,
         Alterations | None,
     ],
 ) -> Evaluation:

@@ -30,11 +30,11 @@ import numpy as np
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.reading import short_name
-from hyperleg_design.robot.design import design_from_mapping
+from hyperleg_design.robot.load import robot_from_mapping
 from hyperleg_design.simulation.tasks import task_from_mapping
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.tasks import Task
 
@@ -60,7 +60,7 @@ class OnnxPolicy:
     """Names of the numbers of the observation."""
     joints: tuple[str, ...]
     """Names of the numbers of the action."""
-    design: Design
+    design: RobotDesign
     """The robot that it was trained on."""
     task: Task
     """The task that it was trained on, as it began."""
@@ -112,7 +112,7 @@ def load_policy(name: str | Path) -> OnnxPolicy:
         name=short_name(path.with_suffix("")),
         columns=columns,
         joints=joints,
-        design=design_from_mapping(metadata["design"], f"{path.name}: design"),
+        design=robot_from_mapping(metadata["design"], f"{path.name}: design"),
         task=task_from_mapping(metadata["task"], f"{path.name}: task"),
         metadata=metadata,
         session=session,

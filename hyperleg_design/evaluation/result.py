@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from hyperleg_design.evaluation.motor_use import MotorUse
     from hyperleg_design.evaluation.power import CyclePower
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 
 ORIGIN = ("command", "commit", "versions", "deviations")
@@ -72,7 +72,7 @@ class Evaluation:
     """Of each trial; None where it gives none."""
     cycles: list[CyclePower | None] = field(default_factory=list)
     """Right-leg power over the steady strides of each walk; None where there is none."""
-    robot: Design | None = None
+    robot: RobotDesign | None = None
     """The design that was simulated."""
     trained: TrainingFit = field(default_factory=lambda: TrainingFit(UNKNOWN))
     """Whether the policy was trained for this design."""
@@ -102,7 +102,7 @@ class Evaluation:
 
 def evaluation_of(
     policy: Policy,
-    design: Design,
+    design: RobotDesign,
     protocol: Any,
     trials: list[Trial],
     measures: list[dict[str, float]],
@@ -146,7 +146,7 @@ def swapped(evaluation: Evaluation, swap: str) -> Evaluation:
 
 def evaluations_of(
     policy: Policy,
-    designs: Sequence[Design],
+    designs: Sequence[RobotDesign],
     protocol: Any,
     trials: list[Trial],
     measures: list[dict[str, float]],

@@ -24,7 +24,7 @@ from hyperleg_design.simulation.told import TOLD
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.chunk import Divergence
     from hyperleg_design.simulation.environment import Environment
@@ -48,7 +48,7 @@ _OF_ENDING = {
 class Trial:
     """One trial's signals at the start of each simulation step; time first."""
 
-    design: Design
+    design: RobotDesign
     layout: Layout
     model: mujoco.MjModel
     """Of MuJoCo, as simulated."""
@@ -250,7 +250,9 @@ def _power_constant(environment: Environment, simulation: int) -> np.ndarray | N
     return None
 
 
-def resolved(policy: Policy, design: Design | None, task: Task | None) -> tuple[Design, Task]:
+def resolved(
+    policy: Policy, design: RobotDesign | None, task: Task | None
+) -> tuple[RobotDesign, Task]:
     """Robot and task of an evaluation: those given, else an ONNX policy's own.
 
     Raises:
@@ -271,7 +273,7 @@ def resolved(policy: Policy, design: Design | None, task: Task | None) -> tuple[
     return design, task
 
 
-def one_robot(design: Design | None, several: str) -> Design | None:
+def one_robot(design: RobotDesign | None, several: str) -> RobotDesign | None:
     """The design of an evaluation of one robot.
 
     Raises:
@@ -284,7 +286,7 @@ def one_robot(design: Design | None, several: str) -> Design | None:
     return design
 
 
-def robots(design: Design, alterations: Alterations | None) -> int:
+def robots(design: RobotDesign, alterations: Alterations | None) -> int:
     """Robots of a batch.
 
     Raises:

@@ -21,7 +21,7 @@ from hyperleg_design.sizing.energy import cost_of_transport
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.tasks import Task
 
@@ -30,7 +30,7 @@ def evaluate_t_test(
     policy: Policy,
     protocol: TTestProtocol | str = "t_test",
     *,
-    design: Design | None = None,
+    design: RobotDesign | None = None,
     task: Task | None = None,
     threads: int | None = None,
     alterations: Alterations | None = None,
@@ -64,7 +64,7 @@ def evaluate_t_tests(
     policy: Policy,
     protocol: TTestProtocol | str = "t_test",
     *,
-    design: Design | None = None,
+    design: RobotDesign | None = None,
     task: Task | None = None,
     threads: int | None = None,
     alterations: Alterations | None = None,

@@ -16,7 +16,7 @@ from hyperleg_design.simulation.design_observation import design_ranges
 from hyperleg_design.simulation.machine import rotor_inertia
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 SPECIALIST, CONDITIONED, ZERO_SHOT, UNKNOWN = "specialist", "conditioned", "zero-shot", "unknown"
 RANGES = "design_ranges"
@@ -53,7 +53,7 @@ class TrainingFit:
         return f"{self.kind}, outside the trained range: {shown}{more}"
 
 
-def training_fit(policy: Policy, design: Design) -> TrainingFit:
+def training_fit(policy: Policy, design: RobotDesign) -> TrainingFit:
     """Compare the design that a policy was trained on, or its ranges, with one robot."""
     if not isinstance(policy, OnnxPolicy):
         return TrainingFit(UNKNOWN)
@@ -74,7 +74,7 @@ def training_fit(policy: Policy, design: Design) -> TrainingFit:
     return TrainingFit(ZERO_SHOT if changed else SPECIALIST, changed, tuple(changed))
 
 
-def _same_actuation(a: Design, b: Design) -> bool:
+def _same_actuation(a: RobotDesign, b: RobotDesign) -> bool:
     """Whether laws give the same masses, motors and friction to two robots of the same parts."""
     one, other = actuation_model(a), actuation_model(b)
     pairs = [

@@ -23,7 +23,7 @@ from hyperleg_design.sizing.energy import cost_of_transport
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.tasks import Task
 
@@ -37,7 +37,7 @@ def evaluate_walk(
     policy: Policy,
     protocol: WalkProtocol | str = "walk",
     *,
-    design: Design | None = None,
+    design: RobotDesign | None = None,
     task: Task | None = None,
     threads: int | None = None,
     alterations: Alterations | None = None,
@@ -71,7 +71,7 @@ def evaluate_walks(
     policy: Policy,
     protocol: WalkProtocol | str = "walk",
     *,
-    design: Design | None = None,
+    design: RobotDesign | None = None,
     task: Task | None = None,
     threads: int | None = None,
     alterations: Alterations | None = None,
@@ -214,7 +214,7 @@ def impact_band(
     time_constants: Sequence[float],
     protocol: WalkProtocol | str = "walk",
     *,
-    design: Design | None = None,
+    design: RobotDesign | None = None,
     task: Task | None = None,
 ) -> dict[float, Evaluation]:
     """The walk protocol over a band of contact stiffness, because much of an impact is the

@@ -32,9 +32,16 @@ def task_mapping(task: Task) -> dict[str, Any]:
         "commands": commands,
         "observations": {group: list(parts) for group, parts in task.observations.items()},
         "rewards": {term: {"weight": r.weight, **r.parameters} for term, r in task.rewards.items()},
-        **{section: parameters.leaves(getattr(task, section)) for section in _SECTIONS},
+        **{section: _section(getattr(task, section)) for section in _SECTIONS},
         **({"posture_deg": dict(task.posture_deg)} if task.posture_deg else {}),
     }
+
+
+def _section(section: Any) -> dict[str, Any]:
+    """Leaves of a section; without a share of height that is not used, so that trainings from
+    before there was one go on.
+    """
+    return {k: v for k, v in parameters.leaves(section).items() if k != "height_share" or v}
 
 
 def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:

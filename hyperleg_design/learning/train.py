@@ -53,7 +53,8 @@ from hyperleg_design.learning.warm_start import (
     start_actor,
     start_critic,
 )
-from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
@@ -69,7 +70,7 @@ TRIAL_SEED = 20_000
 
 def train(
     task: str | Path | Task,
-    design: str | Path | Design,
+    design: str | Path | RobotDesign,
     seed: int,
     preset: str | Path | Preset,
     out: str | Path,
@@ -114,7 +115,7 @@ def train(
     if started is not None:
         command += f" --start {Path(str(start)).parent.name}/{Path(str(start)).name}"
     task = task if isinstance(task, Task) else load_task(task)
-    design = design if isinstance(design, Design) else load_design(design)
+    design = design if isinstance(design, RobotDesign) else load_robot(design)
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     folder = check_output_folder(out)
@@ -135,7 +136,7 @@ def train(
         return training.run(iterations, show or (lambda line: None))
 
 
-def describe(task: Task, design: Design, seed: int, preset: Preset) -> dict[str, Any]:
+def describe(task: Task, design: RobotDesign, seed: int, preset: Preset) -> dict[str, Any]:
     """What a training is, as JSON takes it."""
     return {
         "task": task_mapping(task),
@@ -155,7 +156,7 @@ class Training:
     def __init__(
         self,
         task: Task,
-        design: Design,
+        design: RobotDesign,
         seed: int,
         preset: Preset,
         folder: Path,
@@ -292,7 +293,8 @@ class Training:
             f"{name} {value:+.2f}" for name, value in measures["terms"].items() if value
         )
         parts = [
-            f"{self.task.name} {self.design.variant} seed {self.description['seed']}",
+            f"{self.task.name} {self.design.variant or self.design.name}"
+            f" seed {self.description['seed']}",
             f"{measures['steps'] / 1e6:.2f}/{total / 1e6:.1f} M steps, {measures['rate']:.0f}/s",
             f"stage {measures['stage']}, assist {measures['assist']:.2f}",
             f"reward {measures['reward']:.2f} ({terms})",
@@ -509,7 +511,7 @@ class Training:
 
 
 def _name(given: Any) -> str:
-    return str(given.name if isinstance(given, Task | Design | Preset) else given)
+    return str(given.name if isinstance(given, Task | RobotDesign | Preset) else given)
 
 
 def _check_same(folder: Path, description: dict[str, Any]) -> None:

@@ -20,7 +20,7 @@ from hyperleg_design.simulation.tasks import Reward, Task
 from hyperleg_design.simulation.terminations import COURSE_FINISHED
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alterations
 
 Policy = Callable[[np.ndarray], np.ndarray]
@@ -32,7 +32,7 @@ COURSE = 30.0
 
 
 def trial(
-    design: Design,
+    design: RobotDesign,
     task: Task,
     policy: Policy,
     *,
@@ -52,7 +52,8 @@ def trial(
 
     Returns:
         Walking: `survival`, `speed` [m/s], `speed_error` (RMS over robots and time [m/s]),
-        `cost_of_transport`, `cadence` [steps/s], `double_support` and `flight` (fractions of time).
+        `cost_of_transport`, `cadence` [steps/s], `double_support` and `flight` (fractions of time
+        with all feet and with none on the floor).
         Courses: `finished` (fraction), `time` (mean of the finished [s]), `survival`, `speed`.
     """
     goal = isinstance(task.commands, WaypointCommands)
@@ -61,7 +62,7 @@ def trial(
 
 
 def _walk(
-    design: Design,
+    design: RobotDesign,
     task: Task,
     policy: Policy,
     simulations: int,
@@ -114,14 +115,15 @@ def _walk(
 
 
 def _stands(environment: Environment) -> np.ndarray:
-    """Whether each foot stands, `(n, 2)`."""
+    """Whether each foot stands, `(n, F)`."""
     load = np.concatenate([pad_loads(chunk.sensors[-1]) for chunk in environment.chunks])
-    left = environment.layout.pad_foot == 0
-    return np.stack([load[:, left].sum(-1), load[:, ~left].sum(-1)], -1) > TOUCH
+    owner = environment.layout.pad_foot
+    feet = range(len(environment.layout.feet))
+    return np.stack([load[:, owner == foot].sum(-1) for foot in feet], -1) > TOUCH
 
 
 def _course(
-    design: Design,
+    design: RobotDesign,
     task: Task,
     policy: Policy,
     simulations: int,

@@ -117,6 +117,32 @@ def joint_from_motor(design: TreeDesign, position: np.ndarray | None = None) -> 
     return np.stack(np.broadcast_arrays(*columns), -1)
 
 
+@dataclass(frozen=True, eq=False)
+class RodLinkage:
+    """The rods of a design, for every limb of many robots at once."""
+
+    design: TreeDesign
+    """A robot, or a batch of n."""
+
+    def joint_from_motor(self, position: np.ndarray) -> np.ndarray:
+        """M of each limb in its posture [-].
+
+        Args:
+            position: joint angles [rad], `(n, limbs, joints)`.
+
+        Returns:
+            `(n, limbs, joints, motors)`
+
+        Raises:
+            InfeasibleError: a rod does not reach in one of the postures.
+        """
+        limbs = [
+            joint_from_motor(self.design, position[:, limb]) for limb in range(position.shape[1])
+        ]
+        found = np.stack(np.broadcast_arrays(*limbs), -3)
+        return np.broadcast_to(found, (*position.shape, found.shape[-1]))
+
+
 def motor_position(design: TreeDesign, position: np.ndarray) -> np.ndarray:
     """Motor angles [rad] `(..., motors)` at joint angles [rad] `(..., joints)`; zero at zero.
 

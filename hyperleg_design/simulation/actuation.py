@@ -33,7 +33,7 @@ from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ class ActuationModel:
     """[Nms/rad], `(..., joints)`."""
 
 
-def actuation_model(design: Design) -> ActuationModel:
+def actuation_model(design: RobotDesign) -> ActuationModel:
     """Actuation of a robot, or of a batch of them with an axis for the legs behind the batch."""
     joints, motors = transmission.joint_names(design), transmission.motor_names(design)
     batched = bool(design.batch_shape)
@@ -75,7 +75,7 @@ def actuation_model(design: Design) -> ActuationModel:
         )
 
     def of_joints(field: str) -> np.ndarray:
-        values = [getattr(getattr(design.joints, joint), field) for joint in joints]
+        values = [getattr(design.joint_sections[joint], field) for joint in joints]
         return legs(np.stack(np.broadcast_arrays(*values), -1).astype(float), 1)
 
     envelope = motor_envelope(design)
@@ -178,7 +178,7 @@ def friction_damping(
     return damping
 
 
-def motor_friction(design: Design) -> tuple[np.ndarray, np.ndarray]:
+def motor_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
     """Friction at the motors that comes nearest to the printed friction at the joints.
 
     Table I prints friction per joint, measured with motors that move several joints. Non-negative

@@ -25,7 +25,7 @@ import numpy as np
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,11 +268,11 @@ class Alteration:
         return type(self).edit is not Alteration.edit
 
 
-Alterations = Sequence[Alteration] | Callable[["Design"], Sequence[Alteration]]
+Alterations = Sequence[Alteration] | Callable[[Any], Sequence[Alteration]]
 """Alterations, or what makes them for a design."""
 
 
-def made(alterations: Alterations | None, design: Design) -> tuple[Alteration, ...]:
+def made(alterations: Alterations | None, design: RobotDesign) -> tuple[Alteration, ...]:
     """Alterations of a design."""
     return tuple(alterations(design) if callable(alterations) else alterations or ())
 

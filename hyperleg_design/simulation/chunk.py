@@ -22,7 +22,7 @@ from hyperleg_design.simulation.actuation import applied, smoothed_action
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.commands import commander
-from hyperleg_design.simulation.drive import LEGS, Drive
+from hyperleg_design.simulation.drive import Drive
 from hyperleg_design.simulation.layout import GRAVITY, Layout
 from hyperleg_design.simulation.model import PAD_SENSOR_SIZE
 from hyperleg_design.simulation.observations import observe
@@ -36,7 +36,7 @@ from hyperleg_design.simulation.told import Told
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 FASTEST = 1e4
 """Speed of a coordinate past which a simulation counts as diverged [m/s or rad/s]."""
@@ -97,7 +97,7 @@ class Chunk:
 
     def __init__(
         self,
-        design: Design,
+        design: RobotDesign,
         task: Task,
         layout: Layout,
         models: Sequence[mujoco.MjModel],
@@ -136,7 +136,7 @@ class Chunk:
         self._places, self._tried = self._starter.bind("geom_xpos"), self._starter.bind("qpos")
         self.batch.reset(None, 0, 0)
         self._standing = self.batch.state.copy()
-        self._pelvis = model.body("pelvis").id
+        self._pelvis = model.body(layout.base).id
         self._pad_ids = [model.geom(pad).id for pad in layout.pads]
         self._pad_radius = np.array([m.geom_size[self._pad_ids[0], 0] for m in models])
         joints, motors, substeps = (
@@ -174,6 +174,7 @@ class Chunk:
         self.thermal = ThermalState(task.thermal, (count, motors))
         self.commander = commander(task.commands, count)
         self.rewards: dict[str, Reward] = dict(task.rewards)
+        self.limits = task.limits.of(layout.default_height)
         self.assist: Assist | None = None
         self.robot = Robot(layout, task.clock)
         """Of this chunk's simulations."""
@@ -205,7 +206,7 @@ class Chunk:
         self.motion = read_motion(self.drive.qpos, self.drive.qvel)
         self.goal = self.commander.judge(self.motion)
         ending = terminations.ending(
-            self.motion, self.goal, self.episode_step, task.limits, duration
+            self.motion, self.goal, self.episode_step, self.limits, duration
         )
         diverged = [d.simulation - self.first for d in divergences]
         if diverged:
@@ -252,7 +253,7 @@ class Chunk:
     def _physics(self) -> None:
         joints = len(self.layout.joints)
         self.target = self.layout.default + self.task.control.scale * self.smoothed
-        target = self.target.reshape(self.count, LEGS, joints // LEGS)
+        target = self.target.reshape(self.count, len(self.layout.limbs), -1)
         assisted = self.assist is not None and self.assist.active
         for substep in range(len(self.sensors)):
             if self.recording:
@@ -331,7 +332,7 @@ class Chunk:
             motor_torque=torque,
             motor_velocity=speed,
             pad_load=pad_load,
-            foot_load=models.foot_loads(pad_load),
+            foot_load=models.foot_loads(pad_load, self.layout.pads_of_foot),
             pad_slip=models.pad_slip(self.sensors[-1]),
             power=np.einsum("snk,snk->n", self._heat * torque + speed, torque) / len(torque),
             thermal_excess=thermal_excess,
@@ -384,7 +385,7 @@ class Chunk:
             motor_torque=motors,
             motor_velocity=motors,
             pad_load=pads,
-            foot_load=models.foot_loads(pads),
+            foot_load=models.foot_loads(pads, self.layout.pads_of_foot),
             pad_slip=pads[-1],
             power=none,
             thermal_excess=none,
@@ -520,7 +521,7 @@ class Chunk:
         """What happened within the last policy step; see `Environment.signals`."""
         joints, substeps = len(self.layout.joints), len(self.sensors)
         position, velocity = self.states[..., : 7 + joints], self.states[..., 7 + joints :]
-        legs = (substeps, self.count, LEGS, -1)
+        legs = (substeps, self.count, len(self.layout.limbs), -1)
         matrix = self.drive.model.joint_from_motor
         torque = np.einsum("...jm,...m->...j", matrix, self.motor_torque.reshape(legs))
         friction = self.drive.friction(

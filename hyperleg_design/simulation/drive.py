@@ -5,12 +5,14 @@ each simulation step.
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.linkage import LinkageModel
+from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.tree_limb import RodLinkage
 from hyperleg_design.simulation import actuation
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.chain import Chain, Driven
@@ -24,9 +26,8 @@ if TYPE_CHECKING:
 
     from mujoco.batch import Batch
 
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
-
-LEGS = 2
 
 
 class Drive:
@@ -39,7 +40,7 @@ class Drive:
 
     def __init__(
         self,
-        design: Design,
+        design: RobotDesign,
         layout: Layout,
         physics: Physics,
         batch: Batch,
@@ -50,12 +51,12 @@ class Drive:
         self.model = actuation.actuation_model(design)
         self.physics = physics
         self.count = batch.nsim
-        self._shape = (self.count, LEGS, layout.leg_joints)
+        self._shape = (self.count, len(layout.limbs), layout.leg_joints)
         if randomisation is not None:
             self.model = _varied(self.model, self._shape, randomisation, rng)
         self.qpos, self.qvel = batch.bind("qpos"), batch.bind("qvel")
         self._ctrl, self._applied = batch.bind("ctrl"), batch.bind("qfrc_applied")
-        self._linkage = LinkageModel.of(design) if physics.posture_dependent else None
+        self._linkage = _linkage(design) if physics.posture_dependent else None
         if self._linkage is not None:
             self._coefficients = batch.expand("wrap_prm")
             self._places = _wrap_places(batch, layout)
@@ -80,7 +81,7 @@ class Drive:
             self._alter(design, layout, batch, alterations)
 
     def _alter(
-        self, design: Design, layout: Layout, batch: Batch, alterations: Sequence[Alteration]
+        self, design: RobotDesign, layout: Layout, batch: Batch, alterations: Sequence[Alteration]
     ) -> None:
         inertia = rotor_inertia(design)
         machine = machine_from(
@@ -128,7 +129,7 @@ class Drive:
 
         def full(values: np.ndarray) -> np.ndarray:
             return np.ascontiguousarray(
-                np.broadcast_to(values, (self.count, LEGS, values.shape[-1]))
+                np.broadcast_to(values, (self.count, self._shape[1], values.shape[-1]))
             )
 
         one = self.model.envelope
@@ -144,14 +145,14 @@ class Drive:
         )
 
     def flat(self, values: np.ndarray) -> np.ndarray:
-        """Constants `(n, 2, k)` as rows over both legs, `(n, 2 k)`."""
+        """Constants `(n, L, k)` as rows over all L limbs, `(n, L k)`."""
         return values.reshape(self.count, -1)
 
     def apply(self, target: np.ndarray, torque: np.ndarray, speed: np.ndarray) -> None:
         """Set controls and friction from the present state.
 
         Args:
-            target: joint angles to reach [rad], `(n, 2, joints)`.
+            target: joint angles to reach [rad], `(n, L, joints)`.
             torque: filled with the motor torques [Nm], `(n, K)`.
             speed: filled with the motor velocities [rad/s], `(n, K)`.
         """
@@ -188,8 +189,11 @@ class Drive:
         if self._linkage is not None:
             matrix = self._linkage.joint_from_motor(position)
             whole, to_motor = (
-                legs_matrix(matrix),
-                legs_matrix(actuation.motor_from_joint(matrix, self.model.envelope.power_constant)),
+                legs_matrix(matrix, self._shape[1]),
+                legs_matrix(
+                    actuation.motor_from_joint(matrix, self.model.envelope.power_constant),
+                    self._shape[1],
+                ),
             )
             leg, joint, motor = self._places
             self._coefficients[:] = matrix[:, leg, joint, motor]
@@ -214,8 +218,8 @@ class Drive:
             self._applied[:, 6:] += driven.joint_torque
 
     def friction(self, velocity: np.ndarray, motor_speed: np.ndarray) -> np.ndarray:
-        """Friction torque at the joints [Nm], `(..., 2, joints)` and `(..., 2, motors)` -> `(...,
-        2, joints)`.
+        """Friction torque at the joints [Nm], `(..., L, joints)` and `(..., L, motors)` -> `(...,
+        L, joints)`.
         """
         if self.physics.friction_space == "joint":
             return actuation.friction_torque(self.coulomb, self.viscous, velocity, self._width)
@@ -238,6 +242,13 @@ class Drive:
             ).reshape(self.count, -1)
 
 
+def _linkage(design: RobotDesign) -> LinkageModel | RodLinkage:
+    """What gives the reductions of a design in any posture."""
+    if isinstance(design, TreeDesign):
+        return RodLinkage(design)
+    return LinkageModel.of(cast("Design", design))
+
+
 def _varied(
     model: actuation.ActuationModel,
     shape: tuple[int, int, int],
@@ -257,7 +268,7 @@ def _varied(
 
 
 def _wrap_places(batch: Batch, layout: Layout) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Leg, joint and motor of each tendon coefficient, in the model's order."""
+    """Limb, joint and motor of each tendon coefficient, in the model's order."""
     model = batch.model
     leg, joint, motor = [], [], []
     first = model.joint(layout.joints[0]).id

@@ -36,7 +36,7 @@ from hyperleg_design.simulation.tasks import Reward, Task, check_reward
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.layout import Layout
 
 CHUNK = 512
@@ -67,7 +67,7 @@ class Environment:
 
     def __init__(
         self,
-        design: Design,
+        design: RobotDesign,
         task: Task,
         *,
         simulations: int,
@@ -91,7 +91,7 @@ class Environment:
             )
         design = task.posed(design)
         self.design, self.task, self.simulations, self.seed = design, task, simulations, seed
-        self.designs: list[Design] = (
+        self.designs: list[RobotDesign] = (
             [design.take(i) for i in range(number)] if design.batch_shape else [design]
         )
         """The robots, one each."""
@@ -112,6 +112,7 @@ class Environment:
             ]
         self.design_index: np.ndarray = np.arange(simulations) // (simulations // number)
         """Design of each simulation, `(n,)`."""
+        task.check_robot(self.layouts[0], self.designs[0].name)
         self._check_standing()
         self.layout: Layout = (
             stacked(self.layouts).take(self.design_index) if number > 1 else self.layouts[0]
@@ -388,11 +389,11 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
-    height = float(data.qpos[2])
-    if height <= limits.height:
+    height, least = float(data.qpos[2]), float(limits.of(layout.default_height).height)
+    if height <= least:
         remedy = (
-            f"the pelvis stands lower than a fall, {limits.height} m; set limits.height of "
-            f"the task, or longer legs"
+            f"the {layout.base} stands lower than a fall, {least:g} m; set limits.height or "
+            f"limits.height_share of the task, or longer legs"
         )
         raise InputError(name, "", round(height, 4), remedy)
     pads = np.array([data.geom(pad).xpos[:2] for pad in layout.pads])

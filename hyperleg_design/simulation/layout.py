@@ -1,5 +1,5 @@
-"""Order of joints, motors and sole pads in every array of this room: left leg first, each leg from
-the hip down.
+"""Order of joints, motors and pads in every array of this room: limb by limb in the design's order
+(of HyperLeg the left leg first), each limb from the base outward.
 """
 
 from __future__ import annotations
@@ -14,13 +14,15 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.consistency import leg_length
-from hyperleg_design.robot.masses import mass_table
-from hyperleg_design.robot.names import SIDES
+from hyperleg_design.robot.described import prefixed
+from hyperleg_design.robot.dimensions import standing_height, total_mass
+from hyperleg_design.robot.posture import default_angles, link_poses, lowest_point
 from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.simulation.symmetry import mirrored_joints, mirrored_order
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.kinematic_tree import Tree
 
 GRAVITY = 9.81
 """[m/s^2], as in the MuJoCo model."""
@@ -28,20 +30,19 @@ GRAVITY = 9.81
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """What the arrays of one robot hold; J joints, K motors and P pads of both legs."""
+    """What the arrays of one robot hold; J joints, K motors, P pads and F feet of all L limbs."""
 
     joints: tuple[str, ...]
-    """Names with the side in front, `(J,)`."""
+    """Names with the limb's in front, `(J,)`."""
     motors: tuple[str, ...]
-    """Names with the side in front, `(K,)`."""
+    """Names with the limb's in front, `(K,)`."""
     pads: tuple[str, ...]
-    """Geoms of the sole pads in the MuJoCo model, as many of the left foot as of the right,
-    `(P,)`."""
+    """Geoms of the pads in the MuJoCo model, foot after foot, `(P,)`."""
     pad_foot: np.ndarray
-    """Foot of each pad, 0 left, 1 right, `(P,)`."""
+    """Foot of each pad, `(P,)`; of HyperLeg 0 left, 1 right."""
     pad_position: np.ndarray
-    """Centre of each pad from the ankle in its foot's frame, toe straight, y to the left [m], `(P,
-    3)`."""
+    """Centre of each pad in the frame of its foot's first link, joints of the foot at zero, y to
+    the left [m], `(P, 3)`; of HyperLeg from the ankle, toe straight."""
     default: np.ndarray
     """Posture to which actions are added [rad], `(J,)`."""
     lower: np.ndarray
@@ -51,7 +52,24 @@ class Layout:
     weight: Any
     """m g [N]; of a batch `(n,)`."""
     standing_height: Any
-    """Hip-pitch axis above the floor, legs straight [m]; of a batch `(n,)`."""
+    """Base's origin above the floor in the zero posture [m], of HyperLeg the hip-pitch axis; of a
+    batch `(n,)`."""
+    default_height: Any
+    """Base's origin above the floor in the default posture [m]; of a batch `(n,)`."""
+    limbs: tuple[str, ...] = ("left", "right")
+    """Names of the copies of the limb, `(L,)`; one empty name for a robot written out whole."""
+    feet: tuple[str, ...] = ("left_foot", "right_foot")
+    """First link of each foot, `(F,)`: a link with pads, with all that hangs from it."""
+    foot_phase: tuple[float, ...] = (0.0, 0.5)
+    """Share of the stride by which each foot is behind the first in a symmetric gait, `(F,)`: 0 or
+    0.5; feet on one diagonal step together."""
+    base: str = "pelvis"
+    """Root link."""
+    mirror_joints: tuple[tuple[int, float], ...] = ()
+    """Place and sign of each joint's mirror image in the plane y = 0, `(J,)`; empty where the
+    robot has none."""
+    mirror_feet: tuple[int, ...] = (1, 0)
+    """Place of each foot's mirror image, `(F,)`; empty where the robot has none."""
 
     @property
     def batched(self) -> bool:
@@ -68,61 +86,149 @@ class Layout:
 
     @property
     def leg_joints(self) -> int:
-        """Joints of one leg."""
-        return len(self.joints) // 2
+        """Joints of one limb."""
+        return len(self.joints) // len(self.limbs)
 
     @property
     def leg_motors(self) -> int:
-        """Motors of one leg."""
-        return len(self.motors) // 2
+        """Motors of one limb."""
+        return len(self.motors) // len(self.limbs)
+
+    @cached_property
+    def own_joints(self) -> tuple[str, ...]:
+        """Names of the joints of one limb, without the limb's, `(J / L,)`."""
+        return tuple(_own(name, self.limbs[0]) for name in self.joints[: self.leg_joints])
+
+    @cached_property
+    def own_motors(self) -> tuple[str, ...]:
+        """Names of the motors of one limb, without the limb's, `(K / L,)`."""
+        return tuple(_own(name, self.limbs[0]) for name in self.motors[: self.leg_motors])
 
     @cached_property
     def hip_sideways(self) -> np.ndarray:
-        """Places of hip yaw and roll, `(4,)`."""
+        """Places of hip yaw and roll, `(4,)` of a biped."""
         return self.joint_indices("hip_yaw", "hip_roll")
 
     def joint_indices(self, *names: str) -> np.ndarray:
-        """Places of joints, given without the side, in both legs."""
-        return np.array(
-            [i for i, joint in enumerate(self.joints) if joint.split("_", 1)[1] in names], int
-        )
+        """Places of joints, given without the limb's name, in all limbs."""
+        own = self.own_joints
+        return np.array([i for i in range(len(self.joints)) if own[i % len(own)] in names], int)
+
+    @cached_property
+    def pads_of_foot(self) -> tuple[int, ...]:
+        """Number of pads of each foot, `(F,)`."""
+        return tuple(np.bincount(self.pad_foot, minlength=len(self.feet)).tolist())
 
 
-_NUMBERS = ("pad_position", "default", "lower", "upper", "weight", "standing_height")
+_NUMBERS = (
+    "pad_position",
+    "default",
+    "lower",
+    "upper",
+    "weight",
+    "standing_height",
+    "default_height",
+)
 """Fields that differ within a batch."""
 
 
-def layout_of(design: Design) -> Layout:
+def layout_of(design: RobotDesign) -> Layout:
     """Layout of a robot, or of a batch of robots with the same joints, motors and pads, whose
     numbers then have the batch in front.
     """
     if design.batch_shape:
         return stacked([layout_of(design.take(i)) for i in range(design.batch_shape[0])])
-    one = design
-    tree = build_tree(one)
-    toe_axis = np.array([one.foot.ball_length, 0.0, -(one.foot.ankle_height - one.toe.axis_height)])
-    pads, feet, places = [], [], []
+    tree = build_tree(design)
+    first_links = foot_links(tree)
+    feet = tuple(dict.fromkeys(first_links.values()))
+    pads, owners, places = [], [], []
     for link in tree.links:
         for index, pad in enumerate(link.pads):
             pads.append(f"{link.name}_pad_{index}")
-            feet.append(0 if link.name.startswith(SIDES[0]) else 1)
+            owners.append(feet.index(first_links[link.name]))
             places.append(
-                np.array(pad.position) + (toe_axis if link.name.endswith("toe_plate") else 0.0)
+                np.array(pad.position) + _from_link(tree, first_links[link.name], link.name)
             )
+    order = np.argsort(owners, kind="stable")
+    image = mirrored_joints(tree)
+    foot_image = mirrored_order(tree, feet)
     return Layout(
         joints=tuple(joint.name for joint in tree.moving),
         motors=tuple(
-            f"{side}_{motor}" for side in SIDES for motor in transmission.motor_names(one)
+            prefixed(limb, motor)
+            for limb in design.copies
+            for motor in transmission.motor_names(design)
         ),
-        pads=tuple(pads),
-        pad_foot=np.array(feet),
-        pad_position=np.array(places),
+        pads=tuple(pads[i] for i in order),
+        pad_foot=np.array(owners, int)[order],
+        pad_position=np.array(places).reshape(-1, 3)[order],
         default=np.array([joint.default for joint in tree.moving]),
         lower=np.array([joint.lower for joint in tree.moving]),
         upper=np.array([joint.upper for joint in tree.moving]),
-        weight=float(mass_table(one).total) * GRAVITY,
-        standing_height=float(leg_length(one)),
+        weight=float(total_mass(design)) * GRAVITY,
+        standing_height=float(standing_height(design)),
+        default_height=_default_height(tree),
+        limbs=tuple(design.copies),
+        feet=feet,
+        foot_phase=_phases(tree, feet),
+        base=tree.base,
+        mirror_joints=image or (),
+        mirror_feet=foot_image or (),
     )
+
+
+def foot_links(tree: Tree) -> dict[str, str]:
+    """First link of the foot that each link with pads belongs to, by name of the link.
+
+    A link with pads belongs to the foot of the nearest link with pads that carries it, as a toe
+    does; pads of the base are a foot of their own.
+    """
+    carrier = {joint.child: joint.parent for joint in tree.joints}
+    found: dict[str, str] = {}
+    for link in tree.links:
+        if not link.pads:
+            continue
+        first, above = link.name, carrier.get(link.name)
+        while above is not None and above != tree.base:
+            first = found.get(above, first)
+            above = carrier.get(above)
+        found[link.name] = first
+    return found
+
+
+def _own(name: str, limb: str) -> str:
+    return name.removeprefix(f"{limb}_") if limb else name
+
+
+def _from_link(tree: Tree, first: str, link: str) -> np.ndarray:
+    """Position of a link's frame in that of a link that carries it, joints between them at zero
+    [m], `(3,)`.
+    """
+    hanging = {joint.child: joint for joint in tree.joints}
+    offset = np.zeros(3)
+    while link != first:
+        offset = offset + np.array(hanging[link].position)
+        link = hanging[link].parent
+    return offset
+
+
+def _default_height(tree: Tree) -> float:
+    if not tree.floating:
+        return float(tree.height)
+    return -lowest_point(tree, link_poses(tree, default_angles(tree)))
+
+
+def _phases(tree: Tree, feet: Sequence[str]) -> tuple[float, ...]:
+    """Phases of a gait in which the feet of one diagonal step together, from where the feet stand
+    in the default posture: a foot left of its fellows at the front, and right at the rear, is 0.
+    """
+    if len(feet) < 2:
+        return (0.0,) * len(feet)
+    poses = link_poses(tree, default_angles(tree))
+    places = np.array([poses[foot][1] for foot in feet])
+    rear = places[:, 0] < places[:, 0].mean() - 1e-9 if len(feet) > 2 else np.zeros(len(feet), bool)
+    late = (places[:, 1] < 0) ^ rear
+    return tuple(0.5 if behind else 0.0 for behind in late)
 
 
 def stacked(layouts: Sequence[Layout]) -> Layout:

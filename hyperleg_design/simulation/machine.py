@@ -1,4 +1,4 @@
-"""The machine that a robot is to its drives, both legs in one."""
+"""The machine that a robot is to its drives, all limbs in one."""
 
 from __future__ import annotations
 
@@ -8,16 +8,15 @@ import numpy as np
 
 from hyperleg_design.robot import gear, transmission
 from hyperleg_design.robot.motors import gather
-from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SIDES
 from hyperleg_design.simulation.actuation import ActuationModel, actuation_model
 from hyperleg_design.simulation.alteration import Machine
 from hyperleg_design.simulation.layout import layout_of
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 
-def machine_of(design: Design) -> Machine:
+def machine_of(design: RobotDesign) -> Machine:
     """Of one robot.
 
     Returns:
@@ -43,24 +42,27 @@ def machine_from(
     """Of the legs of an actuation model.
 
     Args:
-        model: constants of one leg `(k,)`, or of both legs in n simulations `(n, 2, k)`.
-        joints: names, left leg first.
-        motors: names, left leg first.
+        model: constants of one leg `(k,)`, or of all L limbs in n simulations `(n, L, k)`.
+        joints: names, limb after limb.
+        motors: names, limb after limb.
         inertia: of the rotors of one leg [kg m^2], `(..., motors)`.
         voltage: of the battery [V].
     """
+    limbs = len(joints) // model.joint_from_motor.shape[-2]
 
     def both(values: np.ndarray) -> np.ndarray:
         values = np.asarray(values, float)
         if values.ndim == 1:
-            return np.tile(values, len(SIDES))
-        return np.broadcast_to(values, (len(values), len(SIDES), values.shape[-1])).reshape(
+            return np.tile(values, limbs)
+        return np.broadcast_to(values, (len(values), limbs, values.shape[-1])).reshape(
             len(values), -1
         )
 
     def blocks(matrix: np.ndarray) -> np.ndarray:
         matrix = np.asarray(matrix, float)
-        return legs_matrix(matrix) if matrix.ndim > 2 else legs_matrix(matrix[None, None])[0]
+        if matrix.ndim > 2:
+            return legs_matrix(matrix, limbs)
+        return legs_matrix(matrix[None, None], limbs)[0]
 
     envelope = model.envelope
     inertia = np.asarray(inertia, float)
@@ -71,7 +73,7 @@ def machine_from(
         motor_from_joint=blocks(model.motor_from_joint),
         stiffness=both(model.stiffness),
         damping=both(model.damping),
-        rotor_inertia=np.concatenate([inertia, inertia], -1),
+        rotor_inertia=np.concatenate([inertia] * limbs, -1),
         no_load_speed=both(envelope.no_load_speed),
         stall_torque=both(envelope.stall_torque),
         peak_torque=both(envelope.peak_torque),
@@ -81,29 +83,31 @@ def machine_from(
     )
 
 
-def legs_matrix(matrix: np.ndarray) -> np.ndarray:
-    """Matrices of both legs as one, `(n, 2, rows, columns)` -> `(n, 2 rows, 2 columns)`; `(n, 1,
-    ...)` where the legs share one.
+def legs_matrix(matrix: np.ndarray, limbs: int = 2) -> np.ndarray:
+    """Matrices of all limbs as one, `(n, limbs, rows, columns)` -> `(n, limbs rows, limbs
+    columns)`; `(n, 1, ...)` where the limbs share one.
     """
     rows, columns = matrix.shape[-2:]
-    whole = np.zeros((len(matrix), 2 * rows, 2 * columns))
-    whole[:, :rows, :columns], whole[:, rows:, columns:] = matrix[:, 0], matrix[:, -1]
+    whole = np.zeros((len(matrix), limbs * rows, limbs * columns))
+    for limb in range(limbs):
+        place = slice(limb * rows, (limb + 1) * rows), slice(limb * columns, (limb + 1) * columns)
+        whole[:, place[0], place[1]] = matrix[:, min(limb, matrix.shape[1] - 1)]
     return whole
 
 
-def bus_voltage(design: Design) -> float:
+def bus_voltage(design: RobotDesign) -> float:
     """Nominal voltage of the motors times the design's ratio [V]; NaN where motors, or designs of a
     batch, differ in it.
     """
     found = {
         float(v)
-        for a in ACTUATOR_OF_MOTOR
-        for v in np.ravel(gather(getattr(design.actuators, a).motor, lambda m: m.nominal_voltage))
+        for actuator in design.every_actuator
+        for v in np.ravel(gather(actuator.motor, lambda m: m.nominal_voltage))
     }
-    ratios = {float(v) for v in np.ravel(design.electrical.voltage_ratio)}
+    ratios = {float(v) for v in np.ravel(design.electrical_section.voltage_ratio)}
     return found.pop() * ratios.pop() if len(found) == len(ratios) == 1 else float("nan")
 
 
-def rotor_inertia(design: Design) -> np.ndarray:
+def rotor_inertia(design: RobotDesign) -> np.ndarray:
     """Of one leg's motors [kg m^2], a robot's `(motors,)` or a batch's `(n, motors)`."""
     return gear.rotor_inertia(design)[..., : len(transmission.motor_names(design))]

@@ -1,8 +1,8 @@
 """Left-right mirror of observations and actions, as index and sign arrays: mirrored = values[...,
 index] * sign.
 
-The axes of the right leg's yaw and roll joints mirror the left's, so mirroring swaps the legs and
-keeps all joint signs.
+Which joints and feet are images of each other is data of the robot's layout (`symmetry`). The axes
+of HyperLeg's right leg mirror the left's, so its mirror swaps the legs and keeps all joint signs.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.simulation.layout import Layout
 from hyperleg_design.simulation.observations import SCAN, columns
 
@@ -31,38 +32,48 @@ class MirrorMap:
 
 
 def mirror_joints(layout: Layout) -> MirrorMap:
-    """Of joint values and actions: the legs swapped."""
-    return MirrorMap(_swapped(len(layout.joints)), np.ones(len(layout.joints), np.float32))
+    """Of joint values and actions.
+
+    Raises:
+        InputError: the robot is not its own mirror image.
+    """
+    if not layout.mirror_joints:
+        raise InputError(
+            "mirror",
+            "joints",
+            None,
+            "robot or default posture is not symmetric about the plane y = 0; set algorithm.mirror "
+            "of the preset to never",
+        )
+    places, signs = zip(*layout.mirror_joints, strict=True)
+    return MirrorMap(np.array(places), np.array(signs, np.float32))
 
 
 def mirror_observation(parts: Sequence[str], layout: Layout) -> MirrorMap:
     """Of an observation made of parts."""
-    index, sign, start = [], [], 0
+    index, sign, start, joints = [], [], 0, mirror_joints(layout)
     for name, count, signs in columns(parts, layout):
+        turned = np.array(signs, np.float32) if signs else np.ones(count, np.float32)
         if signs:
-            place, turned = np.arange(count), np.array(signs, np.float32)
+            place = np.arange(count)
+        elif name == "height_scan":
+            place = np.arange(count).reshape(SCAN)[:, ::-1].ravel()
+        elif name == "foot_load":
+            place = np.array(layout.mirror_feet, int)
         else:
-            place = (
-                np.arange(count).reshape(SCAN)[:, ::-1].ravel()
-                if name == "height_scan"
-                else _swapped(count)
-            )
-            turned = np.ones(count, np.float32)
+            place, turned = joints.index, joints.sign
         index.append(start + place)
         sign.append(turned)
         start += count
     return MirrorMap(np.concatenate(index), np.concatenate(sign).astype(np.float32))
 
 
-def mirror_position(qpos: np.ndarray, qvel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def mirror_position(
+    qpos: np.ndarray, qvel: np.ndarray, layout: Layout
+) -> tuple[np.ndarray, np.ndarray]:
     """Mirror image, in the plane y = 0, of MuJoCo states `(..., 7 + J)` and `(..., 6 + J)`."""
-    position, velocity = qpos.copy(), qvel.copy()
+    position, velocity, joints = qpos.copy(), qvel.copy(), mirror_joints(layout)
     position[..., [1, 4, 6]] *= -1  # y; quaternion x and z
     velocity[..., [1, 3, 5]] *= -1
-    position[..., 7:] = qpos[..., 7:][..., _swapped(qpos.shape[-1] - 7)]
-    velocity[..., 6:] = qvel[..., 6:][..., _swapped(qvel.shape[-1] - 6)]
+    position[..., 7:], velocity[..., 6:] = joints(qpos[..., 7:]), joints(qvel[..., 6:])
     return position, velocity
-
-
-def _swapped(count: int) -> np.ndarray:
-    return np.roll(np.arange(count), count // 2)

@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.parameters import leaves
 from hyperleg_design.simulation.alteration import Alteration, damps_motors, edited
-from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.layout import Layout, layout_of
 from hyperleg_design.simulation.settings import Physics
 
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 KEPT = 1024
 """Models that a process keeps, some 0.1 MB each."""
@@ -30,7 +31,7 @@ PAD_SENSOR_SIZE = 6
 """Numbers a pad: force and relative velocity in the contact's frame."""
 
 
-def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.MjSpec:
+def simulation_spec(design: RobotDesign, physics: Physics | None = None) -> mujoco.MjSpec:
     """Editable model of one robot as simulated here; motors on tendons, joint friction left to
     `actuation`.
 
@@ -42,6 +43,7 @@ def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.Mj
 
     physics = physics or Physics()
     layout = layout_of(design)
+    _check_walker(design, layout)
     spec = mujoco_spec(design, friction=False)
     for sensor in list(spec.sensors):
         spec.delete(sensor)
@@ -86,8 +88,24 @@ def simulation_spec(design: Design, physics: Physics | None = None) -> mujoco.Mj
     return spec
 
 
+def _check_walker(design: RobotDesign, layout: Layout) -> None:
+    """Whether a robot can be simulated: it has pads, stiffness at each joint, and moves freely.
+
+    Raises:
+        InputError: names what is missing.
+    """
+    where = design.source or design.name
+    if not layout.pads:
+        remedy = "has no pads, so it stands on nothing; add pads to its feet"
+        raise InputError(where, "pads", None, remedy)
+    for name, joint in design.joint_sections.items():
+        if not np.all(np.asarray(joint.stiffness) > 0):
+            remedy = "must be positive in simulation: it is the joint controller's gain"
+            raise InputError(where, f"joints.{name}.stiffness", 0.0, remedy)
+
+
 def simulation_model(
-    design: Design, physics: Physics | None = None, alterations: Sequence[Alteration] = ()
+    design: RobotDesign, physics: Physics | None = None, alterations: Sequence[Alteration] = ()
 ) -> mujoco.MjModel:
     """Compiled `simulation_spec`, with the edits of alterations."""
     import mujoco
@@ -103,7 +121,7 @@ def simulation_model(
 
 
 def simulation_models(
-    designs: Sequence[Design], physics: Physics | None = None
+    designs: Sequence[RobotDesign], physics: Physics | None = None
 ) -> list[mujoco.MjModel]:
     """`simulation_model` of each design without alterations; equal designs share one model.
 
@@ -122,7 +140,7 @@ def simulation_models(
     return models
 
 
-def _fingerprint(design: Design, physics: Physics) -> str:
+def _fingerprint(design: RobotDesign, physics: Physics) -> str:
     """All numbers and texts that decide a model."""
     arrays = motor_arrays(design)  # the catalogue's constants may change under the same name
     described = (leaves(design), vars(arrays), vars(physics))
@@ -151,9 +169,18 @@ def pad_slip(sensors: np.ndarray) -> np.ndarray:
     return np.sqrt(sensors[..., 4::PAD_SENSOR_SIZE] ** 2 + sensors[..., 5::PAD_SENSOR_SIZE] ** 2)
 
 
-def foot_loads(loads: np.ndarray) -> np.ndarray:
-    """Vertical forces on the left and the right foot [N] from those on the pads, `(..., P)` ->
-    `(..., 2)`.
+def foot_loads(loads: np.ndarray, pads_of_foot: Sequence[int]) -> np.ndarray:
+    """Vertical forces on the feet [N] from those on the pads, `(..., P)` -> `(..., F)`.
+
+    Args:
+        loads: on the pads, foot after foot [N].
+        pads_of_foot: number of pads of each foot, `(F,)`, as `Layout.pads_of_foot`.
     """
+    shape = (*loads.shape[:-1], len(pads_of_foot), max(pads_of_foot))
+    if np.prod(shape) == loads.size:
+        by_foot = loads.reshape(shape)
+    else:
+        by_foot = np.zeros(shape)
+        by_foot[..., np.arange(shape[-1]) < np.array(pads_of_foot)[:, None]] = loads
     # a sum of each row by itself: a matrix product's last digit depends on the number of rows
-    return np.add.reduce(loads.reshape(*loads.shape[:-1], 2, -1), -1)
+    return np.add.reduce(by_foot, -1)

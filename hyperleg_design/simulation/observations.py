@@ -120,7 +120,7 @@ PARTS: dict[str, Part] = {
         lambda layout: [
             ("linear_velocity", 3, (1, -1, 1)),
             ("pelvis_height", 1, (1,)),
-            ("foot_load", 2, ()),
+            ("foot_load", len(layout.feet), ()),
         ],
     ),
     "height_scan": Part(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,6 +48,8 @@ class Term:
     """Whether Table II has it."""
     needs_goal: bool
     """Whether it needs waypoints."""
+    needs_joints: tuple[str, ...] = ()
+    """Joints that each of the robot's limbs must have."""
 
     @property
     def description(self) -> str:
@@ -69,12 +71,12 @@ TERMS: dict[str, Term] = {}
 
 
 def term(
-    *, paper: bool = False, goal: bool = False
+    *, paper: bool = False, goal: bool = False, joints: Sequence[str] = ()
 ) -> Callable[[Callable[..., np.ndarray]], Callable[..., np.ndarray]]:
     """Register a function as a reward term under its own name."""
 
     def registered(function: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
-        TERMS[function.__name__] = Term(function.__name__, function, paper, goal)
+        TERMS[function.__name__] = Term(function.__name__, function, paper, goal, tuple(joints))
         return function
 
     return registered
@@ -132,7 +134,8 @@ def position_progress(state: State, robot: Robot) -> np.ndarray:
 def contact_match(state: State, robot: Robot) -> np.ndarray:
     """Fraction of the feet that stand, or do not, as the gait clock says."""
     stands = state.foot_load[-1] > TOUCH
-    return np.add.reduce(stands == stance(state.phase, robot.clock.stance), 1) / 2
+    should = stance(state.phase, robot.clock.stance, robot.layout.foot_phase)
+    return np.add.reduce(stands == should, 1) / stands.shape[1]
 
 
 @term()
@@ -162,17 +165,24 @@ def foot_slide(state: State, robot: Robot) -> np.ndarray:
     """Sliding speed of the feet [m/s]: of each foot's touching pads the mean, weighted by load,
     summed over the feet.
     """
-    weighted = foot_loads(state.pad_load[-1] * state.pad_slip)
+    weighted = foot_loads(state.pad_load[-1] * state.pad_slip, robot.layout.pads_of_foot)
     return np.einsum("nf->n", weighted / np.maximum(state.foot_load[-1], TOUCH))
 
 
-@term()
+@term(joints=("hip_yaw", "hip_roll"))
 def hip_deviation(state: State, robot: Robot) -> np.ndarray:
     """Hip yaw and roll away from the default posture, summed [rad]."""
     places = robot.layout.hip_sideways
     return np.einsum(
         "nj->n", np.abs(state.motion.joint_position[:, places] - robot.layout.default[..., places])
     )
+
+
+@term()
+def posture_deviation(state: State, robot: Robot) -> np.ndarray:
+    """Squared distance of all joints from the default posture, summed [rad^2]."""
+    away = state.motion.joint_position - robot.layout.default
+    return np.einsum("nj,nj->n", away, away)
 
 
 @term()
@@ -194,7 +204,7 @@ def joint_limits(state: State, robot: Robot, share: float = 0.95) -> np.ndarray:
     )
 
 
-@term()
+@term(joints=tuple(human_gait.KNOTS))
 def human_cycle(state: State, robot: Robot, width: float = 0.25) -> np.ndarray:
     """exp(-d^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human walking;
     with waypoints, v_cmd is the speed cap toward the present one.
@@ -248,8 +258,12 @@ def path_deviation(state: State, robot: Robot, most: float = 1.5) -> np.ndarray:
     return np.minimum(_goal(state).deviation, most)
 
 
-def stance(phase: np.ndarray, share: float) -> np.ndarray:
-    """Whether left and right foot should stand at phases of the gait clock, `(n,)` -> `(n, 2)`; the
-    right is half a stride behind.
+def stance(phase: np.ndarray, share: float, foot_phase: Sequence[float] = (0.0, 0.5)) -> np.ndarray:
+    """Whether feet should stand at phases of the gait clock, `(n,)` -> `(n, F)`.
+
+    Args:
+        phase: of the clock, 0 .. 1.
+        share: of the stride for which a foot stands.
+        foot_phase: by which each foot is behind the first, `(F,)`; of a biped, left and right.
     """
-    return (phase[:, None] + np.array([0.0, 0.5])) % 1.0 < share
+    return (phase[:, None] + np.array(foot_phase)) % 1.0 < share

@@ -4,8 +4,11 @@ the paper is named.
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import parameters
@@ -152,9 +155,23 @@ class Limits(Checked):
 
     height: Any = number("m", 0.0, 3, default=0.55)
     """Pelvis below this has fallen [m]."""
+    height_share: Any = number("", 0, 0.95, default=0.0)
+    """Share of the base's height in the robot's default posture below which it has fallen, in place
+    of `height`; 0 leaves `height` [-]."""
     tilt: Any = number("rad", 0.1, 3.2, default=0.9273)
     """Pelvis leaning more than this has fallen [rad]; cos 0.9273 = 0.6."""
     duration: Any = number("s", 0.1, 10000, default=20.0)
     """Of an episode [s] (paper, Table II); the end is a truncation."""
     deviation: Any = number("m", 0.1, 1000, default=4.0)
     """Farther than this from the path to a waypoint an episode is truncated [m]."""
+
+    def of(self, default_height: Any) -> Limits:
+        """These limits of a robot, the height in metres.
+
+        Args:
+            default_height: of the base's origin in the robot's default posture [m], `()` or `(n,)`.
+        """
+        if not self.height_share:
+            return self
+        height = self.height_share * np.asarray(default_height, float)
+        return dataclasses.replace(self, height=height if height.ndim else float(height))

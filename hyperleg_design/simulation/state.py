@@ -118,7 +118,7 @@ class State:
     pad_load: np.ndarray
     """Vertical force on each sole pad [N], `(s, n, P)`."""
     foot_load: np.ndarray
-    """Vertical force on the left and the right foot [N], `(s, n, 2)`."""
+    """Vertical force on each foot [N], `(s, n, F)`; of a biped left and right."""
     pad_slip: np.ndarray
     """Sliding speed of each touching pad, in the last substep [m/s], `(n, P)`."""
     power: np.ndarray

@@ -15,6 +15,8 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import parameters
 from hyperleg_design.robot.mjcf import TIME_STEP
+from hyperleg_design.robot.names import SIDES
+from hyperleg_design.simulation import human_gait
 from hyperleg_design.simulation.commands import VelocityCommands, WaypointCommands
 from hyperleg_design.simulation.observations import PARTS
 from hyperleg_design.simulation.rewards import TERMS
@@ -29,7 +31,8 @@ from hyperleg_design.simulation.settings import (
 )
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.simulation.layout import Layout
 
 GROUPS = ("policy", "critic")
 """Observation groups that every task has."""
@@ -115,7 +118,7 @@ class Task:
             )
         return found
 
-    def posed(self, design: Design) -> Design:
+    def posed(self, design: RobotDesign) -> RobotDesign:
         """The design with the task's default posture.
 
         Raises:
@@ -125,6 +128,34 @@ class Task:
             return design
         values = {f"joints.{joint}.default_deg": v for joint, v in self.posture_deg.items()}
         return design.with_values(values, f"task {self.name}")
+
+    def check_robot(self, layout: Layout, robot: str) -> None:
+        """Whether a robot has all that the task's rewards and starting states name.
+
+        Args:
+            layout: of the robot.
+            robot: its name, for the error.
+
+        Raises:
+            InputError: a reward term, or starts in mid-stride, for joints that the robot lacks.
+        """
+        needed = {
+            f"rewards.{name}": (reward.weight, TERMS[name].needs_joints)
+            for name, reward in self.rewards.items()
+        }
+        if self.start.stride_share:
+            needed["start.stride_share"] = (self.start.stride_share, tuple(human_gait.KNOTS))
+        for place, (value, joints) in needed.items():
+            missing = [joint for joint in joints if joint not in layout.own_joints]
+            if missing or (set(joints) == set(human_gait.KNOTS) and layout.limbs != SIDES):
+                lacks = f"joints {', '.join(missing)}" if missing else "limbs left and right"
+                raise InputError(
+                    f"task {self.name}",
+                    place,
+                    value,
+                    f"is for robots with other joints: {robot} lacks {lacks}; leave it out, or use "
+                    f"a task for any walker such as walk_any",
+                )
 
     def changed(self, **sections: Any) -> Task:
         """A copy with other sections."""

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.layout import GRAVITY, layout_of
 
 
@@ -38,3 +39,22 @@ def test_weight_and_names() -> None:
         "right_hip_roll",
     ]
     assert layout.joint_indices("tail").size == 0
+
+
+def test_a_quadrupeds_diagonal_feet_step_together() -> None:
+    layout = layout_of(load_robot("mini_cheetah"))
+    assert layout.limbs == ("front_left", "front_right", "rear_left", "rear_right")
+    assert layout.own_joints == ("abduction", "hip", "knee")
+    assert layout.feet == tuple(f"{limb}_shank" for limb in layout.limbs)
+    assert layout.foot_phase == (0.0, 0.5, 0.5, 0.0)
+    assert layout.mirror_feet == (1, 0, 3, 2)
+    assert layout.pads_of_foot == (1, 1, 1, 1)
+    assert layout.joint_indices("knee").tolist() == [2, 5, 8, 11]
+    # thigh 0.209 m and shank 0.195 m, hip at -0.8 rad and knee at 1.6 rad, and the foot's radius
+    assert layout.default_height == pytest.approx(0.404 * np.cos(0.8) + 0.0175, abs=1e-3)
+
+
+def test_heights_of_the_two_postures() -> None:
+    layout = layout_of(load_design("toe"))
+    assert layout.feet == ("left_foot", "right_foot")
+    assert 0.9 * layout.standing_height < layout.default_height <= layout.standing_height

@@ -2,7 +2,13 @@ import mujoco
 import numpy as np
 import pytest
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.robot.ablation import variants
+from hyperleg_design.robot.description import urdf
+from hyperleg_design.robot.gear import rotor_inertia
+from hyperleg_design.robot.load import load_robot, robot_from_mapping
+from hyperleg_design.robot.transmission import joint_from_motor, reflected_inertia
+from hyperleg_design.robot.tree import build_tree
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.model import (
     PAD_SENSOR_SIZE,
@@ -42,7 +48,7 @@ def test_pad_sensors_are_the_contact_forces(design, cone):
     np.testing.assert_allclose(pad_loads(sensors), found[:, 2])
     np.testing.assert_allclose(pad_slip(sensors), np.hypot(0.5, 0.2))
     np.testing.assert_allclose(
-        foot_loads(found[:, 2]),
+        foot_loads(found[:, 2], layout.pads_of_foot),
         [found[layout.pad_foot == 0, 2].sum(), found[layout.pad_foot == 1, 2].sum()],
     )
 
@@ -86,3 +92,59 @@ def test_stop_sensors_are_the_stops_torques(design):
     assert set(np.flatnonzero(stops)) == {knee, toe}
     torque = np.where(data.qpos[7:] < (layout.lower + layout.upper) / 2, stops, -stops)
     np.testing.assert_allclose(torque, data.qfrc_constraint[6:], rtol=1e-9, atol=1e-9)
+
+
+def test_loads_of_feet_with_different_numbers_of_pads():
+    loads = np.arange(12.0).reshape(2, 6)
+    found = foot_loads(loads, (1, 3, 2))
+    np.testing.assert_array_equal(found, [[0, 6, 9], [6, 24, 21]])
+
+
+@pytest.mark.parametrize("name", ["mini_cheetah", "parallel_ankle"])
+def test_robots_written_out_have_the_dynamics_of_an_independent_library(name):
+    """Mass matrix and gravity of MuJoCo's model against Pinocchio's, rotors added by hand."""
+    import pinocchio
+
+    robot = load_robot(name)
+    model, layout = simulation_model(robot), layout_of(robot)
+    assert [model.joint(i + 1).name for i in range(len(layout.joints))] == list(layout.joints)
+    assert [model.tendon(i).name for i in range(model.ntendon)] == list(layout.motors)
+    other = pinocchio.buildModelFromXML(
+        urdf(robot, build_tree(robot)), pinocchio.JointModelFreeFlyer()
+    )
+    order = [other.getJointId(joint) - 2 for joint in layout.joints]
+    rng = np.random.default_rng(0)
+    angles = rng.uniform(0.7 * layout.lower, 0.7 * layout.upper)
+    data = mujoco.MjData(model)
+    data.qpos[:3], data.qpos[3:7], data.qpos[7:] = (0, 0, 1), (1, 0, 0, 0), angles
+    mujoco.mj_forward(model, data)
+    found = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, found)
+    q = pinocchio.neutral(other)
+    q[7:][order] = angles
+    q[2] = 1.0
+    there = other.createData()
+    own = np.array([*range(6), *(6 + np.array(order))])
+    rigid = pinocchio.crba(other, there, q)
+    rigid = np.triu(rigid) + np.triu(rigid, 1).T
+    matrix, inertia = joint_from_motor(robot), rotor_inertia(robot)
+    reflected = np.kron(np.eye(len(layout.limbs)), reflected_inertia(matrix, inertia))
+    expected = rigid[np.ix_(own, own)]
+    expected[6:, 6:] += reflected
+    np.testing.assert_allclose(found, expected, atol=1e-9)
+    gravity = pinocchio.computeGeneralizedGravity(other, there, q)
+    np.testing.assert_allclose(data.qfrc_bias, gravity[own], atol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [("joints.knee.stiffness=0", r"joints\.knee\.stiffness"), ("pads", "has no pads")],
+)
+def test_a_robot_that_cannot_be_simulated_is_refused(change, field):
+    if change == "pads":
+        data = load_robot("mini_cheetah").to_mapping()
+        robot = robot_from_mapping({k: v for k, v in data.items() if k != "pads"}, "cheetah")
+    else:
+        robot = load_robot("mini_cheetah", overrides=[change])
+    with pytest.raises(InputError, match=field):
+        simulation_model(robot)

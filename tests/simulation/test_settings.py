@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
@@ -36,3 +37,9 @@ def test_implicit_friction_at_the_motors_needs_its_integrator() -> None:
     with pytest.raises(InputError, match="integrator"):
         Physics(friction_space="motor")
     Physics(friction_space="motor", integrator="implicitfast")
+
+
+def test_a_share_of_the_default_height_stands_in_place_of_the_height():
+    assert Limits().of(0.9).height == 0.55
+    assert Limits(height_share=0.5).of(0.9).height == pytest.approx(0.45)
+    np.testing.assert_allclose(Limits(height_share=0.5).of([0.9, 0.3]).height, [0.45, 0.15])

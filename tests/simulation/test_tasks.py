@@ -1,8 +1,13 @@
+import dataclasses
+
 import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.resolved import task_mapping
+from hyperleg_design.robot.load import load_robot
+from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.tasks import load_task, task_from_mapping, task_names
 
 PLAIN = {
@@ -116,3 +121,37 @@ def test_a_posture_replaces_the_designs(design):
 def test_a_posture_that_makes_no_sense_is_refused(posture, design):
     with pytest.raises(InputError):
         task_from_mapping({**PLAIN, "posture_deg": posture}, "mine.yaml").posed(design)
+
+
+@pytest.mark.parametrize(
+    ("task", "field"),
+    [
+        ("walk", r"rewards\.hip_deviation.*lacks joints hip_yaw, hip_roll"),
+        ("walk_upright", r"rewards\.human_cycle.*lacks joints hip_pitch, ankle_pitch"),
+    ],
+)
+def test_a_task_that_names_what_a_robot_lacks_is_refused(task, field):
+    robot = load_robot("mini_cheetah")
+    chosen = dataclasses.replace(load_task(task), posture_deg={})
+    with pytest.raises(InputError, match=field):
+        Environment(robot, chosen, simulations=1)
+
+
+def test_starts_in_mid_stride_need_a_humans_joints():
+    task = load_task("walk_any")
+    task = task.changed(start=dataclasses.replace(task.start, stride_share=0.5))
+    with pytest.raises(InputError, match=r"start\.stride_share.*hip_pitch"):
+        task.check_robot(layout_of(load_robot("mini_cheetah")), "mini_cheetah")
+    task.check_robot(layout_of(load_robot("parallel_ankle")), "parallel_ankle")
+
+
+@pytest.mark.parametrize("name", ["hyperleg", "mini_cheetah", "parallel_ankle"])
+def test_the_walk_for_any_robot_fits_every_walker(name):
+    environment = Environment(load_robot(name), load_task("walk_any"), simulations=2, seed=1)
+    environment.reset()
+    for _ in range(10):
+        step = environment.step(np.zeros((2, environment.action_size)))
+    assert not step.ending.any()
+    assert np.isfinite(step.reward).all()
+    fell = environment.chunks[0].limits.height
+    assert fell == pytest.approx(0.5 * environment.layout.default_height)
