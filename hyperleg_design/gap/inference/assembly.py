@@ -264,6 +264,7 @@ def _channel(
         np.array([cell[2] for cell in cells]),
         np.array([sessions.index(cell[0]) for cell in cells]),
         np.array([bands.index(cell[1]) for cell in cells]),
+        np.array([b for _, b in bands]),
         np.array([number == 0 for number, _ in sessions]),
         tuple(cell[3] for cell in cells),
         tuple(white),

@@ -62,6 +62,8 @@ class Channel:
     """Of each cell `(cells,)`, from 0."""
     band: np.ndarray
     """Of each cell `(cells,)`, from 0; those of reference logs are others."""
+    frequency: np.ndarray
+    """Which band of the filter each band is `(b,)`."""
     tested: np.ndarray
     """Whether a session is under test `(sessions,)`."""
     places: tuple[np.ndarray, ...]
@@ -78,6 +80,46 @@ class Channel:
     def numbers(self) -> np.ndarray:
         """Independent numbers by band `(b,)`."""
         return np.bincount(self.band, self.number)
+
+    @cached_property
+    def bands_tested(self) -> np.ndarray:
+        """Bands of logs under test `(t,)`."""
+        return np.unique(self.band[self.tested[self.session]])
+
+    @cached_property
+    def bands_alike(self) -> np.ndarray:
+        """The band of references at the same frequency as each of `bands_tested`, -1 where there is
+        none `(t,)`.
+        """
+        others = np.setdiff1d(self.band, self.bands_tested)
+        place = {int(self.frequency[one]): int(one) for one in others}
+        return np.array([place.get(int(self.frequency[one]), -1) for one in self.bands_tested])
+
+    def usual_noise(self, noise: np.ndarray, rules: InferenceRules) -> np.ndarray:
+        """Variance that noise of a healthy robot has in each of `bands_tested`: that of the
+        references, else the expected one, but not less than `NoiseRules.least` `(t,)`.
+
+        Args:
+            noise: by band `(b,)`.
+            rules: of the inference.
+        """
+        alike = self.bands_alike
+        return np.maximum(np.where(alike >= 0, noise[alike], 1.0), rules.noise.least)
+
+    def noisy(self, noise: np.ndarray, rules: InferenceRules) -> tuple[float, float]:
+        """Log prior densities of the noise under test [nat]: of a healthy robot, and where
+        something unlisted makes noise; the prior probabilities of both included.
+        """
+        own = rules.noise
+        spread = np.where(self.bands_alike >= 0, own.spread, own.alone_spread)
+        over = np.log(noise[self.bands_tested] / self.usual_noise(noise, rules)) / spread
+        odds = rules.discrepancy.unlisted_probability
+        shared = -float(np.log(spread).sum())
+        healthy = shared - 0.5 * float(over @ over)
+        farther = (over - own.unlisted) / own.unlisted_spread
+        unlisted = shared - 0.5 * float(farther @ farther)
+        unlisted -= len(over) * float(np.log(own.unlisted_spread))
+        return float(np.log(1 - odds)) + healthy, float(np.log(odds)) + unlisted
 
     @property
     def referenced(self) -> bool:
@@ -211,7 +253,9 @@ class Channel:
     def log_prior(self, scales: Scales, rules: InferenceRules) -> float:
         """Log prior density of the hyperparameters, up to a constant [nat]."""
         prior = rules.discrepancy
-        noise = -0.5 * rules.noise.weight * float(np.sum(np.log(scales.noise) + 1 / scales.noise))
+        taught = np.delete(scales.noise, self.bands_tested)
+        noise = -0.5 * rules.noise.weight * float(np.sum(np.log(taught) + 1 / taught))
+        noise += float(np.logaddexp(*self.noisy(scales.noise, rules)))
         if not self.referenced:
             found = noise + _mixed(scales.standing, prior)
         else:
@@ -260,7 +304,9 @@ class Channel:
             square = np.einsum("ci,cij,cj->c", mean, self.products, mean)
             square += np.einsum("cij,cji->c", self.products[:, :k, :k], covariances[self.session])
             left = np.bincount(self.band, np.maximum(square, 0.0), len(self.numbers))
-            scales = replace(scales, noise=(weight + left) / (weight + self.numbers))
+            usual = np.ones(len(self.numbers))
+            usual[self.bands_tested] = self.usual_noise(scales.noise, rules)
+            scales = replace(scales, noise=(weight * usual + left) / (weight + self.numbers))
             summed = self.summed(scales.noise)
             scales = self._searched(scales, "standing", rules, summed)
             if self.changes:

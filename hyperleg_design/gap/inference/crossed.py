@@ -67,11 +67,11 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
             products = shifted(reduced(part, hypothesis.scales, columns), last)
             found = solve(products, stack.low, stack.high, stack.shape, rules, stack.factors)
             left = found.theta @ stack.columns + stack.constant
-            for place, cause, counts in zip(
+            for piece, cause, counts in zip(
                 hypothesis.parts, hypothesis.causes, changed, strict=True
             ):
                 if counts:
-                    own += cause.trace(found.theta[place]) * weight
+                    own += cause.trace(found.theta[piece]) * weight
         for whole, some, scales in zip(evidence.channels, channels, hypothesis.scales, strict=True):
             means, _ = some.without(left * kept).discrepancy(scales)
             healthy = healthy_share(whole, scales, rules)

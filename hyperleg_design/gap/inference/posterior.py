@@ -74,10 +74,10 @@ def posterior_of(
         for name in sorted(names):
             probability[name] = probability.get(name, 0.0) + weight
     probability = {name: min(p, own.most_certain) for name, p in probability.items()}
-    before, after, noise = (
-        mean_square(evidence, values) for values in (held.before, held.after, held.noise)
+    before, after = (
+        float(np.mean(mean_squares(evidence, values))) for values in (held.before, held.after)
     )
-    lowest = min(noise, after)
+    lowest = min(float(np.mean(lowest_squares(evidence, best, held, rules))), after)
     closed = float((before - after) / (before - lowest)) if before > lowest * (1 + 1e-9) else 0.0
     acting = any(
         unlisted(channel, scales, rules)
@@ -106,7 +106,11 @@ def posterior_of(
 
 
 def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
-    """Whether a channel's discrepancy is rather an unlisted effect's than a healthy robot's."""
+    """Whether a channel's discrepancy or noise is rather an unlisted effect's than a healthy
+    robot's.
+    """
+    if makes_noise(channel, scales, rules):
+        return True
     prior = rules.discrepancy
     if channel.referenced:
         return scales.new > ABSENT
@@ -117,14 +121,39 @@ def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
     return bool(odds > 0 and scales.standing > np.log(prior.standing))
 
 
-def mean_square(evidence: Evidence, values: np.ndarray) -> float:
-    """Mean square over the noise of the channels' samples, each channel alike [-]."""
+def makes_noise(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
+    """Whether a channel's noise is rather an unlisted effect's than a healthy robot's."""
+    healthy, other = channel.noisy(scales.noise, rules)
+    return other > healthy
+
+
+def mean_squares(evidence: Evidence, values: np.ndarray) -> np.ndarray:
+    """Mean square of values `(S,)` under test over the expected noise, by channel `(channels,)`."""
     square = (values * evidence.weight) ** 2
-    found = []
-    for channel in evidence.channels:
-        number = float(evidence.samples.share[channel.under_test].sum())
-        found.append(float(square[channel.under_test].sum()) / max(number, 1e-300))
-    return float(np.mean(found))
+    return np.array(
+        [
+            float(square[one.under_test].sum())
+            / max(float(evidence.samples.share[one.under_test].sum()), 1e-300)
+            for one in evidence.channels
+        ]
+    )
+
+
+def lowest_squares(
+    evidence: Evidence, hypothesis: Hypothesis, held: Prediction, rules: InferenceRules
+) -> np.ndarray:
+    """Mean square that no cause can go below, as of `mean_squares`: what is left, or where that is
+    an unlisted effect's noise, a healthy robot's.
+    """
+    found = mean_squares(evidence, held.noise)
+    for place, (channel, scales) in enumerate(
+        zip(evidence.channels, hypothesis.scales, strict=True)
+    ):
+        if makes_noise(channel, scales, rules):
+            numbers = channel.numbers[channel.bands_tested]
+            usual = channel.usual_noise(scales.noise, rules)
+            found[place] = min(found[place], float(numbers @ usual / numbers.sum()))
+    return found
 
 
 def _stated(candidate: Candidate) -> list[Name]:

@@ -24,6 +24,19 @@ class NoiseRules:
     weight: float = 4.0
     """Independent numbers that the expected noise counts for when that of a channel and band is
     estimated [-] (assumed)."""
+    least: float = 0.5
+    """Variance over the expected that noise in logs under test may always have [-] (assumed)."""
+    spread: float = 0.7
+    """Deviation of the logarithm of a healthy robot's noise in logs under test over that in its
+    references [-] (developed)."""
+    alone_spread: float = 2.0
+    """The same over the expected noise, without references [-]: measured torques of real drives
+    have up to a hundred times the expected variance (developed)."""
+    unlisted: float = 2.0
+    """Median of the same logarithm where something unlisted makes noise, over the healthy
+    deviation [-] (assumed)."""
+    unlisted_spread: float = 3.0
+    """Deviation of it, likewise [-] (assumed)."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 from weakref import WeakKeyDictionary
@@ -38,6 +38,8 @@ SURELY = 0.9
 SHOWN = 0.02
 """Root mean square of a trace over the floor, at its usual size in the group where it shows most,
 below which these logs cannot show it."""
+UNEXCITED = "these logs do not excite it"
+"""Why an effect at a place is not judged."""
 STEPS = 8
 """Gauss-Newton steps a start in the screen."""
 MOST_DESCENTS, DESCENTS, KINDS = 16, 2, 3
@@ -278,6 +280,16 @@ class _Rough:
     gain: float
 
 
+def under_test(cause: Cause, tests: Samples) -> Cause | None:
+    """A linear cause in the first of its samples; None where these do not show it."""
+    columns = cause.columns[:, : len(tests.value)]
+    if reach(tests, columns) < SHOWN:
+        return None
+    scaled = factor(tests, cause.effect, cause.location, cause.usual, cause.values)
+    constant = cause.constant[: len(tests.value)]
+    return replace(cause, columns=columns, constant=constant, factor=scaled)
+
+
 def traced(base: Base, effect: Effect, location: str) -> Traces:
     """What an effect at a place leaves, whatever is beside it; kept, up to `KEPT`."""
     kept = _TRACED.setdefault(base.samples, {})
@@ -305,7 +317,7 @@ def _trace(base: Base, effect: Effect, location: str) -> Traces:
     missing = lacking(effect, location, [s.signals for s in base.samples.filtered_logs])
     if missing:
         return NotJudged(effect.identifier, location, missing)
-    unexcited = NotJudged(effect.identifier, location, "these logs do not excite it")
+    unexcited = NotJudged(effect.identifier, location, UNEXCITED)
     if effect.linear:
         causes = [
             linearise(base.samples, effect, location, values)

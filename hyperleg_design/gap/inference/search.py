@@ -37,7 +37,9 @@ CLOSE = 0.02
 WHOLE_STEPS = 3
 """Gauss-Newton steps before they are halved."""
 EASED = 2.0
-"""Noise over the expected, in variance, at most where a fit begins [-]."""
+"""Noise under test over a healthy robot's, in variance, at most where a fit begins [-]."""
+TOGETHER = 16
+"""Promises whose columns are multiplied with each other, though only each alone is asked for."""
 LARGEST = 10.0
 """Size of a start's trace that is tried, over the start's own [-]."""
 
@@ -128,18 +130,35 @@ class Search:
         """What each effect leaves at each place in the logs under test and, with references, in all
         logs.
         """
-        scopes = (False, True) if self.evidence.references else (False,)
-        names = [(*place, standing) for standing in scopes for place in self.places]
-        found = screen.spread(self._traced, names, self.threads)
-        return dict(zip(names, found, strict=True))
-
-    def _traced(self, name: Name) -> screen.Traces:
-        effect, location, standing = name
-        base: Any = _Samples(self._samples(standing))
-        found = screen._trace(base, EFFECTS[effect], location)
-        if isinstance(found, list):
-            return [self.evidence.acting(one, standing) for one in found]
+        traced = screen.spread(self._traced, self.places, self.threads)
+        found: dict[Name, screen.Traces] = {}
+        for (effect, location), both in zip(self.places, traced, strict=True):
+            for standing, one in zip((False, True), both, strict=False):
+                found[effect, location, standing] = one
         return found
+
+    def _traced(self, place: tuple[str, str]) -> list[screen.Traces]:
+        """In the logs under test and, with references, in all logs."""
+        base: Any = _Samples(self.evidence.samples)
+        whole = screen._trace(base, EFFECTS[place[0]], place[1])
+        if isinstance(whole, screen.NotJudged):
+            return [whole] * (2 if self.evidence.references else 1)
+        count = len(self.evidence.tests.value)
+        own: screen.Traces
+        if isinstance(whole, list):
+            own = [
+                self.evidence.acting(cut, False)
+                for one in whole
+                if (cut := screen.under_test(one, self.evidence.tests)) is not None
+            ]
+            whole = [self.evidence.acting(one, True) for one in whole]
+        else:
+            own = whole[0], whole[1][:, :count]
+            if screen.reach(self.evidence.tests, own[1]) < screen.SHOWN:
+                own = []
+        if not own:
+            own = screen.NotJudged(*place, screen.UNEXCITED)
+        return [own, whole] if self.evidence.references else [own]
 
     def _samples(self, standing: bool) -> Samples:
         return self.evidence.samples if standing else self.evidence.tests
@@ -207,13 +226,13 @@ class Search:
         return found
 
     def promises(self, current: Hypothesis) -> list[Promise]:
-        """Gain of every effect at every place beside a hypothesis, at its scales, best first."""
+        """Gain of every effect at every place beside a hypothesis, at its scales, best first; noise
+        that hides what causes explain is left out of them.
+        """
         beside, weight = current.causes, self.evidence.weight
         taken = {(c.effect, c.location, c.standing) for c in beside}
         base = Stack.of(beside, weight) if beside else None
-        blocks = [] if base is None else [base.columns, base.constant[None]]
-        at = sum(len(one) for one in blocks)
-        entries: list[tuple[Promise, np.ndarray, Cause | None]] = []
+        entries: list[tuple[Promise, int, Cause | None, np.ndarray]] = []
         size = len(weight)
         for name, traced in self.traces.items():
             if name in taken or isinstance(traced, screen.NotJudged):
@@ -222,24 +241,25 @@ class Search:
             for variant, option in enumerate(options):
                 cause = option if not isinstance(option, np.ndarray) else None
                 columns = option[None] if cause is None else option.columns
+                entries.append((Promise(*name, variant, 0.0), len(columns), cause, columns))
+        found: list[Promise] = []
+        scales = eased(self.evidence, current.scales, self.rules)
+        for first in range(0, len(entries), TOGETHER):
+            some = entries[first : first + TOGETHER]
+            blocks = [] if base is None else [base.columns, base.constant[None]]
+            at = known = 0 if base is None else len(base.columns) + 1
+            for *_, columns in some:
                 own = columns.shape[1]
                 blocks.append(np.pad(columns * weight[:own], ((0, 0), (0, size - own))))
-                place = np.arange(at, at + len(columns))
-                entries.append((Promise(*name, variant, 0.0), place, cause))
-                at += len(columns)
-        if not entries:
-            return []
-        products = reduced(self.evidence, current.scales, np.concatenate(blocks))
-        known = 0
-        if base is not None:
-            known = len(base.columns)
-            products[0] -= products[known + 1]
-            products[:, 0] -= products[:, known + 1]
-        start = self._solved(products, base, np.zeros(0, int), None).gain if base else 0.0
-        found = [
-            replace(one, gain=self._solved(products, base, place, cause).gain - start)
-            for one, place, cause in entries
-        ]
+            products = reduced(self.evidence, scales, np.concatenate(blocks))
+            if base is not None:
+                products[0] -= products[known]
+                products[:, 0] -= products[:, known]
+            start = self._solved(products, base, np.zeros(0, int), None).gain if base else 0.0
+            for one, count, cause, _ in some:
+                solution = self._solved(products, base, np.arange(at, at + count), cause)
+                found.append(replace(one, gain=solution.gain - start))
+                at += count
         return sorted(found, key=lambda one: (-one.gain, *one.name, one.variant))
 
     def _solved(
@@ -289,7 +309,7 @@ class Search:
         subject = self.evidence.signals[0].subject
         low, high = effect.bounds(promise.location, subject)
         values = np.array(traced[0][promise.variant], float)
-        scales = eased(current.scales)
+        scales = eased(self.evidence, current.scales, self.rules)
         best: tuple[float, Cause] | None = None
         for step in range(self.rules.search.steps):
             cause = screen.linearise(
@@ -328,8 +348,9 @@ class Search:
             scales: to begin with.
         """
         found = [self._fit(candidates, scales)]
-        if max(float(one.noise.max()) for one in scales) > EASED:
-            found.append(self._fit(candidates, eased(scales)))
+        clear = eased(self.evidence, scales, self.rules)
+        if any(np.any(one.noise < own.noise) for one, own in zip(clear, scales, strict=True)):
+            found.append(self._fit(candidates, clear))
         return max(found, key=lambda one: one.score)
 
     def _fit(self, candidates: Sequence[Candidate], scales: Sequence[Scales]) -> Hypothesis:
@@ -388,9 +409,16 @@ class Search:
         return found
 
 
-def eased(scales: Sequence[Scales]) -> tuple[Scales, ...]:
-    """Scales whose noise is at most `EASED`."""
-    return tuple(replace(one, noise=np.minimum(one.noise, EASED)) for one in scales)
+def eased(
+    evidence: Evidence, scales: Sequence[Scales], rules: InferenceRules
+) -> tuple[Scales, ...]:
+    """Scales whose noise under test is at most `EASED` times that of a healthy robot."""
+    found = []
+    for channel, one in zip(evidence.channels, scales, strict=True):
+        noise, place = one.noise.copy(), channel.bands_tested
+        noise[place] = np.minimum(noise[place], EASED * channel.usual_noise(one.noise, rules))
+        found.append(replace(one, noise=noise))
+    return tuple(found)
 
 
 def prior_odds(cause: Cause, values: np.ndarray) -> float:

@@ -13,7 +13,13 @@ from hyperleg_design.gap.inference.assembly import Evidence, evidence_of
 from hyperleg_design.gap.inference.crossed import Prediction, predicted
 from hyperleg_design.gap.inference.detectable import detectable
 from hyperleg_design.gap.inference.parameters import intervals
-from hyperleg_design.gap.inference.posterior import Posterior, expanded, posterior_of
+from hyperleg_design.gap.inference.posterior import (
+    Posterior,
+    expanded,
+    lowest_squares,
+    mean_squares,
+    posterior_of,
+)
 from hyperleg_design.gap.inference.search import Result, Search
 from hyperleg_design.gap.results.diagnosis import (
     LEAST_SHARE,
@@ -94,7 +100,9 @@ class _Answer:
         self.evidence, self.result, self.posterior, self.held = evidence, result, posterior, held
         self.rules, self.thresholds, self.seed = rules, thresholds, seed
         self.squares = {
-            name: self._squares(getattr(held, name)) for name in ("before", "after", "noise")
+            "before": mean_squares(evidence, held.before),
+            "after": mean_squares(evidence, held.after),
+            "noise": lowest_squares(evidence, posterior.hypothesis, held, rules),
         }
         self.counts = self._counts()
 
@@ -255,7 +263,8 @@ class _Answer:
             for name in ("before", "after", "noise")
         }
         before, after = np.sqrt(sums["before"]), np.sqrt(sums["after"])
-        lowest = np.minimum(np.sqrt(sums["noise"]), after)
+        share = self.lowest() / max(self._total(self._squares(self.held.noise)), 1e-300)
+        lowest = np.minimum(np.sqrt(share * sums["noise"]), after)
         return np.minimum((before - after) / np.maximum(before - lowest, 1e-12), 1.0)
 
     def lowest(self) -> float:
@@ -264,14 +273,7 @@ class _Answer:
 
     def _squares(self, values: np.ndarray) -> np.ndarray:
         """Mean square over the noise of each channel `(channels,)`."""
-        weighed = (values * self.evidence.weight) ** 2
-        return np.array(
-            [
-                float(weighed[one.under_test].sum())
-                / max(float(self.evidence.samples.share[one.under_test].sum()), 1e-300)
-                for one in self.evidence.channels
-            ]
-        )
+        return mean_squares(self.evidence, values)
 
     def _total(self, squares: np.ndarray) -> float:
         """Mean over the channels that count."""

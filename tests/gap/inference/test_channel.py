@@ -34,6 +34,7 @@ def made(
         np.full(len(white), float(count)),
         np.array(session),
         np.array(band),
+        np.tile(np.arange(2), 2)[: 2 if sessions <= tested else 4],
         np.arange(sessions) < tested,
         tuple(places),
         tuple(white),
@@ -159,3 +160,31 @@ def test_a_change_under_test_alone_is_unlisted_and_one_in_all_sessions_is_not():
         )
         fitted = own.fitted(own.start(RULES), RULES)
         assert (fitted.new > 0) is unlisted
+
+
+def test_noise_like_the_references_is_healthy_and_far_above_it_is_not():
+    channel, _ = made(np.random.default_rng(8))
+    calm = np.array([0.7, 1.5, 0.8, 1.2])
+    healthy, unlisted = channel.noisy(calm, RULES)
+    assert healthy > unlisted
+    loud = np.array([30.0, 40.0, 0.8, 1.2])
+    healthy, unlisted = channel.noisy(loud, RULES)
+    assert unlisted > healthy
+    as_loud = np.array([30.0, 40.0, 30.0, 40.0])
+    healthy, unlisted = channel.noisy(as_loud, RULES)
+    assert healthy > unlisted
+
+
+def test_without_references_the_expected_noise_is_less_certain():
+    channel, _ = made(np.random.default_rng(9), sessions=1)
+    assert np.all(channel.bands_alike == -1)
+    healthy, unlisted = channel.noisy(np.array([30.0, 10.0]), RULES)
+    assert healthy > unlisted
+    healthy, unlisted = channel.noisy(np.array([1e4, 1e4]), RULES)
+    assert unlisted > healthy
+
+
+def test_usual_noise_is_that_of_the_same_band_in_references():
+    channel, _ = made(np.random.default_rng(10))
+    found = channel.usual_noise(np.array([5.0, 6.0, 0.1, 3.0]), RULES)
+    assert found == pytest.approx([RULES.noise.least, 3.0])

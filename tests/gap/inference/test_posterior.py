@@ -33,8 +33,13 @@ def hypothesis(score, *names, scales=HEALTHY):
     return Hypothesis(candidates, np.arange(count, 0.0, -1), np.eye(count), (scales,), score, 0.0)
 
 
+def quiet(noise, rules):
+    """Log densities of noise that is a healthy robot's."""
+    return 0.0, -9.0
+
+
 def evidence(count=100):
-    channel = SimpleNamespace(referenced=False, under_test=np.arange(count))
+    channel = SimpleNamespace(referenced=False, under_test=np.arange(count), noisy=quiet)
     samples = SimpleNamespace(share=np.ones(count))
     return SimpleNamespace(channels=(channel,), samples=samples, weight=np.ones(count))
 
@@ -120,7 +125,7 @@ def test_a_small_part_of_something_unlisted_is_unknown():
 
 
 def test_a_scale_is_unlisted_where_that_prior_is_likelier():
-    channel = SimpleNamespace(referenced=False)
+    channel = SimpleNamespace(referenced=False, noisy=quiet)
     assert not unlisted(channel, HEALTHY, RULES)
     assert not unlisted(channel, Scales(np.ones(1), -3.0, 0.0), RULES)
     assert unlisted(channel, BENT, RULES)

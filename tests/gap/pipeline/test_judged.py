@@ -58,6 +58,14 @@ def test_what_the_references_show_as_well_is_no_change_but_what_the_model_lacks(
     assert torque["low"] < 0.8 < torque["high"]
 
 
+@pytest.mark.parametrize("references", [(), (2, 3)])
+def test_a_torque_that_no_effect_has_is_unknown(robot_files, references):
+    result = found(robot_files, "cubic_faint", references=references)
+    assert result.verdict == "unknown"
+    assert not result.causes
+    assert result.remainder > 0.5
+
+
 def test_two_causes_are_both_named(robot_files):
     result = found(robot_files, "both")
     assert {(c.effect, c.location) for c in result.causes} == {
