@@ -199,6 +199,7 @@ CASES: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("evaluate", "garbage.onnx", *OUT), ("garbage.onnx",)),
     (("evaluate", "empty.onnx", *OUT), ("empty.onnx",)),
     (("evaluate", "garbage.onnx", "--overlay", "none.yaml", *OUT), ("none.yaml",)),
+    (("evaluate", "walk-toe-0", "walk-toe-0", *OUT), ("same policy", "counts once")),
     (("evaluate", "walk-toe-0", "--protocol", "swim", *OUT), ("swim",)),
     (("evaluate", "walk-toe-0", "--swap", "toe_motor_to_ankle", *OUT), ("toe_removed_matched",)),
     (("evaluate", "walk-toe-0", "--protocol", "protocol.yaml", *OUT), ("protocol.yaml",)),

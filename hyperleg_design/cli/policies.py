@@ -160,12 +160,14 @@ class Evaluate(Printing):
         """Evaluate them."""
         from hyperleg_design.evaluation.evaluate import evaluate_many
         from hyperleg_design.evaluation.result import swapped, write_results
+        from hyperleg_design.evaluation.shipped import check_different, find_policy
         from hyperleg_design.report.evaluation_text import evaluation_rows, evaluation_text
         from hyperleg_design.simulation.toe_swap import Swap
         from hyperleg_design.writing import check_output_folder
 
         if not self.policies:
             raise InputError("evaluate", "", None, "expects ONNX files")
+        check_different(map(find_policy, self.policies), "evaluate")
         for folder in (self.out, self.logs, self.lerobot):
             if folder is not None:
                 check_output_folder(folder)

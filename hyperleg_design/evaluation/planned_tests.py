@@ -36,6 +36,22 @@ def p_value(mean: float, standard_error: float, freedom: int) -> float:
     return float(2 * t.sf(abs(mean) / standard_error, freedom))
 
 
+def interval_reach(standard_error: float, freedom: int, level: float) -> float:
+    """Half the width of the interval of 1 - level around a difference; NaN without degrees of
+    freedom.
+
+    Args:
+        standard_error: of the difference.
+        freedom: degrees of freedom.
+        level: of the two-sided test that leaves zero outside of this interval where it rejects.
+    """
+    from scipy.stats import t
+
+    if not freedom or not np.isfinite(standard_error):
+        return np.nan
+    return float(t.ppf(1 - level / 2, freedom)) * standard_error
+
+
 def holm(p_values: Sequence[float]) -> np.ndarray:
     """Corrects p values for their number by Holm's step-down method, `(m,)`.
 

@@ -16,6 +16,7 @@ the five above.
 from __future__ import annotations
 
 import difflib
+import hashlib
 import json
 import math
 import re
@@ -114,6 +115,26 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
             for i, file in enumerate(files)
         ]
     return sorted(found, key=lambda one: (one.group, one.design, one.seed, one.late))
+
+
+def check_different(paths: Iterable[str | Path], where: str = "policies") -> None:
+    """Whether no two files hold the same policy, which would count one training twice.
+
+    Raises:
+        InputError: two files with the same content.
+    """
+    seen: dict[str, Path] = {}
+    for path in map(Path, paths):
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        if digest in seen:
+            twin = seen[digest]
+            raise InputError(
+                where,
+                "",
+                f"{path.parent.name}/{path.name}",
+                f"is the same policy as {twin.parent.name}/{twin.name}; a training counts once",
+            )
+        seen[digest] = path
 
 
 def policies_for(

@@ -49,6 +49,15 @@ def campaign(tmp_path, make_onnx):
     return place
 
 
+def test_the_same_policy_twice_is_refused(campaign, tmp_path):
+    first = campaign / "walk-toe-0" / "policy.onnx"
+    other = tmp_path / "other.onnx"
+    other.write_bytes(first.read_bytes() + b"x")
+    shipped.check_different([first, other])
+    with pytest.raises(InputError, match="same policy as walk-toe-0/policy"):
+        shipped.check_different([first, other, campaign / "walk-toe-0" / "late_000800.onnx"])
+
+
 def test_policies_are_listed_by_group_design_seed_and_lateness(campaign):
     found = shipped.shipped_policies(campaign)
     assert [(p.group, p.design, p.seed, p.late, p.path.name) for p in found] == [

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from hyperleg_design.evaluation import paper, statistics
+from hyperleg_design.evaluation.analysis_plan import ONLY_COMPLETE
 from hyperleg_design.evaluation.measures import measure_of
 from hyperleg_design.evaluation.result import by_checkpoint
+from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.statistics import AGREES, DIFFERS, Estimate
 from hyperleg_design.evaluation.versus_paper import NOT_REPRODUCED, VARIANTS, PaperRow, paper_rows
 from hyperleg_design.report.page import Cell, Details, Table
@@ -45,6 +47,7 @@ SUMMARY = {
         "peak_deviation",
         "mean_leg_deviation",
         "peak_leg_deviation",
+        "energy",
         "power",
         "cost_of_transport",
         "grf_peak",
@@ -185,7 +188,11 @@ def differences(found: Evaluated, group: str, kind: str) -> Details:
     for name in SUMMARY[kind]:
         if name not in table:
             continue
-        first, second = (by_checkpoint(table[table["variant"] == v], name) for v in VARIANTS)
+        complete = name in ONLY_COMPLETE
+        counted = table.assign(
+            **{name: table[name].where(table["outcome"] == ARRIVED)} if complete else {}
+        )
+        first, second = (by_checkpoint(counted[counted["variant"] == v], name) for v in VARIANTS)
         a, b = (statistics.estimate(list(side.values())) for side in (first, second))
         apart = statistics.difference(list(first.values()), list(second.values()))
         common = sorted(set(first) & set(second))
@@ -200,6 +207,7 @@ def differences(found: Evaluated, group: str, kind: str) -> Details:
             [
                 name.replace("_", " "),
                 measure_of(name).unit,
+                "arrived" if complete else "all",
                 short(a),
                 short(b),
                 percent(apart.relative, apart.relative_low, apart.relative_high),
@@ -215,6 +223,7 @@ def differences(found: Evaluated, group: str, kind: str) -> Details:
     head = [
         "measure",
         "unit",
+        "trials",
         "toe",
         "toe removed, equal mass",
         "Δ",
@@ -226,7 +235,14 @@ def differences(found: Evaluated, group: str, kind: str) -> Details:
     ]
     return Details(
         f"Differences in all measures, group {group}",
-        [Table(head, rows, "Δ: toe less ablation, over the ablation.")],
+        [
+            Table(
+                head,
+                rows,
+                "Δ: toe less ablation, over the ablation. Trials: whether all count, or those that "
+                "arrived, because a run that ends early gives no such number.",
+            )
+        ],
     )
 
 

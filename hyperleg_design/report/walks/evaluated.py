@@ -14,7 +14,7 @@ from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
 from hyperleg_design.evaluation.result import Evaluation, trial_table
-from hyperleg_design.evaluation.shipped import Shipped, shipped_policies
+from hyperleg_design.evaluation.shipped import Shipped, check_different, shipped_policies
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.learning.campaign import load_campaign
 
@@ -114,9 +114,10 @@ def evaluate_shipped(
         Empty where there is no policy.
 
     Raises:
-        InputError: no such folder, or a policy that cannot be used.
+        InputError: no such folder, a policy that cannot be used, or the same policy twice.
     """
     policies = shipped_policies(folder)
+    check_different(policy.path for policy in policies)
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
     kinds = [
         T_TEST if isinstance(protocol_for(load_policy(p.path)), TTestProtocol) else WALK

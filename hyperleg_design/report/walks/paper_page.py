@@ -16,11 +16,12 @@ from hyperleg_design.report.page import Page, Section
 from hyperleg_design.report.text import table
 from hyperleg_design.report.walks.beside_paper import row_facts, rows_beside_paper
 from hyperleg_design.report.walks.evaluated import Evaluated, evaluate_shipped
+from hyperleg_design.report.walks.planned_part import planned_rows, row_numbers
 from hyperleg_design.report.walks.policy_parts import parts
 from hyperleg_design.writing import check_output_folder, output_folder, write_json, write_text
 
-TABLES, RESULTS = "tables.json", "evaluation"
-"""Rows beside the paper, and the trials' tables, beside the page."""
+TABLES, PLANNED, RESULTS = "tables.json", "planned.json", "evaluation"
+"""Rows beside the paper, outcomes of the analysis plan, and the trials' tables, beside the page."""
 NO_POLICY = (
     "The folder of trainings holds no finished one, so walks and T-tests are not shown; "
     "hyperleg campaign run trains them."
@@ -45,8 +46,8 @@ def run_paper(
 
     Args:
         policies: folder of trainings; the shipped policies by default.
-        out: folder to write, replaced as a whole: `index.html`, figures, `tables.json`, and the
-            trials as Parquet.
+        out: folder to write, replaced as a whole: `index.html`, figures, `tables.json`,
+            `planned.json`, and the trials as Parquet.
         workers: processes; as many as the machine has processors by default.
         progress: show a bar.
         options: further ones of `evaluate_shipped`.
@@ -96,6 +97,10 @@ def policy_parts(found: Evaluated, folder: Path, prefix: str = "") -> list[Any]:
     write_json(
         folder / TABLES,
         {name: [row_facts(row) for row in rows] for name, rows in rows_beside_paper(found).items()},
+    )
+    write_json(
+        folder / PLANNED,
+        {name: [row_numbers(row) for row in rows] for name, rows in planned_rows(found).items()},
     )
     write_results(folder / RESULTS, found.evaluations)
     return parts(found, Drawer(folder, prefix))

@@ -24,6 +24,7 @@ from hyperleg_design.report.walks.beside_paper import (
 )
 from hyperleg_design.report.walks.evaluated import T_TEST, WALK, Evaluated, missing_text
 from hyperleg_design.report.walks.learning_figures import learning_figure
+from hyperleg_design.report.walks.planned_part import planned, planned_rows
 from hyperleg_design.report.walks.t_test_figures import t_test_figure
 from hyperleg_design.report.walks.versus_figures import change_figure
 from hyperleg_design.report.walks.walk_figures import operating_points_figure
@@ -34,6 +35,8 @@ def parts(found: Evaluated, draw: Drawer) -> list[Part]:
     said in the first.
     """
     made = [_what(found)]
+    if planned_rows(found):
+        made.append(planned(found))
     if found.groups(WALK):
         made += [
             walks.walks(found, draw),

@@ -6,6 +6,7 @@ import dataclasses
 
 import pytest
 
+from hyperleg_design.evaluation.analysis_plan import load_plan
 from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Cell, Details, Missing, Picture, Table
 from hyperleg_design.report.pictures import motion
@@ -37,7 +38,7 @@ def flat(content):
 
 def test_every_part_is_there_and_every_figure_drawn(parts):
     folder, content = parts
-    assert len(content) == 9
+    assert len(content) == 10
     pictures = [
         item for some in content.values() for item in flat(some) if isinstance(item, Picture)
     ]
@@ -46,6 +47,18 @@ def test_every_part_is_there_and_every_figure_drawn(parts):
     assert not [
         item for some in content.values() for item in flat(some) if isinstance(item, Missing)
     ]
+
+
+def test_the_plan_gets_a_row_an_outcome_and_says_how_few_trainings_there_are(parts):
+    content = list(flat(parts[1]["What the analysis plan says"]))
+    primary, secondary = (item for item in content if isinstance(item, Table))
+    plan = load_plan()
+    assert (len(primary.rows), len(secondary.rows)) == (len(plan.primary), len(plan.secondary))
+    assert primary.rows[0][0] == "walk: steady cost of transport"
+    assert primary.rows[0][10] == "3, 3"
+    assert "3 of 8 trainings" in " ".join(item for item in content if isinstance(item, str))
+    time = next(row for row in primary.rows if row[0] == "t-test: time")
+    assert time[9] == Cell("not measured", "note")
 
 
 def test_seeds_falls_and_missing_trainings_are_stated(parts):
