@@ -17,7 +17,10 @@ _BASE: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 def read_yaml(path: Path) -> dict[str, Any]:
-    """A YAML mapping.
+    """Read a YAML file that holds a mapping.
+
+    Returns:
+        The mapping, with plain Python values.
 
     Raises:
         InputError: unreadable, malformed (with line), duplicate keys, or no mapping.

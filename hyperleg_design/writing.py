@@ -52,12 +52,12 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> Path:
-    """`write_bytes` of UTF-8 text."""
+    """Write text as UTF-8; otherwise as `write_bytes`."""
     return write_bytes(path, text.encode())
 
 
 def write_json(path: str | os.PathLike[str], content: object) -> Path:
-    """`write_text` of indented JSON.
+    """Write a value as indented JSON; otherwise as `write_text`.
 
     Raises:
         OutputError: as `write_bytes`, or the content holds a number that is not finite, which JSON

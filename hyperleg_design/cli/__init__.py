@@ -39,7 +39,7 @@ class Gap:
     """One of `gap.VERBS`."""
 
     def run(self) -> None:
-        """Run the verb."""
+        """Run the verb of `hyperleg gap` that was chosen."""
         self.verb.run()
 
 

@@ -31,7 +31,7 @@ class Chosen(Printing):
     """YAML file of parameters that differ, applied before --set."""
 
     def load(self) -> RobotDesign:
-        """The design asked for."""
+        """Load the design that the options describe."""
         return load_robot(
             self.design, overrides=self.set, overlays=self.set_file, variant=self.variant or None
         )
@@ -46,7 +46,7 @@ class List(Printing):
     parameters, or all (without measures and parameters)."""
 
     def run(self) -> None:
-        """Print it."""
+        """Print the list."""
         from hyperleg_design.report import listing
 
         found = listing.listing(self.kind)
@@ -66,7 +66,7 @@ class Build(Chosen):
     """Program that needs a further file: isaac, for actuator values in Isaac Lab's terms."""
 
     def run(self) -> None:
-        """Build it."""
+        """Write the files and print their names."""
         from hyperleg_design.robot.build import build
 
         design = self.load()
@@ -95,7 +95,7 @@ class Check(Printing):
     """Files, or names of shipped designs."""
 
     def run(self) -> None:
-        """Check them."""
+        """Check the files, print what is wrong, and exit with 2 where there is an error."""
         from hyperleg_design.report import checking
 
         findings = checking.check_paths(self.paths)
@@ -123,7 +123,7 @@ class Import(Printing):
     """Import although meshes are missing that the file names."""
 
     def run(self) -> None:
-        """Import it."""
+        """Import the file, and print where its limits contradict the motors."""
         from hyperleg_design.robot.build import design_yaml
         from hyperleg_design.robot.importing import import_robot
         from hyperleg_design.writing import write_text
@@ -156,7 +156,7 @@ class Analyze(Chosen):
     """
 
     def run(self) -> None:
-        """Analyse it."""
+        """Analyse the design and print the result."""
         from hyperleg_design.report.text import analysis_text
         from hyperleg_design.report.tree_text import tree_analysis_text
         from hyperleg_design.sizing.analysis import analyze
@@ -193,7 +193,7 @@ class Compare(Printing):
     """With --evaluate: change of the toe that the policies were not trained for."""
 
     def run(self) -> None:
-        """Compare them."""
+        """Compute the measures of all designs and print them side by side."""
         from hyperleg_design.report.sizing import comparison
 
         designs = [
@@ -240,7 +240,7 @@ class Sweep(Printing):
     """Address of a Dask scheduler, such as tcp://host:8786; this process by default."""
 
     def run(self) -> None:
-        """Run it."""
+        """Run the sweep or what is left of it, write its page, and print a summary."""
         from hyperleg_design.report.sweep.page import sweep_report
         from hyperleg_design.report.sweep.trials import evaluated_report
         from hyperleg_design.sweep.jobs import cluster
@@ -280,7 +280,7 @@ class Study(Printing):
     default."""
 
     def run(self) -> None:
-        """Run it."""
+        """Run the study and write its page."""
         from hyperleg_design.report.study.study import run_study
         from hyperleg_design.report.walks.evaluated import coverage, coverage_text
 
@@ -299,7 +299,7 @@ class Version(Printing):
     """Versions of this package and of what it builds on."""
 
     def run(self) -> None:
-        """Print them."""
+        """Print the versions."""
         from importlib.metadata import version
 
         found = {"hyperleg-design": __version__, "content": str(resources.home())}

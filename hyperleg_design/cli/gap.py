@@ -30,7 +30,7 @@ class Check(Printing):
     """Folder to write check.json and the logs as Parquet to."""
 
     def run(self) -> None:
-        """Check them."""
+        """Check the logs and print what they can show."""
         from hyperleg_design.gap.checks.checking import check_sources
         from hyperleg_design.report.gap.text import checks_text
 
@@ -50,7 +50,7 @@ class Effects(Printing):
     """
 
     def run(self) -> None:
-        """Print it."""
+        """Print the catalogue of effects."""
         from hyperleg_design.gap.playback.show import effects_table
         from hyperleg_design.report.gap.show import effects_text
 
@@ -80,7 +80,7 @@ class Show(Printing):
     """Folder of the figure."""
 
     def run(self) -> None:
-        """Draw it."""
+        """Draw the effect and print its summary."""
         from hyperleg_design.gap.playback.show import show
         from hyperleg_design.report.gap.show import show_figure, show_summary, show_text
 
@@ -116,7 +116,7 @@ class Apply(Printing):
     """walk, t_test, or a YAML file; what suits the policy's task by default."""
 
     def run(self) -> None:
-        """Write it."""
+        """Write the overlay, or replay logs and a walk with it."""
         from hyperleg_design.gap.playback import added
         from hyperleg_design.gap.playback.overlay import (
             overlay_of_diagnosis,
@@ -171,7 +171,7 @@ class Measure(Printing):
     """Folder to write gap.json to."""
 
     def run(self) -> None:
-        """Measure."""
+        """Measure the gap and print it."""
         from hyperleg_design.gap.checks.intake import take_in
         from hyperleg_design.gap.playback.measure import measure
         from hyperleg_design.report.gap.text import gap_text
@@ -216,7 +216,7 @@ class Diagnose(Printing):
     error, or the rules that each cause must pass; the usual one by default."""
 
     def run(self) -> None:
-        """Diagnose."""
+        """Diagnose the logs, write the page, and print the answer."""
         from hyperleg_design.report.gap.report import diagnose_to_folder
         from hyperleg_design.report.gap.text import diagnosis_text
 
@@ -264,7 +264,7 @@ class Excite(Printing):
     """Folder to write targets, plan.json and figures to."""
 
     def run(self) -> None:
-        """Design them."""
+        """Design the motions and write them."""
         from hyperleg_design.report.gap.report import excite_to_folder
 
         text = excite_to_folder(
@@ -304,7 +304,7 @@ class Blind(Printing):
     """Folder of the trial."""
 
     def run(self) -> None:
-        """Make and diagnose."""
+        """Make the blind cases and diagnose them."""
         from hyperleg_design.validation.blind.trial import diagnose_trial, make_trial
 
         seal = make_trial(
@@ -335,7 +335,7 @@ class Score(Printing):
     """Read the table of a trial that was scored before."""
 
     def run(self) -> None:
-        """Score."""
+        """Score the diagnoses of a blind trial."""
         from hyperleg_design.validation.blind.score import score
 
         found = score(self.folder, reread=self.reread)
@@ -363,7 +363,7 @@ class Baselines(Printing):
     """Of CMA-ES."""
 
     def run(self) -> None:
-        """Fit them."""
+        """Run the other tools on the cases of a blind trial."""
         from hyperleg_design.validation.baselines.table import baselines_table
 
         table = baselines_table(

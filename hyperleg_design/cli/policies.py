@@ -45,7 +45,7 @@ class Train:
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
 
     def run(self) -> None:
-        """Become the training's process."""
+        """Replace this process by the training."""
         from hyperleg_design.learning import launch
 
         require("torch", "rsl_rl")
@@ -157,7 +157,7 @@ class Evaluate(Printing):
     """Folder to write all trials to as a LeRobot dataset (v3.0); none by default."""
 
     def run(self) -> None:
-        """Evaluate them."""
+        """Evaluate the policies, write the tables, and print the means."""
         from hyperleg_design.evaluation.evaluate import evaluate_many
         from hyperleg_design.evaluation.result import swapped, write_results
         from hyperleg_design.evaluation.shipped import check_different, find_policy
@@ -245,7 +245,7 @@ class Paper(Printing):
     """Processes side by side; as many as the machine has processors by default."""
 
     def run(self) -> None:
-        """Evaluate and write."""
+        """Evaluate the policies and write the page."""
         from hyperleg_design.report.walks.evaluated import coverage, coverage_text
         from hyperleg_design.report.walks.paper_page import read_tables, run_paper, tables_text
 
@@ -277,7 +277,7 @@ class Replay(Printing):
     """Show it in the browser; needs viser."""
 
     def run(self) -> None:
-        """Replay it."""
+        """Simulate one trial, and draw or show it."""
         from hyperleg_design.report.pictures import replay
 
         if (self.gif is None) == (not self.viser):

@@ -43,7 +43,7 @@ class Search(Printing):
     """Address of a Dask scheduler, such as tcp://host:8786; this process by default."""
 
     def run(self) -> None:
-        """Run it."""
+        """Run the search or what is left of it, and print the best designs."""
         from hyperleg_design.report.sweep.search_text import search_text
         from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.search import found_designs, run_search, search_of

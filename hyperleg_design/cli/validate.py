@@ -36,7 +36,7 @@ class Validate(Printing):
     """List the cases instead."""
 
     def run(self) -> None:
-        """Run it."""
+        """Run the benchmark or what is left of it, and print its table."""
         from hyperleg_design.validation.benchmark.runner import chosen_cases, run_benchmark
         from hyperleg_design.validation.real.cases import data_folder
 

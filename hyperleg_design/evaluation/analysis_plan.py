@@ -39,7 +39,7 @@ class Outcome(Checked):
 
     @property
     def name(self) -> str:
-        """Protocol and measure."""
+        """Full name of the outcome: its protocol, a dot, and its measure."""
         return f"{self.protocol}.{self.measure}"
 
 
@@ -79,15 +79,18 @@ class AnalysisPlan(Checked):
 
     @property
     def designs(self) -> tuple[str, ...]:
-        """All arms."""
+        """All arms of the study: the active toe, the compared design and those for attribution."""
         return (self.active, self.compared, *self.attribution)
 
 
 def load_plan(name: str | Path = "analysis_plan") -> AnalysisPlan:
-    """Read an analysis plan.
+    """Read an analysis plan from a shipped file or a file of the user.
 
     Args:
         name: a shipped name, or a YAML file.
+
+    Returns:
+        The validated plan.
 
     Raises:
         InputError: names file, field, value and remedy.

@@ -42,7 +42,7 @@ class FootPad:
 
     @property
     def stiffness(self) -> float:
-        """[N/m]"""
+        """Stiffness of the pad under compression, k = E A / h [N/m]."""
         return self.modulus * self.area / self.thickness
 
     def damping(self, mass: float) -> float:

@@ -45,7 +45,7 @@ class Steps:
 
 
 def stance(load: Any, on: float, off: float, shortest: int = 1) -> np.ndarray:
-    """Whether feet stand.
+    """Find when feet stand on the ground, from the load on them, with hysteresis.
 
     Args:
         load: vertical force [N], `(t, ...)`.

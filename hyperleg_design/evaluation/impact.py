@@ -20,7 +20,7 @@ RATE_FROM, RATE_TO = 0.2, 0.8
 
 @dataclass(frozen=True, eq=False)
 class Impacts:
-    """Of each touchdown, `(k,)`."""
+    """Impacts of one foot: one entry of each array for each touchdown, `(k,)`."""
 
     peak: np.ndarray
     """Largest filtered vertical force within the window [N]."""
@@ -65,7 +65,7 @@ def low_pass(force: Any, time_step: float, cutoff: float, order: int) -> np.ndar
 
 
 def impacts(force: Any, filtered: Any, touchdown: Any, time_step: float, window: float) -> Impacts:
-    """Impacts of one foot.
+    """Measure the impact of each touchdown of one foot.
 
     Args:
         force: vertical force on the foot [N], `(t,)`.
@@ -74,6 +74,9 @@ def impacts(force: Any, filtered: Any, touchdown: Any, time_step: float, window:
             hold are NaN.
         time_step: between samples [s].
         window: after touchdown [s].
+
+    Returns:
+        The impacts in the order of `touchdown`, `(k,)` each.
     """
     force, filtered, downs = (
         np.asarray(force, float),

@@ -111,7 +111,7 @@ def smallest_detectable(standard_error: float, freedom: int, level: float, power
 
 @dataclass(frozen=True)
 class Plateau:
-    """How a curve ends."""
+    """Whether a learning curve has become flat at its end, and how steep it still is."""
 
     gain: float
     """Of the fitted line over the last share, over the magnitude of its mean [-]."""

@@ -91,10 +91,13 @@ class OnnxPolicy:
 
 
 def load_policy(name: str | Path) -> OnnxPolicy:
-    """Read a policy.
+    """Read a trained policy, with all that its file says of its training.
 
     Args:
         name: an ONNX file, or the name of a shipped training, such as `walk-toe-0`.
+
+    Returns:
+        A policy that maps observations to actions and knows its design and task.
 
     Raises:
         InputError: missing, truncated or foreign file, or metadata that does not fit its graph.
@@ -134,7 +137,7 @@ class Scripted:
     """Next row."""
 
     def reset(self, trials: int) -> None:
-        """Begin anew."""
+        """Begin the script anew for all trials."""
         self.step = 0
 
     def __call__(self, observation: np.ndarray) -> np.ndarray:

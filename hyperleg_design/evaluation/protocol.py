@@ -80,7 +80,7 @@ class Steady(Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Protocol(Checked):
-    """What all protocols have."""
+    """The settings that all evaluation protocols share."""
 
     name: str
     trials: Any = number("", 1, MOST_TRIALS, default=10)
@@ -208,10 +208,13 @@ def protocol_names() -> list[str]:
 
 
 def load_protocol(name: str | Path) -> Protocol:
-    """Read a protocol.
+    """Read an evaluation protocol from a shipped file or a file of the user.
 
     Args:
         name: a shipped name, `walk` or `t_test`, or a YAML file.
+
+    Returns:
+        A `WalkProtocol` or a `TTestProtocol`, validated.
 
     Raises:
         InputError: names file, field, value and remedy.

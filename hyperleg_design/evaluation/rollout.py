@@ -100,12 +100,12 @@ class Trial:
 
     @property
     def samples(self) -> int:
-        """In each signal."""
+        """Number of samples in each signal."""
         return len(self.base_position)
 
     @property
     def mass(self) -> float:
-        """Of the robot [kg]."""
+        """Mass of the simulated robot [kg]."""
         return self.layout.weight / GRAVITY
 
     @property
@@ -287,7 +287,10 @@ def one_robot(design: RobotDesign | None, several: str) -> RobotDesign | None:
 
 
 def robots(design: RobotDesign, alterations: Alterations | None) -> int:
-    """Robots of a batch.
+    """Count the robots of a design.
+
+    Returns:
+        The number of robots in the batch; 1 for a single design.
 
     Raises:
         InputError: a batch with alterations, which are made for one robot.

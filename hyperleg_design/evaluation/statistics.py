@@ -194,7 +194,7 @@ def difference(
     resamples: int = RESAMPLES,
     seed: int = 0,
 ) -> Difference:
-    """First less second.
+    """Difference of two means, first less second, with its interval, effect sizes and verdict.
 
     Args:
         first: one array a seed.
@@ -204,6 +204,9 @@ def difference(
         level: of the interval.
         resamples: of the bootstrap.
         seed: of its random numbers.
+
+    Returns:
+        The difference. Its verdict needs at least `FEWEST_SEEDS` seeds on each side.
 
     Raises:
         InputError: no group, unequal numbers of seeds when paired, or a level or number of

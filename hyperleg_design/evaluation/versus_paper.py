@@ -55,13 +55,16 @@ def paper_rows(
     *,
     seed: int = 0,
 ) -> list[PaperRow]:
-    """Printed numbers beside ours.
+    """Put measured numbers beside those that the paper prints.
 
     Args:
         table: of trials, as `result.trial_table` gives it; rows of one protocol.
         printed: such as `paper.TABLE_THREE`.
         variants: with the toe and without it.
         seed: of the bootstrap.
+
+    Returns:
+        One row for each printed number.
 
     Raises:
         InputError: a variant without trials, or a measure that the table does not have.

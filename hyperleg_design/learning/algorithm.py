@@ -110,7 +110,7 @@ def make_algorithm(preset: Preset, environment: Environment, observations: Tenso
 
 
 def make_network(network: Network, observations: TensorDict, kind: str, outputs: int) -> MLPModel:
-    """Actor or critic."""
+    """Make the network of the actor or of the critic."""
     distribution = (
         {"class_name": "GaussianDistribution", "init_std": network.deviation, "std_type": "log"}
         if kind == "actor"

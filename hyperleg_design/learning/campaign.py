@@ -52,7 +52,7 @@ class Run:
 
     @property
     def name(self) -> str:
-        """Name of its folder."""
+        """Name of the folder of this training."""
         return f"{self.group}-{self.design}-{self.seed}"
 
 
@@ -68,7 +68,7 @@ class Campaign:
 
 @dataclass(frozen=True)
 class RunStatus:
-    """Where a training stands."""
+    """How far one training of a campaign is."""
 
     run: Run
     state: str
@@ -82,10 +82,13 @@ class RunStatus:
 
 
 def load_campaign(name: str | Path = "campaign") -> Campaign:
-    """Read a campaign.
+    """Read a campaign from a shipped file or a file of the user.
 
     Args:
         name: a shipped name or a YAML file.
+
+    Returns:
+        The campaign with all of its trainings.
 
     Raises:
         InputError: names file, field, value and remedy; also for a task, design or preset that does

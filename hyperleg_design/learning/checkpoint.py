@@ -19,7 +19,7 @@ FORMAT = "hyperleg-checkpoint-1"
 
 
 def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
-    """Write a checkpoint.
+    """Write a checkpoint as one file, whole or not at all.
 
     Raises:
         OutputError: the disk is full or the place cannot be written; the old file, if any, is

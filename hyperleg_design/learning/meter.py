@@ -28,7 +28,7 @@ class Meter:
         self.clear()
 
     def clear(self) -> None:
-        """Begin an iteration."""
+        """Set the sums of one iteration back to zero."""
         self._terms = np.zeros(len(self.environment.reward_names))
         self._falls = self._ends = self._count = self._looks = 0
         self._speed = 0.0
@@ -83,7 +83,7 @@ class Meter:
         return found
 
     def state(self) -> dict[str, float]:
-        """Running means."""
+        """Running means that a checkpoint keeps, by name."""
         return {"steps": self.steps, "ends": self.ends, "share": self.share}
 
     def put(self, state: dict[str, float]) -> None:

@@ -57,7 +57,7 @@ class Algorithm(Checked):
 
     @property
     def mirrored(self) -> bool:
-        """Whether samples are mirrored."""
+        """Whether the learner uses mirrored samples."""
         return bool(self.mirror != "never")
 
 
@@ -126,7 +126,7 @@ class Stage:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Preset(Checked):
-    """How trainings are run."""
+    """Size, learning algorithm and stages of a training."""
 
     name: str
     simulations: Any = number("", 1, 1e6, default=256)
@@ -155,7 +155,7 @@ class Preset(Checked):
         return int(self.simulations) * int(self.rollout)
 
     def stages(self, task: str) -> tuple[Stage, ...]:
-        """Stages of a task.
+        """Stages of the training for one task.
 
         Raises:
             InputError: the preset has none for it.
@@ -170,7 +170,7 @@ class Preset(Checked):
         return self.tasks[task]
 
     def iterations(self, stage: Stage) -> int:
-        """Iterations of a stage."""
+        """Number of iterations that a stage takes, at least one."""
         return max(1, round(stage.steps / self.steps_per_iteration))
 
     def total_iterations(self, task: str) -> int:
@@ -184,10 +184,13 @@ def preset_names() -> list[str]:
 
 
 def load_preset(name: str | Path) -> Preset:
-    """Read a preset.
+    """Read a training preset from a shipped file or a file of the user.
 
     Args:
         name: a shipped name such as `laptop`, or a YAML file.
+
+    Returns:
+        The validated preset.
 
     Raises:
         InputError: names file, field, value and remedy.

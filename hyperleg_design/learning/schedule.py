@@ -37,7 +37,7 @@ class Schedule:
 
     @property
     def total(self) -> int:
-        """Iterations of all stages."""
+        """Number of iterations of all stages together."""
         return sum(self.preset.iterations(stage) for stage in self.stages)
 
     @property
@@ -55,7 +55,7 @@ class Schedule:
 
     @property
     def stage(self) -> Stage:
-        """The present stage."""
+        """The stage that the next iteration belongs to."""
         return self.stages[self.place[0]]
 
     def apply(self, environment: Environment) -> None:
@@ -95,7 +95,8 @@ class Schedule:
         return found
 
     def advance(self, mean_episode: float, share: float) -> None:
-        """An iteration is done.
+        """Note that one iteration is done, and let the assist decay where the robots do well
+        enough.
 
         Args:
             mean_episode: length of episodes of late [policy steps].
@@ -115,11 +116,11 @@ class Schedule:
         self._update_assist()
 
     def state(self) -> dict[str, Any]:
-        """What `put` needs."""
+        """The state that a checkpoint keeps and that `put` takes back."""
         return {"iteration": self.iteration, "gain": self.gain, "gone": list(self.gone)}
 
     def put(self, state: dict[str, Any]) -> None:
-        """Back to a state."""
+        """Restore a state that `state` returned."""
         self.iteration, self.gain, self.gone = (
             state["iteration"],
             state["gain"],

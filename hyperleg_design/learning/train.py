@@ -151,7 +151,7 @@ def describe(task: Task, design: RobotDesign, seed: int, preset: Preset) -> dict
 
 
 class Training:
-    """A training at work."""
+    """One training: its environment, learner, schedule and files."""
 
     def __init__(
         self,
@@ -268,7 +268,7 @@ class Training:
             return actor.mlp(actor.obs_normalizer(torch.from_numpy(observation))).numpy()
 
     def save(self) -> None:
-        """Write the checkpoint."""
+        """Write a checkpoint with all that the rest of the training depends on."""
         save_checkpoint(
             self.folder / CHECKPOINT,
             {
@@ -287,7 +287,7 @@ class Training:
         )
 
     def line(self, measures: dict[str, Any], left: float) -> str:
-        """One line of progress."""
+        """Describe the latest iteration in one line of text."""
         total = self.schedule.total * self.preset.steps_per_iteration
         terms = " ".join(
             f"{name} {value:+.2f}" for name, value in measures["terms"].items() if value

@@ -31,7 +31,7 @@ _LONG = ("measures", "parameters")
 
 
 def listing(kind: str = "all") -> dict[str, Any]:
-    """Shipped things by kind.
+    """List everything that is shipped, by kind.
 
     Raises:
         InputError: no such kind.

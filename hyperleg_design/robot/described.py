@@ -55,12 +55,12 @@ class RobotDesign:
 
     @property
     def electrical_section(self) -> Any:
-        """Battery and drivers."""
+        """Section on the battery and the drivers."""
         return getattr(self, "electrical")  # noqa: B009
 
     @property
     def contact_section(self) -> Any:
-        """Pads and ground."""
+        """Section on the pads and the ground."""
         return getattr(self, "contact")  # noqa: B009
 
     @property

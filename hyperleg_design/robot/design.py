@@ -75,7 +75,7 @@ def load_design(
     overlays: Iterable[str | Path] = (),
     variant: str | None = None,
 ) -> Design:
-    """Read a design.
+    """Read a design of HyperLeg's family, and apply changes to it.
 
     Args:
         name: a shipped name (`hyperleg`, or an ablation of it such as `toe_removed`) or a YAML

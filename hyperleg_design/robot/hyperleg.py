@@ -60,7 +60,7 @@ class HyperLeg(RobotDesign):
 
     @property
     def copies(self) -> tuple[str, ...]:
-        """The two sides."""
+        """Names of the two sides, which are the two copies of the leg."""
         return SIDES
 
     @property

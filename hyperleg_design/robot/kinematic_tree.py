@@ -23,7 +23,7 @@ class Shape:
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """A rigid link."""
+    """A rigid link of the robot, with its inertia and its shapes."""
 
     name: str
     mass: float
@@ -92,5 +92,5 @@ class Tree:
         return tuple(j for j in self.joints if not j.fixed)
 
     def link(self, name: str) -> Link:
-        """A link by name."""
+        """Find a link by its name."""
         return next(link for link in self.links if link.name == name)

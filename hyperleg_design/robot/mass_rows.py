@@ -28,7 +28,7 @@ SEGMENT_LINKS = {
 
 @dataclass(frozen=True, eq=False)
 class MassRow:
-    """Inertial of one part."""
+    """Mass, centre of mass and inertia of one part, as one row of the mass table."""
 
     kind: str
     """`segment`, `link`, `leg` (`limb` of a tree that is written out) or `robot`."""

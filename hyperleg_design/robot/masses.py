@@ -62,12 +62,12 @@ class MassTable:
 
     @property
     def leg(self) -> Any:
-        """One leg [kg]."""
+        """Mass of one leg [kg], `(...)`."""
         return self.thigh + self.shank + self.foot + self.toe
 
     @property
     def total(self) -> Any:
-        """The robot [kg]."""
+        """Mass of the whole robot [kg], `(...)`."""
         return self.pelvis + 2 * self.leg
 
 

@@ -101,17 +101,17 @@ class Motor:
 
     @property
     def mass(self) -> float:
-        """[kg]"""
+        """Mass of the bare motor, without gear [kg]."""
         return self._value("mass_g") * 1e-3
 
     @property
     def rotor_inertia(self) -> float:
-        """[kg m^2]"""
+        """Inertia of the rotor about its axis [kg m^2]."""
         return self._value("rotor_inertia_g_cm2") * 1e-7
 
     @property
     def rated_torque(self) -> float:
-        """Continuous torque [Nm]."""
+        """Torque that the motor can give continuously [Nm]."""
         return self._value("rated_torque")
 
     @property
@@ -121,12 +121,12 @@ class Motor:
 
     @property
     def nominal_voltage(self) -> float:
-        """[V]"""
+        """Supply voltage for which the no-load speed is stated [V]."""
         return self._value("nominal_voltage")
 
     @property
     def line_resistance(self) -> float:
-        """Line to line [ohm]."""
+        """Resistance of the winding between two lines [ohm]."""
         return self._value("resistance") * (2.0 if self.resistance_convention == "phase" else 1.0)
 
     def power_constant(self, constants: str = "paper") -> float:
@@ -141,7 +141,12 @@ class Motor:
         )
 
     def no_load_speed(self, constants: str = "paper") -> float:
-        """At nominal voltage [rad/s]."""
+        """Speed without load at the nominal voltage [rad/s].
+
+        Args:
+            constants: name of the preset of constants, `paper` or `vendor`; a motor that lacks the
+                preset uses the vendor's constants.
+        """
         preset = self.presets.get(constants)
         return (
             preset["no_load_speed"].value
@@ -150,7 +155,11 @@ class Motor:
         )
 
     def peak_torque(self, constants: str = "paper") -> float:
-        """[Nm]"""
+        """Largest torque of the motor, for a short time [Nm].
+
+        Args:
+            constants: name of the preset of constants, as in `no_load_speed`.
+        """
         preset = self.presets.get(constants)
         return preset["peak_torque"].value if preset is not None else self._value("peak_torque")
 
@@ -210,7 +219,10 @@ class MotorArrays:
 
 
 def load_motor(path: Path) -> Motor:
-    """Read one catalogue file.
+    """Read one file of the motor catalogue.
+
+    Returns:
+        The motor, in SI units.
 
     Raises:
         InputError: names file, field, value and remedy.

@@ -250,7 +250,7 @@ class Transmission(_Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Electrical(_Checked):
-    """Battery and drivers."""
+    """Battery, bus voltage and efficiency of the drivers."""
 
     constants: Any = text("paper", "vendor", default="paper")
     """Motor constants: the paper's preset where a motor has one, or the vendor's."""
@@ -393,7 +393,7 @@ class StopModel(_Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Contact(_Checked):
-    """Sole pads and ground."""
+    """Sole pads and the contact of the pads with the ground."""
 
     friction: Any = number("", 0, 5)
     """Sliding friction coefficient [-]."""

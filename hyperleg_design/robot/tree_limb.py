@@ -86,7 +86,7 @@ def ancestors(design: TreeDesign, link: str) -> list[str]:
 
 
 def descendants(design: TreeDesign, joint: str) -> list[str]:
-    """Links behind a joint."""
+    """Names of all links that a joint moves."""
     return [
         other.child
         for other in design.all_joints.values()

@@ -72,11 +72,11 @@ class Machine:
         )
 
     def joint(self, name: str) -> int:
-        """Place of a joint."""
+        """Index of a joint in all arrays over joints."""
         return self.joints.index(name)
 
     def motor(self, name: str) -> int:
-        """Place of a motor."""
+        """Index of a motor in all arrays over motors."""
         return self.motors.index(name)
 
     def changed(self, field: str, place: int, change: Callable[[np.ndarray], Any]) -> Machine:

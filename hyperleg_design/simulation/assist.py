@@ -42,7 +42,7 @@ class Assist:
 
     @property
     def active(self) -> bool:
-        """Whether it still acts."""
+        """Whether the assist still exerts forces."""
         return self.gain > 0.0
 
     def decay(self) -> None:

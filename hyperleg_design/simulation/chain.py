@@ -201,7 +201,7 @@ class Chain:
         return total
 
     def state(self) -> dict[str, np.ndarray]:
-        """All hidden state, copied."""
+        """Copies of all arrays that the next step depends on, by name."""
         kept = {
             f"{i}.{name}": np.array(getattr(live, name))
             for i, live in enumerate(self.lives)
@@ -210,7 +210,7 @@ class Chain:
         return {"last_torque": self.last_torque.copy(), **kept}
 
     def put_state(self, state: dict[str, np.ndarray]) -> None:
-        """Take back a `state`."""
+        """Restore arrays that `state` returned."""
         self.last_torque = state["last_torque"].copy()
         for i, live in enumerate(self.lives):
             for name in live.kept:

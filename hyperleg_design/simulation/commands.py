@@ -117,7 +117,7 @@ class VelocityCommander:
         self.left = np.zeros(count)
 
     def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> None:
-        """New commands for `ids`."""
+        """Draw new commands for the simulations `ids`."""
         s, count = self.settings, len(ids)
         drawn = np.empty((count, 3))
         drawn[:, 0] = rng.uniform(s.forward_low, s.forward_high, count)
@@ -130,7 +130,7 @@ class VelocityCommander:
         self.left[ids] = s.interval
 
     def judge(self, motion: Motion) -> None:
-        """No waypoints."""
+        """Do nothing: velocity commands have no waypoints that could be reached."""
 
     def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: Random) -> None:
         """New commands where the old ones' time is over."""
@@ -140,7 +140,7 @@ class VelocityCommander:
             self.reset(over, motion, of_rows(rng, over))
 
     def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
-        """Forward, sideways, turning."""
+        """Commanded velocities: forward and sideways [m/s] and turning [rad/s], `(n, 3)`."""
         return self.values.copy() if ids is None else self.values[ids]
 
     def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
@@ -149,7 +149,7 @@ class VelocityCommander:
 
 
 class WaypointCommander:
-    """Waypoints in the world."""
+    """Commands that lead each robot through waypoints in the world."""
 
     def __init__(self, settings: WaypointCommands, count: int) -> None:
         self.settings = settings

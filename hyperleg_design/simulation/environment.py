@@ -212,7 +212,7 @@ class Environment:
 
     @property
     def reward_names(self) -> list[str]:
-        """Columns of `Step.reward_terms`."""
+        """Names of the reward terms, in the order of the columns of `Step.reward_terms`."""
         return list(self.chunks[0].rewards)
 
     @property
@@ -359,7 +359,7 @@ class Environment:
         return _joined([c.signals() for c in self.chunks])
 
     def close(self) -> None:
-        """Let the threads go."""
+        """Stop the threads of the simulation."""
         if self._pool is not None:
             self._pool.shutdown()
 

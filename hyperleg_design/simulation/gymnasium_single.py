@@ -83,7 +83,7 @@ class GymnasiumSingle(gymnasium.Env):  # type: ignore[misc]
         return observations[self.group][0], float(result.reward[0]), terminated, truncated, {}
 
     def close(self) -> None:
-        """Let the simulation go."""
+        """Stop the simulation."""
         self.environment.close()
 
 

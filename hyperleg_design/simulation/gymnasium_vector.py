@@ -46,7 +46,7 @@ class GymnasiumVector(VectorEnv):  # type: ignore[misc]
     def step(
         self, actions: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """One policy step."""
+        """Advance all simulations by one policy step."""
         step = self.environment.step(actions)
         info: dict[str, Any] = {}
         if len(step.ended):
@@ -57,5 +57,5 @@ class GymnasiumVector(VectorEnv):  # type: ignore[misc]
         return step.observations[self.group], step.reward, step.terminated, step.truncated, info
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Let the threads go."""
+        """Stop the threads of the simulation."""
         self.environment.close()

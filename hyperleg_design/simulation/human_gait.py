@@ -83,7 +83,7 @@ def distance(joints: tuple[str, ...], position: np.ndarray, velocity: np.ndarray
 def stride(
     joints: tuple[str, ...], drawn: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """States in mid-stride.
+    """Draw states in the middle of a human stride, for episodes to start from.
 
     Args:
         joints: names with the side in front, `(J,)`.

@@ -86,12 +86,12 @@ class Layout:
 
     @property
     def leg_joints(self) -> int:
-        """Joints of one limb."""
+        """Number of joints of one leg."""
         return len(self.joints) // len(self.limbs)
 
     @property
     def leg_motors(self) -> int:
-        """Motors of one limb."""
+        """Number of motors of one leg."""
         return len(self.motors) // len(self.limbs)
 
     @cached_property

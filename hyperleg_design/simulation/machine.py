@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def machine_of(design: RobotDesign) -> Machine:
-    """Of one robot.
+    """Describe the joints and motors of one robot for the actuation model.
 
     Returns:
         Arrays `(J,)`, `(K,)` and `(J, K)` in the order of `layout_of(design)`.

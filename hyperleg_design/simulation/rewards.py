@@ -40,7 +40,7 @@ class Robot:
 
 @dataclass(frozen=True)
 class Term:
-    """A reward term."""
+    """A reward term: its function, parameters and description."""
 
     name: str
     function: Callable[..., np.ndarray]

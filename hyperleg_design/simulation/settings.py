@@ -25,7 +25,7 @@ class Checked:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Physics(Checked):
-    """How MuJoCo steps."""
+    """Settings of MuJoCo's time steps, contacts and solver."""
 
     time_step: Any = number("s", 1e-5, 0.02, default=0.005)
     """Of the simulation [s]; 200 Hz (paper, Table II)."""
@@ -151,7 +151,7 @@ class Clock(Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Limits(Checked):
-    """What ends an episode."""
+    """Conditions that end an episode."""
 
     height: Any = number("m", 0.0, 3, default=0.55)
     """Pelvis below this has fallen [m]."""

@@ -51,7 +51,12 @@ class Motion:
         return np.einsum("ni,ni->n", self.rotation[:, 2], self.angular_velocity)
 
     def put(self, ids: np.ndarray, other: Motion) -> None:
-        """Overwrite some simulations' rows."""
+        """Overwrite the rows of some simulations with rows of another state.
+
+        Args:
+            ids: indices of the simulations to overwrite, `(k,)`.
+            other: the new rows, `(k, ...)` each.
+        """
         for field in fields(self):
             getattr(self, field.name)[ids] = getattr(other, field.name)
 
@@ -80,7 +85,12 @@ class Goal:
     """Whether this step reached the last waypoint of a course, `(n,)`."""
 
     def put(self, ids: np.ndarray, other: Goal) -> None:
-        """Overwrite some simulations' rows."""
+        """Overwrite the rows of some simulations with rows of other goals.
+
+        Args:
+            ids: indices of the simulations to overwrite, `(k,)`.
+            other: the new rows, `(k, ...)` each.
+        """
         for field in fields(self):
             getattr(self, field.name)[ids] = getattr(other, field.name)
 

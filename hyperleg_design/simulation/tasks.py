@@ -163,10 +163,13 @@ class Task:
 
 
 def load_task(name: str | Path) -> Task:
-    """Read a task.
+    """Read a task from a shipped file or a file of the user.
 
     Args:
         name: a shipped name such as `walk`, or a YAML file.
+
+    Returns:
+        The validated task.
 
     Raises:
         InputError: names file, field, value and remedy.

@@ -26,7 +26,7 @@ class ThermalState:
         """Of the relative torque, squared or not, `(n, K)`."""
 
     def reset(self, ids: np.ndarray) -> None:
-        """Cold motors."""
+        """Let the motors of the simulations `ids` start cold."""
         self.average[ids] = 0.0
 
     @property

@@ -32,7 +32,7 @@ BELOW_HIP = slice(3, None)
 
 
 def analyze(design: RobotDesign) -> dict[str, Any]:
-    """Analyse one design.
+    """Analyse one design: masses, reductions, torques, speeds, reflected inertia and envelope.
 
     Args:
         design: one robot; batches are refused.

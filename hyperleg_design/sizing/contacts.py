@@ -18,7 +18,7 @@ HEEL, BALL, TIP = "heel", "ball", "tip"
 
 @dataclass(frozen=True)
 class Pad:
-    """One spherical pad."""
+    """One spherical contact pad of a foot."""
 
     name: str
     """`left_heel_0` and the like."""

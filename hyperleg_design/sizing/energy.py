@@ -72,7 +72,7 @@ class EnergyLedger:
 
     @property
     def duration(self) -> float:
-        """[s]"""
+        """Duration of the motion [s]."""
         return self.time_step * self.joule.shape[-2]
 
     def residual(self) -> np.ndarray:
@@ -126,7 +126,9 @@ class EnergySums:
 
     @property
     def mechanical(self) -> np.ndarray:
-        """Signed."""
+        """Net mechanical energy given to the joints [J]; negative where the motors braked more than
+        they drove.
+        """
         return self.mechanical_positive + self.mechanical_negative
 
     @property
@@ -141,11 +143,11 @@ class EnergySums:
 
     @property
     def battery(self) -> np.ndarray:
-        """Drawn less returned."""
+        """Energy drawn from the battery less the energy returned to it [J]."""
         return self.drawn - self.returned
 
     def total(self) -> EnergySums:
-        """Summed over motors, `(...)`."""
+        """The same sums over all motors, `(...)` each."""
         return EnergySums(**{name: np.asarray(value).sum(-1) for name, value in vars(self).items()})
 
     def residual(self) -> np.ndarray:

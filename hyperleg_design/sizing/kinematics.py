@@ -132,7 +132,7 @@ def check_range(design: Design, side: str, angles: np.ndarray, tolerance: float 
 
 
 def has_toe_joint(design: Design) -> bool:
-    """Whether the toe moves."""
+    """Whether the toe can move in its joint."""
     return len(joint_names(design)) == len(JOINTS)
 
 

@@ -48,7 +48,7 @@ class Margin:
 
 
 def margin(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, torque: np.ndarray) -> Margin:
-    """Margins of joint torques.
+    """Distance of joint torques from the limits of the motors.
 
     Args:
         matrix: `(..., joints, motors)` [-].

@@ -80,7 +80,7 @@ class Description:
 
 @dataclass(frozen=True, eq=False)
 class OtherRobot:
-    """Measures of one robot."""
+    """Measures of one published robot, for comparison."""
 
     source: RobotSource
     leg: LegInertia

@@ -42,7 +42,7 @@ class Polyhedron:
 
     @property
     def volume(self) -> float:
-        """[Nm^3]"""
+        """Volume of the body [Nm^3]."""
         a, b, c = np.moveaxis(self.vertices[self.triangles], 1, 0)
         return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 

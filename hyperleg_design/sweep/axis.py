@@ -22,7 +22,7 @@ _MAX_STEPS = 100_000
 
 @dataclass(frozen=True)
 class Axis:
-    """One independent variable."""
+    """One independent variable of a sweep, which may set several parameters together."""
 
     name: str
     """Its column in the table."""
@@ -76,7 +76,7 @@ class Axis:
         return found
 
     def to_mapping(self) -> dict[str, Any]:
-        """As plain values."""
+        """The axis as plain values, as JSON and YAML take them."""
         plain = {"paths": list(self.paths), "scaled": self.scaled, "unit": self.unit}
         if self.levels:
             return {**plain, "values": np.asarray(self.levels).tolist()}

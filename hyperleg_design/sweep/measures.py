@@ -50,7 +50,7 @@ class Batch:
 
     @cached_property
     def masses(self) -> masses.MassTable:
-        """Segment masses."""
+        """Masses of the segments of all designs."""
         return masses.mass_table(self.design)
 
     @cached_property
@@ -75,12 +75,12 @@ class Batch:
 
     @cached_property
     def squat(self) -> StaticLoad:
-        """The squat of `reference_loads`."""
+        """The squat of `reference_loads`, for all designs."""
         return reference_loads.squat(self.design, self.inertials)
 
     @cached_property
     def push_off(self) -> StaticLoad:
-        """The push-off of `reference_loads`."""
+        """The push-off of `reference_loads`, for all designs."""
         return reference_loads.push_off(self.design, self.inertials)
 
     def below_hip(self) -> tuple[np.ndarray, np.ndarray]:
@@ -195,13 +195,13 @@ def evaluate(design: RobotDesign, names: Iterable[str] | None = None) -> dict[st
 
 @measure("kg", "low", trees=True)
 def total_mass(batch: Batch) -> np.ndarray:
-    """Mass of the robot."""
+    """Mass of the whole robot."""
     return np.asarray(dimensions.total_mass(batch.design))
 
 
 @measure("kg", "low", trees=True)
 def leg_mass(batch: Batch) -> np.ndarray:
-    """Mass of one leg."""
+    """Mass of a single leg."""
     return np.asarray(dimensions.limb_mass(batch.design))
 
 

@@ -36,7 +36,7 @@ class Entry:
 
     @property
     def of_trial(self) -> str:
-        """Name that `evaluate` prints."""
+        """Name of the measure in a single trial, as `hyperleg evaluate` prints it."""
         return self.name.split(".", 1)[1] if self.protocol else self.name
 
 
@@ -56,12 +56,15 @@ def entries() -> dict[str, Entry]:
 
 
 def resolve(name: str, protocols: Sequence[str] = (), where: str = "measures") -> Entry:
-    """A measure by name.
+    """Find a measure by its full name or by its name in a trial.
 
     Args:
         name: full, or that of a trial alone.
         protocols: that are run.
         where: for messages.
+
+    Returns:
+        The entry of the registry.
 
     Raises:
         InputError: no such measure, one of a protocol that is not run, or one of several.

@@ -47,7 +47,7 @@ PACKAGES = ("hyperleg-design", "numpy", "scipy", "pyarrow")
 
 @dataclass(frozen=True, eq=False)
 class SweepResult:
-    """A finished sweep."""
+    """A finished sweep and where its files are."""
 
     sweep: Sweep
     folder: Path
@@ -55,7 +55,7 @@ class SweepResult:
 
     @property
     def table_path(self) -> Path:
-        """The Parquet table."""
+        """Path of the table with one row for each design."""
         return self.folder / TABLE
 
     def columns(self, names: list[str] | None = None) -> Columns:

@@ -91,7 +91,7 @@ def usual_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
 
 @dataclass(frozen=True)
 class Search:
-    """What is looked for."""
+    """Space, objectives and constraints of a search."""
 
     sweep: Sweep
     """Its axes are the space; its grid or samples are not used."""

@@ -163,7 +163,7 @@ class Sweep:
         }
 
     def digest(self) -> str:
-        """Fingerprint of `to_mapping`."""
+        """SHA-256 of `to_mapping`, which tells two definitions apart."""
         return hashlib.sha256(json.dumps(self.to_mapping(), sort_keys=True).encode()).hexdigest()
 
 
@@ -196,7 +196,7 @@ def _positions(sampling: str, count: int, dimensions: int, rng: np.random.Genera
 
 
 def load_sweep(name: str | Path, *, overrides: Mapping[str, Any] | None = None) -> Sweep:
-    """Read a sweep.
+    """Read a sweep from a shipped file or a file of the user.
 
     Args:
         name: a shipped name such as `reduction_ratios`, or a YAML file.

@@ -18,7 +18,7 @@ _SHOWN_FRONT = 200
 
 
 def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
-    """Summary of a table.
+    """Summarise the table of a finished sweep.
 
     Returns:
         `description`, `seed`, `sampling`, `samples`, `designs`, `rejected`, `rejected_because`

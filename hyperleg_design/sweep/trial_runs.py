@@ -100,7 +100,7 @@ def plan(
 
 
 def kind_of(protocol: Protocol) -> str:
-    """`walk` or `t_test`."""
+    """Kind of a protocol: `walk` or `t_test`."""
     return str(protocol_mapping(protocol)["kind"])
 
 

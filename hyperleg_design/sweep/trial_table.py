@@ -58,7 +58,7 @@ _Z = 1.96
 
 
 def design_table(sweep: Sweep, trials: pd.DataFrame, columns: Mapping[str, Any]) -> pd.DataFrame:
-    """One row a design.
+    """Summarise the trials of each design in one row.
 
     Args:
         sweep: the definition.

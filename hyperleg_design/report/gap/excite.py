@@ -25,7 +25,7 @@ MOST_NAMED = 8
 
 
 def plan_text(experiment: Experiment) -> str:
-    """The plan for people."""
+    """Describe an experiment in text for a terminal."""
     subject, blocks = experiment.subject, experiment.blocks
     measured = "motor torque measured" if experiment.torque else "no torque measured"
     lines = [

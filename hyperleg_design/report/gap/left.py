@@ -32,7 +32,7 @@ class Friction:
     """Of the mean square that it explains."""
 
     def sentence(self, joint: str) -> str:
-        """For people."""
+        """Describe the remaining friction of a joint in one sentence."""
         return (
             f"Left at {joint}: a torque that goes with its speed as plain friction does: "
             f"{self.constant:.2g} Nm and {self.viscous:.2g} Nms/rad explain "

@@ -75,7 +75,7 @@ def show_summary(shown: Shown) -> dict[str, Any]:
 
 
 def show_text(summary: Mapping[str, Any]) -> str:
-    """`show_summary` for people."""
+    """Lay out what `show_summary` returns as text for a terminal."""
     values = ", ".join(
         f"{name} {v['value']:.4g} {v['unit']}".rstrip() for name, v in summary["parameters"].items()
     )

@@ -58,7 +58,7 @@ class Solid:
 
 @dataclass(frozen=True)
 class Scene:
-    """What one picture shows."""
+    """The bodies, lines, labels and camera of one picture."""
 
     solids: tuple[Solid, ...] = ()
     lines: tuple[tuple[np.ndarray, np.ndarray, str, float], ...] = ()

@@ -82,7 +82,7 @@ def replay_gif(found: Evaluation, path: str | Path) -> Path:
 
 
 def check_browser() -> None:
-    """Whether viser is installed.
+    """Check that viser, which shows a replay in the browser, is installed.
 
     Raises:
         InputError: it is not.

@@ -147,7 +147,7 @@ def motor_rows(names: tuple[str, ...] = ("U10", "RI70", "RI60")) -> list[Row]:
 
 
 def compare(designs: Sequence[RobotDesign], *, demand: bool = False) -> dict[str, Any]:
-    """Designs beside each other.
+    """Compute the same measures for several designs, to be compared side by side.
 
     Args:
         designs: at least one, each a single robot.

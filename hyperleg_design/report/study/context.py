@@ -16,7 +16,7 @@ FIGURES = "figures"
 
 @dataclass(frozen=True)
 class Context:
-    """What every section gets."""
+    """What every section of the study is made from: the designs and the folder of the page."""
 
     design: Design
     variants: dict[str, Design]

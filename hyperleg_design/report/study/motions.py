@@ -19,7 +19,7 @@ MOTIONS = ("walk", "stair", "squat", "hop")
 
 
 def capability(context: Context) -> Made:
-    """The largest contact forces."""
+    """Section on the largest forces that the feet can exert on the ground."""
     from hyperleg_design.sizing.capability import capability_table
 
     upright = [

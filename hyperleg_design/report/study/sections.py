@@ -31,7 +31,7 @@ LEAD = (
 
 
 def robot(context: Context) -> Made:
-    """Pictures and variants."""
+    """Section with pictures of the robot and its variants."""
     found = analyze(context.design)
     write_json(context.folder / "analysis.json", found)
     design = context.design
@@ -348,7 +348,7 @@ def sweeps(context: Context) -> Made:
 
 
 def motors(context: Context) -> Made:
-    """The catalogue."""
+    """Section on the motors of the catalogue."""
     from hyperleg_design.robot.motors import catalogue
 
     rows = []
@@ -405,7 +405,7 @@ def motors(context: Context) -> Made:
 
 
 def made_from(context: Context) -> Made:
-    """Parameters with their labels."""
+    """Section that lists all parameters with their labels and sources."""
     design = context.design
     labels: dict[str, int] = {}
     rows = []

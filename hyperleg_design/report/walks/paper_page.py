@@ -134,7 +134,7 @@ def read_tables(out: str | Path) -> dict[str, list[dict[str, Any]]]:
 
 
 def tables_text(tables: dict[str, list[dict[str, Any]]]) -> str:
-    """`tables.json` for a terminal."""
+    """Lay out the content of `tables.json` as text for a terminal."""
     if not tables:
         return "no policies of both of the paper's robots: no table to put beside the paper's"
     texts = []

@@ -91,7 +91,7 @@ def walks(found: Evaluated, draw: Drawer) -> Part:
 
 
 def table_three(found: Evaluated, draw: Drawer) -> Part:
-    """Table III."""
+    """Part of the page with Table III: walking, measured beside printed numbers."""
     content: list[Any] = [
         "The paper's numbers beside ours: twenty metres at 1.33 m/s. Ablation: toe and its motor removed at equal mass (toe_removed_matched), which fits the ratios of the table best. "
         "A printed number agrees where it lies in our interval."
@@ -178,7 +178,7 @@ def confound(found: Evaluated, draw: Drawer) -> Part:
 
 
 def cycle(found: Evaluated, draw: Drawer) -> Part:
-    """Fig. 6."""
+    """Part of the page with Figure 6: power over the gait cycle."""
     content: list[Any] = []
     for group in found.groups(WALK):
         walks = {d: found.of(group, d) for d in found.designs(group) if d in VARIANTS}

@@ -35,7 +35,7 @@ REST: State = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, eq=False)
 class FootPath:
-    """One foot over time."""
+    """Motion of one foot over time, with rates and accelerations."""
 
     position: np.ndarray
     """Of the ankle in the world, with rate and acceleration [m, m/s, m/s^2], `(3, n, 3)`."""

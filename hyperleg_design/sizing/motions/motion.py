@@ -68,12 +68,12 @@ class Motion:
 
     @property
     def time_step(self) -> float:
-        """[s]"""
+        """Time between two samples [s]."""
         return float(self.time[1] - self.time[0])
 
     @property
     def duration(self) -> float:
-        """[s]"""
+        """Duration of the motion; of one period where it is periodic [s]."""
         return (
             float(len(self.time) * self.time_step)
             if self.periodic
