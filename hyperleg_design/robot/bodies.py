@@ -15,11 +15,11 @@ class Inertial:
     """
 
     mass: np.ndarray
-    """[kg] `(...)`"""
+    """Mass [kg], `(...)`."""
     com: np.ndarray
     """Centre of mass [m] `(..., 3)`."""
     inertia: np.ndarray
-    """About the centre of mass [kg m^2] `(..., 3, 3)`."""
+    """Inertia about the centre of mass [kg m^2], `(..., 3, 3)`."""
 
 
 def shifted(mass: Any, offset: np.ndarray) -> np.ndarray:

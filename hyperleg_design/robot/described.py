@@ -76,7 +76,7 @@ class RobotDesign:
 
     @property
     def batch_shape(self) -> tuple[int, ...]:
-        """`()` for one robot, `(n,)` for a batch."""
+        """Shape of the batch: `()` for one robot, `(n,)` for `n` robots."""
         sizes = self.batch_sizes().values()
         return (max(sizes),) if sizes else ()
 

@@ -26,11 +26,11 @@ class FileLink:
     """A link of the file, in its own frame."""
 
     mass: float
-    """[kg]"""
+    """Mass [kg]."""
     com: np.ndarray
-    """[m] `(3,)`"""
+    """Centre of mass in the link's frame [m], `(3,)`."""
     inertia: np.ndarray
-    """About the centre of mass, axes of the link [kg m^2] `(3, 3)`."""
+    """Inertia about the centre of mass, in the axes of the link [kg m^2], `(3, 3)`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,18 +42,18 @@ class FileJoint:
     parent: str
     child: str
     position: np.ndarray
-    """Of the child's frame in the parent's [m] `(3,)`."""
+    """Position of the child's frame in the parent's [m], `(3,)`."""
     turn: np.ndarray
     """Roll, pitch and yaw of the child's frame in the parent's [rad] `(3,)`."""
     axis: np.ndarray
     lower: float
-    """[rad]"""
+    """Lower end of the range of motion [rad]."""
     upper: float
-    """[rad]"""
+    """Upper end of the range of motion [rad]."""
     coulomb: float = 0.0
-    """[Nm]"""
+    """Coulomb friction [Nm]."""
     viscous: float = 0.0
-    """[Nm s/rad]"""
+    """Viscous friction [Nm s/rad]."""
     effort: float = math.nan
     """Largest torque that the file states [Nm]; nan where it states none."""
     velocity: float = math.nan

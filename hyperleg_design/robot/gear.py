@@ -52,11 +52,11 @@ class GearChange:
     """Changes against the reference build, of one leg of a design or batch."""
 
     rotor_inertia: Any = 0.0
-    """At each motor's rotor [kg m^2], `(..., 7)`."""
+    """Additional inertia at the rotor of each motor [kg m^2], `(..., 7)`."""
     load_torque: Any = 0.0
     """Coulomb torque at each joint that stands for the loss under load [Nm], `(..., 7)`."""
     stage_mass: Mapping[str, Any] = field(default_factory=dict)
-    """Of the stage of each joint of `STAGE_PLACES` [kg], `(...)`."""
+    """Additional mass of the stage of each joint of `STAGE_PLACES` [kg], `(...)`."""
 
 
 Law = Callable[["HyperLeg"], GearChange]

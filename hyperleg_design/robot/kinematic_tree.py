@@ -16,9 +16,9 @@ class Shape:
     kind: str
     """`box` (full sizes), `cylinder` (radius, length, along z) or `sphere` (radius)."""
     size: tuple[float, ...]
-    """[m]"""
+    """Dimensions of the shape [m]."""
     position: tuple[float, float, float]
-    """Of the centre [m]."""
+    """Position of the centre in the link's frame [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +27,11 @@ class Link:
 
     name: str
     mass: float
-    """[kg]; zero only for a link fixed to another."""
+    """Mass [kg]; zero only for a link that is fixed to another."""
     com: np.ndarray
     """Centre of mass [m] `(3,)`."""
     inertia: np.ndarray
-    """About the centre of mass [kg m^2] `(3, 3)`."""
+    """Inertia about the centre of mass [kg m^2], `(3, 3)`."""
     visuals: tuple[Shape, ...]
     pads: tuple[Shape, ...] = ()
     """Spheres that touch the ground."""
@@ -45,21 +45,21 @@ class TreeJoint:
     parent: str
     child: str
     position: tuple[float, float, float]
-    """Of the child's frame in the parent's [m]."""
+    """Position of the child's frame in the parent's [m]."""
     axis: tuple[float, float, float]
     fixed: bool
     lower: float
-    """[rad]"""
+    """Lower end of the range of motion [rad]."""
     upper: float
-    """[rad]"""
+    """Upper end of the range of motion [rad]."""
     effort: float
     """Largest torque [Nm]."""
     velocity: float
     """No-load speed [rad/s]."""
     coulomb: float
-    """[Nm]"""
+    """Coulomb friction [Nm]."""
     viscous: float
-    """[Nm s/rad]"""
+    """Viscous friction [Nm s/rad]."""
     default: float
     """Posture to which actions are added [rad]."""
     turn: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -80,7 +80,7 @@ class Tree:
     floating: bool = True
     """Whether the root link moves freely; it stands still otherwise."""
     height: float = 0.0
-    """Of a root link that stands still, above the floor [m]."""
+    """Height of a fixed root link above the floor [m]."""
     limbs: tuple[str, ...] = ("left", "right")
     """Names of the copies of the limb; one empty name where the robot is written out whole."""
     hyperleg: bool = True

@@ -36,7 +36,7 @@ class MassRow:
     count: int
     """How many of it the robot has."""
     mass: float
-    """Of one [kg]."""
+    """Mass of a single part of this kind [kg]."""
     com: np.ndarray
     """Centre of mass [m] `(3,)`: of a link or segment from its upper joint, of leg and robot from
     the pelvis's origin."""

@@ -65,7 +65,7 @@ class RigidBodyModel:
         return np.array(pin.rnea(self.model, self.data, q, v, a)) + self.reflected @ a
 
     def center_of_mass(self, q: np.ndarray) -> np.ndarray:
-        """In the world [m], `(3,)`."""
+        """Position of the centre of mass in the world [m], `(3,)`."""
         import pinocchio as pin
 
         return np.array(pin.centerOfMass(self.model, self.data, q))
@@ -99,7 +99,7 @@ class RigidBodyModel:
     def to_mujoco(
         self, q: np.ndarray, v: np.ndarray | None = None, a: np.ndarray | None = None
     ) -> tuple[np.ndarray, ...]:
-        """The same state in MuJoCo's coordinates: quaternion w first, linear velocity and
+        """Convert a state to MuJoCo's coordinates: quaternion with w first, linear velocity and
         acceleration of the base in the world.
         """
         state = [q.copy()]

@@ -68,7 +68,7 @@ class Constant:
     """One published or estimated number."""
 
     value: float
-    """In the unit that its field name states."""
+    """Number in the unit that the name of the field states."""
     label: str
     """One of `parameters.LABELS`."""
     source: str
@@ -116,7 +116,9 @@ class Motor:
 
     @property
     def torque_constant(self) -> float:
-        """As published, see `current_convention` [Nm/A]."""
+        """Torque constant as the vendor publishes it [Nm/A]; `current_convention` says which
+        current it divides by.
+        """
         return self._value("torque_constant")
 
     @property
@@ -203,19 +205,19 @@ class MotorArrays:
     """
 
     no_load_speed: np.ndarray
-    """At the design's bus voltage [rad/s]."""
+    """No-load speed at the design's bus voltage [rad/s]."""
     stall_torque: np.ndarray
-    """At the design's bus voltage [Nm]."""
+    """Stall torque at the design's bus voltage [Nm]."""
     peak_torque: np.ndarray
-    """[Nm]"""
+    """Peak torque [Nm]."""
     rated_torque: np.ndarray
-    """[Nm]"""
+    """Continuous torque [Nm]."""
     power_constant: np.ndarray
-    """[W/Nm^2]"""
+    """Winding heat over squared torque [W/Nm^2]."""
     rotor_inertia: np.ndarray
-    """[kg m^2]"""
+    """Inertia of the rotor [kg m^2]."""
     mass: np.ndarray
-    """[kg]"""
+    """Mass of the bare motor [kg]."""
 
 
 def load_motor(path: Path) -> Motor:

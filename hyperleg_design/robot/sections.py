@@ -23,7 +23,7 @@ class Pelvis(_Checked):
     mass: Any = number("kg", 0.1, 200)
     """Mass [kg]."""
     height: Any = number("m", 0.02, 2)
-    """From the hip-pitch axis to the top [m]."""
+    """Height from the hip-pitch axis to the top [m]."""
     depth: Any = number("m", 0.02, 1)
     """Front to back, of the drawn box [m]."""
     width: Any = number("m", 0.02, 1)
@@ -41,7 +41,7 @@ class Hip(_Checked):
     """
 
     spacing: Any = number("m", 0.02, 1)
-    """Between the two hip centres [m]."""
+    """Distance between the two hip centres [m]."""
     yaw_carrier_mass: Any = number("kg", 1e-3, 20)
     """Part that turns with yaw only [kg], counted in the thigh's mass."""
     roll_carrier_mass: Any = number("kg", 1e-3, 20)
@@ -57,7 +57,7 @@ class Segment(_Checked):
     mass: Any = number("kg", 0.01, 50)
     """Mass with the reference build's actuators [kg]."""
     length: Any = number("m", 0.05, 2)
-    """Between its joints [m]."""
+    """Distance between its two joints [m]."""
     com_fraction: Any = number("", 0, 1)
     """Distance of the centre of mass below the upper joint, over the length [-]."""
     com_forward: Any = number("m", -0.5, 0.5)
@@ -67,12 +67,12 @@ class Segment(_Checked):
     gyration_fraction: Any = number("", 0.01, 1, size=3)
     """Radii of gyration over the length, about x, y, z through the centre of mass [-]."""
     radius: Any = number("m", 0.005, 0.3)
-    """Of the drawn capsule [m]."""
+    """Radius of the drawn capsule [m]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Foot(_Checked):
-    """From the ankle to the toe axis; pitch and roll axes of the ankle intersect."""
+    """The foot, from the ankle to the toe axis; pitch and roll axes of the ankle intersect."""
 
     mass: Any = number("kg", 0.01, 20)
     """Mass with the ankle's cross [kg]."""
@@ -87,7 +87,7 @@ class Foot(_Checked):
     ball_length: Any = number("m", 0.01, 0.6)
     """Toe axis ahead of the ankle axis [m]."""
     width: Any = number("m", 0.01, 0.5)
-    """Of the sole [m]."""
+    """Width of the sole [m]."""
     com: Any = number("m", -0.5, 0.5, size=3)
     """Centre of mass from the ankle [m], y outward."""
     gyration: Any = number("m", 0.001, 0.5, size=3)
@@ -103,9 +103,10 @@ class Toe(_Checked):
     joint: Any = text("active", "locked", "passive", default="active")
     """`active`, `locked` straight to the foot, or `passive`: a spring and a damper, no motor."""
     stiffness: Any = number("Nm/rad", 0, 1000, default=15.0)
-    """Of the spring of a passive toe, which rests at the joint's default posture [Nm/rad]."""
+    """Stiffness of the spring of a passive toe, which rests at the joint's default posture
+    [Nm/rad]."""
     damping: Any = number("Nm s/rad", 0, 50, default=0.3)
-    """Of the damper of a passive toe, added to the joint's viscous friction [Nm s/rad]."""
+    """Damping of a passive toe, added to the joint's viscous friction [Nm s/rad]."""
     length: Any = number("m", 0.005, 0.3)
     """Tip ahead of the toe axis [m]."""
     axis_height: Any = number("m", 0.002, 0.2)
@@ -204,15 +205,16 @@ class LinkageScale(_Checked):
     """
 
     knee: Any = number("", 0.05, 20, default=1.0)
-    """On the knee's [-]."""
+    """Factor on the reductions of the knee [-]."""
     ankle_pitch: Any = number("", 0.05, 20, default=1.0)
-    """On ankle pitch over the ankle motors [-]."""
+    """Factor on the reductions from the ankle motors to ankle pitch [-]."""
     ankle_roll: Any = number("", 0.05, 20, default=1.0)
-    """On ankle roll [-]."""
+    """Factor on the reductions of ankle roll [-]."""
     toe_ankle_pitch: Any = number("", 0, 20, default=1.0)
-    """On ankle pitch over the toe motor [-]; zero decouples the toe motor from the ankle."""
+    """Factor on the reduction from the toe motor to ankle pitch [-]; zero decouples the toe motor
+    from the ankle."""
     toe: Any = number("", 0.05, 20, default=1.0)
-    """On the toe's [-]."""
+    """Factor on the reduction of the toe [-]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -226,9 +228,9 @@ class Linkage(_Checked):
     crank_length: Any = number("m", 0.005, 0.2)
     """Crank of each four-bar [m]; only its ratio to the other bars matters."""
     ankle_ground_length: Any = number("m", 0.02, 1)
-    """Between the axes of the shank's four-bars, knee to ankle [m]."""
+    """Distance between the axes of the shank's four-bars, knee to ankle [m]."""
     toe_ground_length: Any = number("m", 0.02, 0.5)
-    """Between the axes of the foot's four-bar, ankle to toe [m]."""
+    """Distance between the axes of the foot's four-bar, ankle to toe [m]."""
     toe_crank_deg: Any = number("deg", -60, 60)
     """Angle of the foot's crank from the perpendicular to its ground bar, standing [deg]."""
     idler_limit_deg: Any = number("deg", 20, 90)
@@ -257,9 +259,9 @@ class Electrical(_Checked):
     voltage_ratio: Any = number("", 0.2, 3, default=1.0)
     """Bus voltage over the voltage of the motors' no-load speeds [-]."""
     efficiency_out: Any = number("", 0.05, 1)
-    """Of the driver, battery to motor [-]."""
+    """Efficiency of the driver from battery to motor [-]."""
     efficiency_regen: Any = number("", 0, 1)
-    """Of the driver, motor to battery [-]."""
+    """Efficiency of the driver from motor to battery [-]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -317,17 +319,17 @@ class ReferenceBuild(_Checked):
     ankle_motor: Any = text()
     toe_motor: Any = text()
     hip_gear: Any = number("", 1, 500)
-    """[-]"""
+    """Reduction of the gears of the hip motors [-]."""
     knee_gear: Any = number("", 1, 500)
-    """[-]"""
+    """Reduction of the gear of the knee motor [-]."""
     ankle_gear: Any = number("", 1, 500)
-    """[-]"""
+    """Reduction of the gears of the ankle motors [-]."""
     toe_gear: Any = number("", 1, 500)
-    """[-]"""
+    """Reduction of the gear of the toe motor [-]."""
     thigh_length: Any = number("m", 0.05, 2)
-    """[m]"""
+    """Length of the thigh [m]."""
     shank_length: Any = number("m", 0.05, 2)
-    """[m]"""
+    """Length of the shank [m]."""
     places: Places
     transmission: ReferenceTransmission = field(default_factory=ReferenceTransmission)
 
@@ -383,9 +385,10 @@ class StopModel(_Checked):
     """
 
     time_constant: Any = number("s", 0.0005, 0.2, default=0.02)
-    """Of the stop's spring and damper [s]; MuJoCo holds it at two simulation steps or more."""
+    """Time constant of the stop's spring and damper [s]; MuJoCo keeps it at two simulation steps or
+    more."""
     damping_ratio: Any = number("", 0.05, 5, default=1.0)
-    """Of the stop's spring and damper [-]."""
+    """Damping ratio of the stop's spring and damper [-]."""
     impedance: Any = number("", 0.5, 0.9999, default=0.95)
     """MuJoCo's impedance d of a stop under load [-]: the spring's rest penetration under a steady
     load falls in proportion to 1 - d."""
@@ -400,8 +403,8 @@ class Contact(_Checked):
     torsional_friction: Any = number("m", 0, 0.5)
     """Torsional friction coefficient [m]."""
     pad_radius: Any = number("m", 0.002, 0.1)
-    """Of the spherical sole pads [m]."""
+    """Radius of the spherical sole pads [m]."""
     time_constant: Any = number("s", 0.001, 0.2)
-    """Of the contact spring and damper [s]."""
+    """Time constant of the contact's spring and damper [s]."""
     damping_ratio: Any = number("", 0.05, 5)
-    """Of the contact spring and damper [-]."""
+    """Damping ratio of the contact's spring and damper [-]."""

@@ -227,12 +227,12 @@ class LimbMasses:
     """Masses of a robot with its tree written out [kg], each `(...)`."""
 
     trunk: Any
-    """Of the root link."""
+    """Mass of the root link [kg]."""
     limb: Any
-    """Of one limb: all that is not the root link."""
+    """Mass of one limb, which is all but the root link [kg]."""
     total: Any
     links: Mapping[str, Inertial]
-    """Of the root link and of one unmirrored limb, in their own frames."""
+    """Inertials of the root link and of one unmirrored limb, in their own frames."""
 
 
 def limb_masses(design: TreeDesign) -> LimbMasses:

@@ -27,7 +27,8 @@ class Trunk(Checked):
     motion: Any = text("floating", "fixed", default="floating")
     """`floating` for a robot that stands on its feet, `fixed` for one on a stand."""
     height: Any = number("m", -10, 10, default=0.0)
-    """Of a fixed root link's origin above the floor [m]; a floating one stands on its pads."""
+    """Height of the origin of a fixed root link above the floor [m]; a floating one stands on its
+    pads."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,7 +59,7 @@ class LinkSection(Checked):
     shape: Any = text("none", "box", "cylinder", "sphere", default="none")
     """Drawn primitive: a cylinder stands along z."""
     size: Any = number("m", 0, 5, size=3, default=(0.0, 0.0, 0.0))
-    """Of a box, full sizes; of a cylinder, radius and length; of a sphere, its radius [m]."""
+    """Full sizes of a box, radius and length of a cylinder, or radius of a sphere [m]."""
     place: Any = number("m", -5, 5, size=3, default=(0.0, 0.0, 0.0))
     """Middle of the drawn primitive [m]."""
 
@@ -74,7 +75,7 @@ class TreeJointSection(Checked):
     type: Any = text("revolute", "fixed", default="revolute")
     """`revolute`, or `fixed` for a joint that is locked at zero."""
     position: Any = number("m", -5, 5, size=3, default=(0.0, 0.0, 0.0))
-    """Of the child's frame in the parent's [m]."""
+    """Position of the child's frame in the parent's [m]."""
     turn_deg: Any = number("deg", -360, 360, size=3, default=(0.0, 0.0, 0.0))
     """Roll, pitch and yaw of the child's frame in the parent's, as in URDF [deg]."""
     axis: Any = number("", -1, 1, size=3, default=(0.0, 1.0, 0.0))
@@ -118,7 +119,7 @@ class ReferenceActuator(Checked):
     motor: Any = text()
     """Name in the motor catalogue."""
     gear: Any = number("", 0.5, 500)
-    """[-]"""
+    """Reduction of the gear [-]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -150,9 +151,9 @@ class PadSection(Checked):
     link: Any = text()
     """Link that carries it."""
     position: Any = number("m", -5, 5, size=3)
-    """Of its centre in the link's frame [m]."""
+    """Position of the pad's centre in the link's frame [m]."""
     radius: Any = number("m", 0, 0.3, default=0.0)
-    """[m]; zero stands for `contact.pad_radius`."""
+    """Radius of the pad [m]; zero stands for `contact.pad_radius`."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -25,12 +25,14 @@ import numpy as np
 from hyperleg_design.errors import InfeasibleError, InputError
 
 EXCESS_PRICE = 1e1
-"""Of torque beyond an envelope: heat at peak torque of all motors, for a whole peak torque of
-one."""
+"""Price of torque beyond an envelope: for one whole peak torque, this many times the heat of all
+motors at peak torque."""
 GAP_PRICE = 1e3
-"""Of a force missing at the base: the same heat, for a whole body weight."""
+"""Price of a force that is missing at the base: for one body weight, this many times the heat of
+all motors at peak torque."""
 RIDGE = 1e-6
-"""On pad forces over weight, squared: makes the split among pads of a rigid foot unique."""
+"""Weight of the squared pad forces over body weight, which makes the split among the pads of a
+rigid foot unique."""
 NEGLIGIBLE = 1e-5
 """Excess over peak torque, or gap over weight, that counts as the solver's rounding."""
 
@@ -40,9 +42,10 @@ class Allocation:
     """Forces and torques along a motion."""
 
     contact_force: np.ndarray
-    """On each pad, world axes [N], `(n, pads, 3)`; zero on pads that bear no load."""
+    """Force on each pad in the axes of the world [N], `(n, pads, 3)`; zero on pads that bear no
+    load."""
     motor_torque: np.ndarray
-    """[Nm], `(n, legs, motors)`."""
+    """Motor torques [Nm], `(n, legs, motors)`."""
     excess: np.ndarray
     """Torque beyond the envelope [Nm], `(n, legs, motors)`, not negative."""
     gap: np.ndarray

@@ -50,7 +50,8 @@ DIRECTIONS: Mapping[str, np.ndarray] = {
     "vertical": np.array([0.0, 0.0, 1.0]),
     "forward": np.array([1.0, 0.0, 0.0]),
 }
-"""Of the floor's force on the foot; forward is what drives the robot ahead."""
+"""Unit vectors of the floor's force on the foot, by name; the forward force drives the robot
+ahead."""
 POSTURES = ("standing", "mid_squat", "toe_off")
 """Named postures of `posture`."""
 BINDING = 1e-4
@@ -77,15 +78,16 @@ class ContactForce:
     variant: str
     direction: str
     force: np.ndarray
-    """Of the floor on the foot, summed over pads [N], `(3,)`."""
+    """Force of the floor on the foot, summed over pads [N], `(3,)`."""
     pad_force: np.ndarray
-    """`(pads, 3)` [N]; zero on pads off the floor."""
+    """Force on each pad [N], `(pads, 3)`; zero on pads off the floor."""
     center_of_pressure: np.ndarray
-    """On the floor, from the ankle, forward and to the left [m], `(2,)`."""
+    """Centre of pressure on the floor, measured from the ankle forward and to the left [m],
+    `(2,)`."""
     motor_torque: np.ndarray
-    """Of the pushing leg [Nm], `(motors,)`."""
+    """Motor torques of the pushing leg [Nm], `(motors,)`."""
     joint_torque: np.ndarray
-    """`(joints,)` [Nm]"""
+    """Joint torques of the pushing leg [Nm], `(joints,)`."""
     binding: tuple[str, ...]
     """Motors at a limit of their envelope."""
     slipping: tuple[str, ...]

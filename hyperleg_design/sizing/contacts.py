@@ -27,9 +27,9 @@ class Pad:
     """`heel`, `ball` or `tip`."""
     link: str
     position: tuple[float, float, float]
-    """Of its centre in the link's frame [m]."""
+    """Position of the pad's centre in the link's frame [m]."""
     radius: float
-    """[m]"""
+    """Radius [m]."""
 
 
 def sole_pads(tree: Tree) -> tuple[Pad, ...]:

@@ -44,9 +44,9 @@ class Demand:
     joint_torque: np.ndarray
     """Given by the motors to the joints [Nm], `(n, 2, joints)`."""
     motor_torque: np.ndarray
-    """[Nm], `(n, 2, motors)`."""
+    """Motor torques over time [Nm], `(n, 2, motors)`."""
     motor_velocity: np.ndarray
-    """[rad/s], `(n, 2, motors)`."""
+    """Motor speeds over time [rad/s], `(n, 2, motors)`."""
     lower: np.ndarray
     """Least torque at that speed [Nm], `(n, 2, motors)`."""
     upper: np.ndarray

@@ -38,7 +38,7 @@ class EnergyLedger:
     """
 
     time_step: float
-    """[s]"""
+    """Time between two samples [s]."""
     joule: np.ndarray
     """Heat of the windings, `(..., t, m)`."""
     mechanical: np.ndarray
@@ -46,9 +46,9 @@ class EnergyLedger:
     driver_loss: np.ndarray
     """Heat of the drivers, `(..., t, m)`."""
     drawn: np.ndarray
-    """From the battery by drawing motors, `(..., t, m)`, not negative."""
+    """Power that driving motors draw from the battery [W], `(..., t, m)`, not negative."""
     returned: np.ndarray
-    """To the battery by motors that give back, `(..., t, m)`, not negative."""
+    """Power that braking motors return to the battery [W], `(..., t, m)`, not negative."""
 
     @property
     def mechanical_positive(self) -> np.ndarray:
@@ -120,9 +120,9 @@ class EnergySums:
     driver_loss: np.ndarray
     """Heat of the drivers."""
     drawn: np.ndarray
-    """From the battery while the motor draws."""
+    """Energy drawn from the battery [J]."""
     returned: np.ndarray
-    """To the battery while the motor gives back."""
+    """Energy returned to the battery [J]."""
 
     @property
     def mechanical(self) -> np.ndarray:

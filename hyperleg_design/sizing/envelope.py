@@ -35,7 +35,7 @@ class MotorEnvelope:
     """Limits of the motors of one leg, `(..., motors)` each, and of the drivers."""
 
     no_load_speed: np.ndarray
-    """At the bus voltage, w0 [rad/s]."""
+    """No-load speed at the bus voltage, w0 [rad/s]."""
     stall_torque: np.ndarray
     """Where the voltage line meets zero speed, w0 / Cp [Nm]."""
     peak_torque: np.ndarray
@@ -43,9 +43,9 @@ class MotorEnvelope:
     power_constant: np.ndarray
     """Joule heat over squared torque, Cp [W/Nm^2]."""
     efficiency_out: Any
-    """Of the driver, battery to motor [-], `()` or the batch."""
+    """Efficiency of the driver from battery to motor [-], `()` or the batch."""
     efficiency_regen: Any
-    """Of the driver, motor to battery [-], `()` or the batch."""
+    """Efficiency of the driver from motor to battery [-], `()` or the batch."""
 
     @property
     def corner_speed(self) -> np.ndarray:
@@ -62,7 +62,7 @@ class MotorEnvelope:
         return self.no_load_speed * (1 + self.peak_torque / self.stall_torque)
 
     def select(self, motors: slice | list[int]) -> MotorEnvelope:
-        """Of some of the motors."""
+        """The envelope of some of the motors."""
         return dataclasses.replace(
             self,
             no_load_speed=self.no_load_speed[..., motors],

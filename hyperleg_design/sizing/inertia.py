@@ -39,9 +39,9 @@ class LegInertia:
     """Mass and inertia of a leg, each `(...)`; rotor inertia through the gears is not in it."""
 
     total_mass: Any
-    """Of the robot [kg]."""
+    """Mass of the robot [kg]."""
     leg_mass: Any
-    """Of all that moves with the first joint of one hip [kg]."""
+    """Mass of all that moves with the first joint of one hip [kg]."""
     distal_mass: Any
     """Below the knee [kg]."""
     leg_length: Any
@@ -49,7 +49,7 @@ class LegInertia:
     swing_mass: Any
     """Behind the hip-pitch joint [kg]."""
     swing_inertia: Any
-    """Of what is behind the hip-pitch joint, about that joint's axis [kg m^2]."""
+    """Inertia of all links behind the hip-pitch joint, about the axis of that joint [kg m^2]."""
     com_distance: Any
     """Centre of mass of what swings, from the hip-pitch axis [m]."""
 

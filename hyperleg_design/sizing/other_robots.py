@@ -42,15 +42,15 @@ class Body:
     parent: str
     """Joint it hangs from; empty on the trunk."""
     origin: np.ndarray
-    """Of the joint [m], `(3,)`."""
+    """Position of the joint [m], `(3,)`."""
     axis: np.ndarray
     """Unit vector, `(3,)`; zero where the joint has no single axis."""
     mass: float
-    """[kg]"""
+    """Mass [kg]."""
     com: np.ndarray
-    """[m], `(3,)`"""
+    """Centre of mass [m], `(3,)`."""
     inertia: np.ndarray
-    """About `com`, world axes [kg m^2], `(3, 3)`."""
+    """Inertia about `com` in the axes of the world [kg m^2], `(3, 3)`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +58,11 @@ class Description:
     """A robot as its description poses it."""
 
     bodies: Mapping[str, Body]
-    """By joint; the trunk's stands under the empty name."""
+    """Bodies by the joint that carries them; the trunk stands under the empty name."""
     foot_position: np.ndarray
     """Origin of the foot's frame [m], `(3,)`."""
     foot_rotation: np.ndarray
-    """`(3, 3)`"""
+    """Rotation of the foot, `(3, 3)`."""
     foot_joint: str
     """Joint that the foot moves with."""
 
@@ -86,8 +86,8 @@ class OtherRobot:
     leg: LegInertia
     """Each a number; the total mass is nan where the description is not whole."""
     knee_turned: float
-    """By which the knee was turned from the description's zero to make the leg straight [rad]; nan
-    where it stays as posed."""
+    """Angle by which the knee was turned from the description's zero to make the leg straight
+    [rad]; NaN where it was left as it is."""
 
 
 def robots_folder() -> Path:
@@ -202,7 +202,7 @@ def _straightening(hip: np.ndarray, knee: np.ndarray, end: np.ndarray, axis: np.
 
 
 def _rotation(axis: np.ndarray, angle: float) -> np.ndarray:
-    """About a unit vector (Rodrigues), `(3, 3)`."""
+    """Rotation about a unit vector (Rodrigues), `(3, 3)`."""
     x, y, z = axis
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * skew @ skew

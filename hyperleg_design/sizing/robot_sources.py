@@ -12,7 +12,7 @@ class RobotSource:
     """
 
     name: str
-    """As figures show it."""
+    """Name in figures."""
     kind: str
     """`biped`, `quadruped` or `human`."""
     file: str
@@ -30,7 +30,7 @@ class RobotSource:
     sole: tuple[float, float, float]
     """A point of the sole under the ankle, or the centre of a round foot [m]."""
     foot_radius: float = 0.0
-    """Of a round foot, below its centre [m]."""
+    """Radius of a round foot, below its centre [m]."""
     legs: int = 2
     whole: bool = True
     """Whether the description has the whole robot; the total mass is unknown otherwise."""

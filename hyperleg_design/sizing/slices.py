@@ -25,7 +25,7 @@ class Polyhedron:
     """A convex body with flat faces."""
 
     vertices: np.ndarray
-    """`(vertices, 3)` [Nm]"""
+    """Corners of the body [Nm], `(vertices, 3)`."""
     faces: tuple[np.ndarray, ...]
     """Vertex indices around each face, anticlockwise from outside."""
 

@@ -24,7 +24,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 
 TIME_CONSTANT = 3.0
-"""Of the moving average [s] (paper, thermal reward)."""
+"""Time constant of the moving average [s] (paper, thermal reward)."""
 
 READINGS = ("ema_of_square", "square_of_ema")
 """Both readings of the paper's formula."""
@@ -35,13 +35,14 @@ class ThermalUse:
     """How far motors are used thermally; 1 is the limit of what they hold for ever."""
 
     rms_torque: np.ndarray
-    """[Nm], `(..., m)`."""
+    """Root mean square of the torque [Nm], `(..., m)`."""
     continuous_use: np.ndarray
     """RMS over rated torque [-], `(..., m)`."""
     ema_of_square: np.ndarray
-    """At the end of each step [-], `(..., t, m)`."""
+    """Moving average of the squared relative torque at the end of each step [-], `(..., t, m)`."""
     square_of_ema: np.ndarray
-    """At the end of each step [-], `(..., t, m)`."""
+    """Square of the moving average of the relative torque at the end of each step [-], `(..., t,
+    m)`."""
 
     def peak(self, reading: str = "ema_of_square") -> np.ndarray:
         """Largest use over time in one of `READINGS`, `(..., m)` [-]."""

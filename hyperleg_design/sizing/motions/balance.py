@@ -50,7 +50,7 @@ class Series:
     """
 
     time_step: float
-    """[s]"""
+    """Time between two samples [s]."""
     mirrored: bool
 
     def _spectrum(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -38,13 +38,14 @@ class FootPath:
     """Motion of one foot over time, with rates and accelerations."""
 
     position: np.ndarray
-    """Of the ankle in the world, with rate and acceleration [m, m/s, m/s^2], `(3, n, 3)`."""
+    """Position of the ankle in the world, with rate and acceleration [m, m/s, m/s^2], `(3, n,
+    3)`."""
     pitch: np.ndarray
     """Nose down, with rate and acceleration [rad, rad/s, rad/s^2], `(3, n)`."""
     toe: np.ndarray
     """Toe joint, with rate and acceleration, `(3, n)`; zero where the toe does not move."""
     phase: np.ndarray
-    """`(n,)`"""
+    """Phase of the contact at each sample, `(n,)`."""
 
     def twist(self, order: int, sample: int) -> np.ndarray:
         """Velocity (order 1) or acceleration (2) of the ankle and of the foot's turning, `(6,)`,
@@ -74,7 +75,7 @@ class Step:
     start: tuple[float, float, float]
     """Sole below the ankle, standing [m]."""
     end: tuple[float, float, float]
-    """The same after the step [m]."""
+    """Position after the step [m]."""
     pitch_off: float
     """Nose down, when it leaves [rad]; 0 lifts it flat."""
     pitch_land: float

@@ -62,7 +62,7 @@ class HopPlan:
 
     @property
     def rise(self) -> float:
-        """Of the centre of mass in flight [m]."""
+        """Rise of the centre of mass in flight [m]."""
         return GRAVITY * self.flight**2 / 8
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.models import RigidBodyModel
 
 GRAVITY = 9.81
-"""[m/s^2], as Pinocchio and MuJoCo have it."""
+"""Gravitational acceleration [m/s^2], as Pinocchio and MuJoCo have it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +33,8 @@ class PelvisPath:
     """Pelvis over time, turned by `Rx(roll) Ry(pitch)`; it does not yaw."""
 
     position: np.ndarray
-    """Of its origin in the world, with rate and acceleration [m, m/s, m/s^2], `(3, n, 3)`."""
+    """Position of the pelvis's origin in the world, with rate and acceleration [m, m/s, m/s^2],
+    `(3, n, 3)`."""
     pitch: np.ndarray
     """Nose down, with rate and acceleration [rad, rad/s, rad/s^2], `(3, n)`."""
     roll: np.ndarray
@@ -47,13 +48,14 @@ class Motion:
     name: str
     model: RigidBodyModel = field(repr=False)
     time: np.ndarray
-    """[s] `(n,)`, evenly spaced; a periodic motion ends one step before it repeats."""
+    """Times of the samples [s], `(n,)`, evenly spaced; a periodic motion ends one step before it
+    repeats."""
     q: np.ndarray
-    """`(n, nq)`"""
+    """Generalised positions in Pinocchio's order, `(n, nq)`."""
     v: np.ndarray
-    """`(n, nv)`"""
+    """Generalised velocities in Pinocchio's order, `(n, nv)`."""
     a: np.ndarray
-    """`(n, nv)`"""
+    """Generalised accelerations in Pinocchio's order, `(n, nv)`."""
     contact: np.ndarray
     """Whether a pad may bear load, `(n, pads)`, pads as in `contacts.sole_pads`."""
     feet: tuple[FootPath, FootPath]
@@ -82,12 +84,12 @@ class Motion:
 
     @property
     def joint_position(self) -> np.ndarray:
-        """[rad] `(n, 2, joints)`, left leg first."""
+        """Joint angles [rad], `(n, 2, joints)`, left leg first."""
         return self.q[:, 7:].reshape(len(self.time), 2, -1)
 
     @property
     def joint_velocity(self) -> np.ndarray:
-        """[rad/s] `(n, 2, joints)`, left leg first."""
+        """Joint speeds [rad/s], `(n, 2, joints)`, left leg first."""
         return self.v[:, 6:].reshape(len(self.time), 2, -1)
 
 
@@ -175,7 +177,7 @@ def check_ranges(model: RigidBodyModel, q: np.ndarray) -> None:
 
 
 def contact_mask(model: RigidBodyModel, feet: tuple[FootPath, FootPath]) -> np.ndarray:
-    """Which pads bear load while the feet stand as planned, `(n, pads)`."""
+    """Find which pads bear load while the feet stand as planned, `(n, pads)`."""
     columns = [feet[SIDES.index(pad.side)].bears(pad.row) for pad in sole_pads(model.tree)]
     return np.stack(columns, -1)
 

@@ -24,7 +24,7 @@ class SquatPlan:
     """Depth and pace of the squat; all assumed."""
 
     depth: float = 0.18
-    """Of the pelvis, top to bottom [m]."""
+    """Depth that the pelvis sinks, top to bottom [m]."""
     period: float = 2.0
     """Down and up [s]."""
     min_knee: float = 0.30

@@ -27,7 +27,7 @@ class StairPlan:
     """Step and pace; all assumed."""
 
     step_height: float = 0.17
-    """Of the step [m], a common stair."""
+    """Height of the step [m]; that of a common stair."""
     step_depth: float = 0.29
     """How far ahead the feet stand on the step [m]."""
     shift: float = 0.4
@@ -37,14 +37,14 @@ class StairPlan:
     rise: float = 0.6
     """Weight from the lower foot to the upper one while the body rises [s]."""
     width: float = 1.0
-    """Between the feet, over the distance between the hips [-]."""
+    """Distance between the feet over the distance between the hips [-]."""
     clearance: float = 0.06
     """Added height of the swinging foot in the middle [m]."""
     pitch_off: float = 0.55
     """Pitch of the rear foot as it leaves the lower floor [rad]."""
     lean: float = 0.10
-    """Of the trunk over the standing foot [rad]; upright, the hips' narrow range inward (5 deg)
-    would not let it stand there."""
+    """Lean of the trunk over the standing foot [rad]; upright, the hips' narrow range inward (5
+    deg) would not let the robot stand there."""
     inward: float = 0.4
     """How far inside the standing foot's middle the pressure is, over the half distance of its pads
     [-]."""

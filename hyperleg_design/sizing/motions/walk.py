@@ -37,7 +37,7 @@ class WalkPlan:
     double_support: float = 0.22
     """Part of a step with both feet down [-]."""
     step_width: float = 0.8
-    """Between the feet, over the distance between the hips [-]."""
+    """Distance between the feet over the distance between the hips [-]."""
     heel_rise: float = 0.20
     """When in double support the rear heel leaves the floor [-]; the front heel has met it
     before."""
