@@ -24,7 +24,7 @@ class Chosen(Printing):
     variant: str = ""
     """Ablation to make of it: toe, toe_locked, toe_removed_matched, toe_removed or toe_passive."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """PATH=VALUE, such as toe.mass=0.3."""
+    """Parameter to change, PATH=VALUE, such as toe.mass=0.3; may be repeated."""
     set_file: Annotated[
         tyro.conf.UseAppendAction[tuple[str, ...]], tyro.conf.arg(aliases=("--overlay",))
     ] = ()
@@ -39,7 +39,8 @@ class Chosen(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class List(Printing):
-    """What is shipped: designs, motors, sweeps, tasks, protocols, presets, policies, measures."""
+    """List what is shipped: designs, motors, sweeps, tasks, protocols, presets, policies, measures.
+    """
 
     kind: Annotated[str, tyro.conf.Positional] = "all"
     """designs, variants, motors, sweeps, tasks, protocols, presets, policies, measures,
@@ -151,8 +152,8 @@ class Import(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class Analyze(Chosen):
-    """Masses, reductions, torques, speeds, reflected inertia, envelope and confound of one
-    design.
+    """Analyse one design: masses, reductions, torques, speeds, reflected inertia, envelope, and
+    what each ablation changes.
     """
 
     def run(self) -> None:
@@ -170,7 +171,7 @@ class Analyze(Chosen):
 
 @dataclass(frozen=True, kw_only=True)
 class Compare(Printing):
-    """Several designs beside each other."""
+    """Compare several designs side by side."""
 
     designs: Annotated[tuple[str, ...], tyro.conf.Positional] = (
         "toe",
@@ -180,7 +181,7 @@ class Compare(Printing):
     )
     """Shipped names or YAML files."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """PATH=VALUE, applied to all."""
+    """Parameter to change in all designs, PATH=VALUE; may be repeated."""
     set_file: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """YAML file of parameters that differ, applied to all before --set."""
     demand: bool = False
@@ -220,7 +221,7 @@ class Sweep(Printing):
     """Evaluate a sweep of designs; killed, it goes on where it stopped."""
 
     action: Annotated[Literal["run"], tyro.conf.Positional]
-    """What to do; there is only run."""
+    """What to do with the sweep; there is only `run`."""
     file: Annotated[str, tyro.conf.Positional]
     """Shipped name or YAML file."""
     out: Path

@@ -25,7 +25,7 @@ class Check(Printing):
     robot: str = ""
     """Shipped design, YAML, MJCF or URDF; compares names and ranges of joints."""
     map: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """THEIRS=OURS, a CSV file's column and ours, such as q1=position/knee."""
+    """Column of a CSV file and the signal that it holds, THEIRS=OURS, such as q1=position/knee."""
     out: Path | None = None
     """Folder to write check.json and the logs as Parquet to."""
 
@@ -45,8 +45,8 @@ class Check(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class Effects(Printing):
-    """The catalogue of effects: where each can sit, its parameters, usual magnitudes and their
-    source.
+    """List the catalogue of effects: places where each can occur, parameters, usual magnitudes and
+    their sources.
     """
 
     def run(self) -> None:
@@ -63,21 +63,21 @@ class Effects(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class Show(Printing):
-    """One effect alone: the trace it leaves on a standard motion, and how a closed loop moves with
-    and without it.
+    """Show one effect alone: the residual that it leaves on a standard motion, and how a closed
+    loop moves with and without it.
     """
 
     effect: Annotated[str, tyro.conf.Positional]
-    """Identifier; `hyperleg gap effects` lists them."""
+    """Identifier of the effect; `hyperleg gap effects` lists them."""
     robot: str = ""
     """Design, MJCF or URDF to show it on; by default what suits the effect: one joint on a servo,
     or the biped."""
     location: str = ""
-    """Where it sits; the first place that it can by default."""
+    """Joint, motor or link at which it occurs; the first possible place by default."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """PARAMETER=VALUE; a usual magnitude by default."""
+    """Value of a parameter of the effect, PARAMETER=VALUE; a usual magnitude by default."""
     out: Path = Path("results/gap_show")
-    """Folder of the figure."""
+    """Folder to write the figure to."""
 
     def run(self) -> None:
         """Draw the effect and print its summary."""
@@ -104,7 +104,7 @@ class Apply(Printing):
     diagnosis: Annotated[Path, tyro.conf.Positional]
     """`diagnosis.json` or its folder, or an overlay that was written before."""
     out: Path = Path("overlay.yaml")
-    """File to write; with `--logs` or `--policy`, what they tell goes to a JSON file of the same
+    """File to write; with `--logs` or `--policy`, the results go to a JSON file of the same
     name."""
     robot: str = ""
     """Design, MJCF or URDF on which to check the places; unchecked by default."""
@@ -159,7 +159,9 @@ class Apply(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class Measure(Printing):
-    """Measure the gap by signal, joint, motor and regime against the repeatability floor."""
+    """Measure the gap between logs and model by signal, joint, motor and regime, against the
+    repeatability of the reference logs.
+    """
 
     robot: str = ""
     """Shipped design, YAML, MJCF or URDF; by default what the logs name."""
@@ -199,21 +201,22 @@ class Diagnose(Printing):
     logs: tuple[str, ...]
     """Logs to be diagnosed, files or folders of any format that `hyperleg gap check` reads."""
     reference: tuple[str, ...] = ()
-    """Logs of the healthy robot: they set the floor and the calibration."""
+    """Logs of the healthy robot; they tell how well the model fits when nothing is wrong."""
     reference_robot: str = ""
     """Design, YAML, MJCF or URDF of the robot in the reference logs, if it was built differently
     then; the same as now by default."""
     out: Path
     """Folder to write diagnosis.json, index.html and its figures to."""
     seed: Annotated[int, AtLeast(0)] = 0
-    """Of everything random."""
+    """Seed of all random numbers."""
     thresholds: str = ""
     """Rules of the decision, a YAML file; the shipped ones by default."""
     threads: Annotated[int, AtLeast(1)] = 2
-    """The answer does not depend on them."""
+    """Number of threads; the answer does not depend on it."""
     method: Literal["", "posterior", "rules"] = ""
-    """By which it decides: the posterior probability of causes beside a model of the model's own
-    error, or the rules that each cause must pass; the usual one by default."""
+    """How causes are decided: `posterior`, by their posterior probabilities beside a model of
+    the nominal model's own error, or `rules`, which each cause must pass; the usual method by
+    default."""
 
     def run(self) -> None:
         """Diagnose the logs, write the page, and print the answer."""
@@ -249,17 +252,17 @@ class Excite(Printing):
     robot: Annotated[str, tyro.conf.arg(aliases=("--design",))]
     """Shipped design, YAML, MJCF or URDF."""
     base: Literal["fixed"] = "fixed"
-    """The rig holds the robot."""
+    """How the robot is held; the rig holds the base fixed."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """PATH=VALUE of a design."""
+    """Parameter of a design to change, PATH=VALUE; may be repeated."""
     rate: Annotated[float, AtLeast(0, exclusive=True)] = 200.0
-    """Of the targets [Hz]."""
+    """Sampling rate of the targets [Hz]."""
     without_torque: bool = False
-    """The rig measures neither torque nor current."""
+    """Say that the rig measures neither torque nor current."""
     format: Literal["csv", "parquet", "both"] = "csv"
-    """Of the targets' files."""
+    """Format of the files with the targets."""
     seed: Annotated[int, AtLeast(0)] = 0
-    """Of the multi-sines' phases."""
+    """Seed of the phases of the multi-sine motions."""
     out: Path
     """Folder to write targets, plan.json and figures to."""
 
@@ -291,15 +294,15 @@ class Blind(Printing):
     """
 
     cases: Annotated[int, AtLeast(1)] = 240
-    """How many."""
+    """Number of cases."""
     seed: Annotated[int, AtLeast(0)]
-    """Of the trial; never tune on one that is to be scored."""
+    """Seed of the trial; never tune a diagnosis on a trial that is to be scored."""
     plants: tuple[str, ...] = ("rig", "other", "walking")
-    """That make the logs."""
+    """Simulated plants that make the logs."""
     workers: Annotated[int, AtLeast(1)] = 2
-    """Processes side by side."""
+    """Number of processes that run side by side."""
     only_make: bool = False
-    """Do not diagnose yet."""
+    """Only make the cases; do not diagnose them yet."""
     out: Path
     """Folder of the trial."""
 
@@ -330,7 +333,7 @@ class Score(Printing):
     """Open a trial's key, once, and compare its diagnoses with the truth."""
 
     folder: Annotated[str, tyro.conf.Positional]
-    """Of the trial."""
+    """Folder of the trial."""
     reread: bool = False
     """Read the table of a trial that was scored before."""
 
@@ -352,15 +355,15 @@ class Baselines(Printing):
     """
 
     folder: Annotated[str, tyro.conf.Positional]
-    """Of the trial; its key stays sealed until it was scored."""
+    """Folder of the trial; its key stays sealed until the trial is scored."""
     methods: tuple[str, ...] = ("diagnosis", "own", "sysid", "pace")
-    """Some of these; diagnosis is what the trial's folder holds."""
+    """Methods to compare; `diagnosis` is what the trial's folder holds."""
     cases: tuple[str, ...] = ()
-    """Some of the cases, such as 003 017; all by default."""
+    """Numbers of the cases, such as 003 017; all by default."""
     budget: Annotated[float, AtLeast(0, exclusive=True)] = 300.0
-    """Of one fit [s]."""
+    """Time limit of one fit [s]."""
     seed: Annotated[int, AtLeast(0)] = 0
-    """Of CMA-ES."""
+    """Seed of CMA-ES."""
 
     def run(self) -> None:
         """Run the other tools on the cases of a blind trial."""
@@ -392,4 +395,4 @@ VERBS: dict[str, Any] = {
     "score": Score,
     "baselines": Baselines,
 }
-"""By name."""
+"""Verbs of `hyperleg gap` by name."""

@@ -26,13 +26,13 @@ class Train:
     """Train a policy, or go on with a training that was stopped; needs the learning extra."""
 
     task: str = "walk"
-    """walk, walk_paper, goal, goal_paper, or a YAML file."""
+    """Task to train for: a shipped name (`hyperleg list tasks`), or a YAML file."""
     design: str = "toe"
-    """Shipped name or YAML file."""
+    """Robot to train: a shipped name or a YAML file."""
     seed: Annotated[int, AtLeast(0)] = 0
-    """Of everything random."""
+    """Seed of all random numbers."""
     preset: str = "laptop"
-    """laptop, paper, or a YAML file."""
+    """Training preset: a shipped name (`hyperleg list presets`), or a YAML file."""
     start: str = ""
     """ONNX policy of another task to start from; from scratch by default."""
     out: Path
@@ -40,7 +40,8 @@ class Train:
     iterations: Annotated[int | None, AtLeast(1)] = None
     """Iterations after which to stop with a checkpoint; by default the training runs to its end."""
     threads: Annotated[int, AtLeast(1)] = 1
-    """Of this process; two trainings of one thread each are the best use of two cores."""
+    """Number of threads of this process; two trainings of one thread each make best use of two
+    processor cores."""
     overlay: str = ""
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
 
@@ -146,7 +147,7 @@ class Evaluate(Printing):
     out: Path
     """Folder to write tables to."""
     workers: Annotated[int, AtLeast(1)] = 2
-    """Processes side by side."""
+    """Number of processes that run side by side."""
     overlay: str = ""
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
     swap: Literal["", "lock_toe", "toe_motor_alone", "toe_motor_to_ankle"] = ""
@@ -242,7 +243,8 @@ class Paper(Printing):
     out: Path = Path("results/paper")
     """Folder to write; its index.html is the page."""
     workers: Annotated[int | None, AtLeast(1)] = None
-    """Processes side by side; as many as the machine has processors by default."""
+    """Number of processes that run side by side; as many as the machine has processors by
+    default."""
 
     def run(self) -> None:
         """Evaluate the policies and write the page."""
@@ -270,7 +272,7 @@ class Replay(Printing):
     protocol: str = ""
     """walk, t_test, or a YAML file; what suits the policy's task by default."""
     seed: Annotated[int | None, AtLeast(0)] = None
-    """Of the starting state; the protocol's by default."""
+    """Seed of the starting state; that of the protocol by default."""
     gif: Path | None = None
     """File to write."""
     viser: bool = False

@@ -32,7 +32,7 @@ class Search(Printing):
     storage: str = ""
     """URL of the database, such as postgresql+psycopg://user@host/name; SQLite by default."""
     name: str = ""
-    """Of the study in the database; the sweep's by default."""
+    """Name of the study in the database; that of the sweep by default."""
     seeds: Annotated[int, AtLeast(1)] = 1
     """Trainings of each toe layout whose policies are evaluated, at most."""
     policies: Path | None = None

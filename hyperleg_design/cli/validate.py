@@ -20,18 +20,19 @@ class Validate(Printing):
     out: Path = Path("results/validation")
     """Folder of the results, one a checkout."""
     suites: tuple[str, ...] = ("real", "newcomers", "blind")
-    """Which parts."""
+    """Suites of the benchmark to run: real, newcomers, blind."""
     splits: tuple[str, ...] = ("development", "held out")
-    """Development cases may be looked at while a diagnosis is being improved; held-out ones not."""
+    """Splits to run. Development cases may be looked at while a diagnosis is being improved, and
+    held-out cases may not."""
     only: tuple[str, ...] = ()
-    """Cases whose names hold one of these texts."""
+    """Run only cases whose names contain one of these texts."""
     data: Path | None = None
     """Folder of the real logs; by default HYPERLEG_DATA, else ../shared/data beside the
     checkout."""
     checkout: Path | None = None
     """Folder of another checkout whose diagnosis is to be scored."""
     workers: Annotated[int, AtLeast(1)] = 1
-    """Processes side by side, each on one thread."""
+    """Number of processes that run side by side, each on one thread."""
     list_cases: bool = False
     """List the cases instead."""
 

@@ -28,7 +28,7 @@ class Outcome(Checked):
     """A measure that is compared between arms."""
 
     protocol: Any = text(*MEASURES)
-    """Under which it is measured."""
+    """Protocol under which the outcome is measured."""
     measure: Any = text()
     """Name, of `evaluation/measures.py`."""
     trials: Any = text("all", "arrived")
@@ -48,9 +48,9 @@ class PlateauRule(Checked):
     """When the reward of a training has stopped rising; see `plateau`."""
 
     share: Any = number("", 0.05, 0.5, default=0.2)
-    """Of the steps, at the end, that is judged [-]."""
+    """Share of the steps, at the end of a training, that is judged [-]."""
     level: Any = number("", 1e-6, 0.5, default=0.05)
-    """Of the test of a gain, one-sided [-]."""
+    """Level of the one-sided test of a gain [-]."""
     gain: Any = number("", 0.0, 1, default=0.02)
     """Gain over the mean's magnitude up to which a certain gain is too small to matter [-]."""
 
@@ -69,9 +69,9 @@ class AnalysisPlan(Checked):
     seeds: Mapping[str, int]
     """Fewest trainings of each design, by protocol."""
     level: Any = number("", 1e-6, 0.5, default=0.05)
-    """Of each primary outcome's test, two-sided, and of the family of the others [-]."""
+    """Level of the two-sided test of each primary outcome, and of the family of the others [-]."""
     power: Any = number("", 0.5, 0.999, default=0.8)
-    """At which the smallest detectable difference is stated [-]."""
+    """Power at which the smallest detectable difference is stated [-]."""
     primary: tuple[Outcome, ...]
     secondary: tuple[Outcome, ...]
     """Corrected together by Holm's method."""

@@ -32,13 +32,13 @@ class FootPad:
     """A sole under one heel."""
 
     modulus: float
-    """Of its material in compression [Pa]."""
+    """Modulus of the material in compression [Pa]."""
     thickness: float
-    """[m]"""
+    """Thickness [m]."""
     area: float
-    """That bears [m^2]."""
+    """Area that bears load [m^2]."""
     damping_ratio: float
-    """Of the mass on it [-]."""
+    """Damping ratio with the robot's mass on the pad [-]."""
 
     @property
     def stiffness(self) -> float:
@@ -46,7 +46,7 @@ class FootPad:
         return self.modulus * self.area / self.thickness
 
     def damping(self, mass: float) -> float:
-        """With a mass on it [Ns/m]."""
+        """Damping with a given mass on the pad [Ns/m]."""
         return float(2 * self.damping_ratio * np.sqrt(self.stiffness * mass))
 
     def time_constant(self, mass: float) -> float:

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 CYCLE_POINTS = 101
-"""Of a normalised gait cycle: 0 .. 100 %, touchdown to next touchdown of the same foot."""
+"""Number of points of a normalised gait cycle, 0 to 100 %, from a touchdown to the next touchdown
+of the same foot."""
 
 
 @dataclass(frozen=True, eq=False)

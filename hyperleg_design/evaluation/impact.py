@@ -25,7 +25,7 @@ class Impacts:
     peak: np.ndarray
     """Largest filtered vertical force within the window [N]."""
     raw_peak: np.ndarray
-    """The same without filter [N]."""
+    """Largest unfiltered vertical force within the window [N]."""
     loading_rate: np.ndarray
     """Mean slope from `RATE_FROM` to `RATE_TO` of the peak, on the rise to it [N/s]; NaN where the
     record begins on that rise."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
 
 VERSION = "v3.0"
-"""Of LeRobot's dataset format."""
+"""Version of LeRobot's dataset format."""
 TABLE = "chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 SIGNALS = {
     "observation.state": "joint_position",

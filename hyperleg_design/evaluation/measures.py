@@ -53,7 +53,7 @@ POWER = _table(
     Measure("energy", "J", "integral of power", LESS),
     Measure("cost_of_transport", "", "energy / (m g distance)", LESS),
 )
-"""Over the whole trial; of every protocol."""
+"""Measures of power and energy over the whole trial, which every protocol has."""
 
 IMPACT = _table(
     Measure(
@@ -68,7 +68,7 @@ IMPACT = _table(
     Measure("grf_loading_rate", "N/s", "mean slope from 20 to 80 % of that peak", LESS),
     Measure("grf_impulse", "Ns", "integral of the filtered force over the window", LESS),
 )
-"""Of every protocol."""
+"""Measures of impacts, which every protocol has."""
 
 STEPS = _table(
     Measure("cadence", "1/s", "steps over time, both feet"),
@@ -86,7 +86,7 @@ STEPS = _table(
     ),
     Measure("largest_slip", "m", "the same, largest", LESS),
 )
-"""Of every protocol."""
+"""Measures of steps, which every protocol has."""
 
 BEARING = _table(
     Measure("largest_tilt", "rad", "largest lean of the pelvis over the whole trial", LESS),
@@ -116,7 +116,7 @@ BEARING = _table(
         LESS,
     ),
 )
-"""Of every protocol."""
+"""Measures of posture and stops, which every protocol has."""
 
 _KINDS = {
     "": "signed",
@@ -203,7 +203,7 @@ WALK = {
     **STEPS,
     **BEARING,
 }
-"""Of the walk protocol; impact, steps and bearing over the steady strides, but for
+"""Measures of the walk protocol; impacts, steps and posture over the steady strides, except for
 `largest_tilt`."""
 
 T_TEST = {
@@ -227,8 +227,8 @@ T_TEST = {
     **STEPS,
     **BEARING,
 }
-"""Of the T-test protocol, over the whole run; besides them `waypoint_1` .. with the times of
-arrival [s]."""
+"""Measures of the T-test protocol, over the whole run; besides them `waypoint_1`, `waypoint_2` and
+so on, the times of arrival [s]."""
 
 
 def measure_of(name: str) -> Measure:

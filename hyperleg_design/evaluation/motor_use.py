@@ -20,12 +20,12 @@ AT_LIMIT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class MotorUse:
-    """Of every motor of both legs, `(K,)`."""
+    """How every motor of both legs is used in a trial, `(K,)` each."""
 
     motors: tuple[str, ...]
     """Names with the side in front."""
     rms_torque: np.ndarray
-    """[Nm]"""
+    """Root mean square of the torque [Nm]."""
     peak_torque: np.ndarray
     """Largest magnitude [Nm]."""
     peak_speed: np.ndarray

@@ -16,9 +16,9 @@ LEG_LENGTH = 0.786
 HEIGHT = 0.9586
 """Total height [m] (Section II.A)."""
 TOTAL_MASS = 32.0
-"""[kg] (Table I)"""
+"""Mass of the robot [kg] (Table I)."""
 LEG_MASS = 8.27
-"""[kg] (Section II.A)"""
+"""Mass of one leg [kg] (Section II.A)."""
 
 MAX_JOINT_TORQUE = {
     "hip_yaw": 126.0,
@@ -74,7 +74,7 @@ class Printed:
     quantity: str
     unit: str
     toe: float
-    """With the active toe."""
+    """Printed value with the active toe."""
     ablation: float
     """Without it."""
     measure: str
@@ -84,7 +84,7 @@ class Printed:
 
     @property
     def change(self) -> float:
-        """Of the toe against the ablation, relative [-]."""
+        """Relative change from the ablation to the toe [-]."""
         return self.toe / self.ablation - 1
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from hyperleg_design.evaluation.analysis_plan import PlateauRule
 
 FEWEST_POINTS = 5
-"""Of a curve's last part, from which a slope is judged."""
+"""Fewest points in the last part of a curve from which a slope is judged."""
 
 
 def p_value(mean: float, standard_error: float, freedom: int) -> float:
@@ -114,9 +114,9 @@ class Plateau:
     """Whether a learning curve has become flat at its end, and how steep it still is."""
 
     gain: float
-    """Of the fitted line over the last share, over the magnitude of its mean [-]."""
+    """Rise of the fitted line over the last share, over the magnitude of its mean [-]."""
     p_value: float
-    """One-sided, of no gain."""
+    """One-sided p-value of the hypothesis of no gain [-]."""
     reached: bool
     """Whether there is no gain beyond noise, or none that matters."""
 

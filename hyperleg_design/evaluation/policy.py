@@ -39,13 +39,13 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.tasks import Task
 
 FORMAT = "hyperleg-policy-1"
-"""Of the metadata."""
+"""Name and version of the metadata."""
 INPUT, OUTPUT = "observation", "action"
 NEEDED = ("columns", "joints", "task", "design")
 """Metadata without which a file is not evaluated."""
 
 Policy = Callable[[np.ndarray], np.ndarray]
-"""From observations `(n, size)` to actions `(n, J)`."""
+"""A function from observations `(n, size)` to actions `(n, J)`."""
 
 
 @dataclass(eq=False)
@@ -67,7 +67,7 @@ class OnnxPolicy:
     metadata: Mapping[str, Any]
     """All that the file says of itself."""
     session: Any = field(repr=False)
-    """Of ONNX Runtime."""
+    """Session of ONNX Runtime."""
 
     def __call__(self, observation: np.ndarray) -> np.ndarray:
         """Actions `(n, J)` for observations `(n, size)`."""
@@ -132,7 +132,7 @@ class Scripted:
     """Policy that plays a sequence of actions, the same in all trials, and holds the last."""
 
     actions: np.ndarray
-    """`(steps, J)`"""
+    """Action of each policy step, `(steps, J)`."""
     step: int = 0
     """Next row."""
 

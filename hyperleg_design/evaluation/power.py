@@ -39,7 +39,7 @@ FLOWS = (
     "driver_loss",
     "battery",
 )
-"""Of `EnergyLedger`, summed over all motors, in `flows`."""
+"""Powers of `EnergyLedger` that `flows` sums over all motors."""
 
 
 def ledger(trial: Trial, first: int = 0, last: int | None = None) -> EnergyLedger:

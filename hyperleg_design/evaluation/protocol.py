@@ -22,10 +22,10 @@ from hyperleg_design.simulation.settings import Checked, Randomisation, Start
 
 MOST_TRIALS = 4096
 T_TEST_POINTS = {"A": (0.0, 0.0), "B": (9.14, 0.0), "C": (9.14, 4.57), "D": (9.14, -4.57)}
-"""Of the human agility T-test, A where the run starts, x ahead [m]; the paper does not print its
-course's size."""
+"""Points of the human agility T-test, x ahead and y to the left [m]; the run starts in A. The paper
+does not print the size of its course."""
 T_TEST_ORDER = ("A", "B", "C", "D", "B", "A")
-"""(paper, Section IV.B)"""
+"""Order in which the points are reached (paper, Section IV.B)."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -56,11 +56,11 @@ class Impact(Checked):
     """How impacts are measured; the paper states neither window nor filter."""
 
     window: Any = number("s", 0.005, 0.5, default=0.05)
-    """After touchdown, in which peak and impulse are taken [s]."""
+    """Time after touchdown in which peak and impulse are taken [s]."""
     cutoff: Any = number("Hz", 0, 1000, default=50.0)
-    """Of the low-pass filter [Hz]; 0 for none."""
+    """Cutoff frequency of the low-pass filter [Hz]; 0 for no filter."""
     order: Any = number("", 2, 8, default=4)
-    """Of the Butterworth filter, forwards and backwards together: 2, 4, 6 or 8."""
+    """Order of the Butterworth filter, forwards and backwards together: 2, 4, 6 or 8."""
 
     def __post_init__(self) -> None:
         Checked.__post_init__(self)
@@ -73,7 +73,7 @@ class Steady(Checked):
     """Part of a walk that counts as steady."""
 
     begin: Any = number("m", 0, 1e5, default=4.0)
-    """From so far away from the start [m]."""
+    """Distance from the start at which steady walking begins [m]."""
     end: Any = number("m", 0, 1e5, default=0.0)
     """Up to so far [m]; 0 for the whole distance."""
 
@@ -84,11 +84,11 @@ class Protocol(Checked):
 
     name: str
     trials: Any = number("", 1, MOST_TRIALS, default=10)
-    """Side by side, each from its own starting state."""
+    """Number of trials, which run side by side, each from its own starting state."""
     seed: Any = number("", 0, 2**31, default=0)
-    """Of the starting states; the same seed gives the same trials."""
+    """Seed of the starting states; the same seed gives the same trials."""
     time_limit: Any = number("s", 0.5, 3600, default=40.0)
-    """After which a trial ends without arrival [s]."""
+    """Time after which a trial ends without arrival [s]."""
     start: Start = field(default_factory=Start)
     """Spread of the starting states."""
     randomisation: Randomisation = field(default_factory=Randomisation)
@@ -123,7 +123,8 @@ class WalkProtocol(Protocol):
     speed: Any = number("m/s", 0.05, 10, default=1.33)
     """Commanded [m/s] (paper, Table III)."""
     distance: Any = number("m", 0.5, 1e4, default=20.0)
-    """From the start, straight, at which a trial has arrived [m] (paper, Table III)."""
+    """Distance from the start, straight ahead, at which a trial has arrived [m] (paper, Table
+    III)."""
     heading_gain: Any = number("1/s", 0, 5, default=0.0)
     """Turning command over heading error; 0 leaves the policy to keep its heading by itself."""
     steady: Steady = field(default_factory=Steady)

@@ -51,7 +51,7 @@ class Evaluation:
     design: str
     """Name of the design."""
     seed: int
-    """Of the training; -1 where unknown."""
+    """Seed of the training; -1 where unknown."""
     steps: int
     """Policy steps of the training; -1 where unknown."""
     origin: Mapping[str, Any]
@@ -62,16 +62,16 @@ class Evaluation:
     outcomes: list[str]
     """How each trial ended, of `rollout.OUTCOMES`."""
     end_times: list[float]
-    """At which each trial ended [s]."""
+    """Time at which each trial ended [s]."""
     paths: list[np.ndarray]
     """Pelvis over the floor in the frame of the start, x ahead, once a policy step [m], `(t, 2)` of
     each trial."""
     measures: list[dict[str, float]]
-    """Of each trial, the same names in all; NaN where a trial gives no such number."""
+    """Measures of each trial, the same names in all; NaN where a trial gives no such number."""
     motors: list[MotorUse | None]
-    """Of each trial; None where it gives none."""
+    """How the motors were used in each trial; None where a trial gives no such numbers."""
     cycles: list[CyclePower | None] = field(default_factory=list)
-    """Right-leg power over the steady strides of each walk; None where there is none."""
+    """Power of the right leg over the steady strides of each walk; None where there is none."""
     robot: RobotDesign | None = None
     """The design that was simulated."""
     trained: TrainingFit = field(default_factory=lambda: TrainingFit(UNKNOWN))
@@ -80,8 +80,8 @@ class Evaluation:
     """All signals, of some trials where others were let go by `light`."""
 
     def light(self, kept: int = 1) -> Evaluation:
-        """The same without the signals of all trials but `kept`, those that arrived before others;
-        a trial's fill some 4 MB.
+        """A copy that keeps the signals of `kept` trials only, of trials that arrived first; the
+        signals of one trial fill some 4 MB.
         """
         return dataclasses.replace(
             self, trials=sorted(self.trials, key=lambda trial: trial.outcome != ARRIVED)[:kept]

@@ -51,46 +51,47 @@ class Trial:
     design: RobotDesign
     layout: Layout
     model: mujoco.MjModel
-    """Of MuJoCo, as simulated."""
+    """MuJoCo model that was simulated."""
     time_step: float
-    """Between samples [s]."""
+    """Time between samples [s]."""
     substeps: int
     """Samples in a policy step."""
     outcome: str
     """One of `OUTCOMES`."""
     end_time: float
-    """At which it ended [s]; a fall's or an arrival's policy step is counted, its samples are not
-    kept."""
+    """Time at which the trial ended [s]; the policy step of a fall or an arrival is counted, and
+    its samples are left out."""
     base_position: np.ndarray
-    """Of the pelvis [m], `(t, 3)`."""
+    """Position of the pelvis [m], `(t, 3)`."""
     base_orientation: np.ndarray
     """w x y z, `(t, 4)`."""
     base_velocity: np.ndarray
-    """In the world [m/s], `(t, 3)`."""
+    """Velocity of the pelvis in the world [m/s], `(t, 3)`."""
     joint_position: np.ndarray
-    """[rad], `(t, J)`."""
+    """Joint angles [rad], `(t, J)`."""
     joint_velocity: np.ndarray
-    """[rad/s], `(t, J)`."""
+    """Joint speeds [rad/s], `(t, J)`."""
     driven_joint_torque: np.ndarray
     """M times the motor torque, before friction [Nm], `(t, J)`."""
     motor_torque: np.ndarray
-    """[Nm], `(t, K)`."""
+    """Motor torques [Nm], `(t, K)`."""
     motor_velocity: np.ndarray
-    """[rad/s], `(t, K)`."""
+    """Motor speeds [rad/s], `(t, K)`."""
     pad_force: np.ndarray
-    """Of the floor on each pad, in the world [N], `(t, P, 3)`."""
+    """Force of the floor on each pad, in the world [N], `(t, P, 3)`."""
     pad_slip: np.ndarray
     """Sliding speed of each touching pad [m/s], `(t, P)`."""
     stop_torque: np.ndarray | None = None
-    """Of the stops at the ends of the range of motion on the joints [Nm], `(t, J)`; None where
-    nobody recorded it."""
+    """Torque on the joints of the stops at the ends of the range of motion [Nm], `(t, J)`; None
+    where it was not recorded."""
     divergence: Divergence | None = None
     """State from which it diverged, where it did."""
     joint_target: np.ndarray | None = None
     """Angles that the joint controllers were asked for [rad], `(t, J)`; None where nobody recorded
     them."""
     base_angular_velocity: np.ndarray | None = None
-    """In the pelvis's frame [rad/s], `(t, 3)`; None where nobody recorded it."""
+    """Angular velocity of the pelvis in its own frame [rad/s], `(t, 3)`; None where it was not
+    recorded."""
     power_constant: np.ndarray | None = None
     """Joule heat over squared torque of each motor [W/Nm^2], `(K,)`, where alterations make it
     another than the design's."""
@@ -136,7 +137,7 @@ SIGNALS = (
     "pad_force",
     "pad_slip",
 )
-"""Of `Environment.signals` that a `Trial` keeps."""
+"""Signals of `Environment.signals` that a `Trial` keeps."""
 
 
 def record(

@@ -46,11 +46,11 @@ class Shipped:
     """One policy of one training."""
 
     group: str
-    """Of the campaign: `walk`, `t_test`, `walk_paper`."""
+    """Group of the campaign: `walk`, `t_test` or `walk_paper`."""
     design: str
     """Ablation, by the name of its file."""
     seed: int
-    """Of the training."""
+    """Seed of the training."""
     late: int
     """0 for the last policy of the training, 1 for the late one before it, and so on."""
     path: Path
@@ -75,7 +75,7 @@ class Packed:
     policies: int
     """ONNX files; 0 where the training is not finished and was left out."""
     size: int
-    """Of its folder [byte]."""
+    """Size of the folder [byte]."""
 
 
 def shipped_folder() -> Path:

@@ -28,11 +28,11 @@ import numpy as np
 from hyperleg_design.errors import InputError
 
 RESAMPLES = 10_000
-"""Of a bootstrap."""
+"""Number of resamples of a bootstrap."""
 LEVEL = 0.95
-"""Of intervals."""
+"""Level of intervals."""
 FEWEST_SEEDS = 3
-"""Seeds that each side needs before a difference is told."""
+"""Seeds that each side needs before two designs are said to differ."""
 
 DIFFERS = "differs"
 NOT_TOLD_APART = "cannot be told apart"
@@ -54,21 +54,21 @@ class Estimate:
     """A mean over seeds and trials with its interval."""
 
     mean: float
-    """Of the seeds' means; NaN where nothing was measured."""
+    """Mean of the seeds' means; NaN where nothing was measured."""
     low: float
     """Lower end of the interval; NaN where there is none."""
     high: float
     """Upper end of the interval; NaN where there is none."""
     standard_error: float
-    """Of the mean, corrected for few seeds."""
+    """Standard error of the mean, corrected for few seeds."""
     seeds: int
-    """With at least one value."""
+    """Number of seeds with at least one value."""
     trials: int
-    """With a value."""
+    """Number of trials with a value."""
     missing: int
     """Trials without a value."""
     level: float = LEVEL
-    """Of the interval."""
+    """Level of the interval."""
 
     @property
     def speaks_of_seeds(self) -> bool:
@@ -127,7 +127,7 @@ class Difference:
     verdict: str
     """`DIFFERS`, `NOT_TOLD_APART`, `TOO_FEW_SEEDS` or `NOTHING_MEASURED`."""
     level: float = LEVEL
-    """Of the interval."""
+    """Level of the interval."""
 
 
 def estimate(
@@ -409,8 +409,8 @@ def _standard_error(groups: list[_Seed], means: np.ndarray) -> tuple[float, int]
 def _paired_error(
     a: list[_Seed], b: list[_Seed], resamples: int, rng: np.random.Generator
 ) -> tuple[float, int]:
-    """Of the mean of the seeds' differences: seeds are drawn together, trials of each side
-    apart.
+    """Standard error of the mean of the seeds' differences: seeds are drawn together, and trials of
+    each side independently.
     """
     seeds = len(a)
     if seeds == 1:

@@ -41,7 +41,7 @@ class TrainingFit:
     """Those of them that lie outside what it was trained over."""
 
     def text(self) -> str:
-        """For tables: the kind, and what lies outside the trained range."""
+        """Description for tables: the kind, and what lies outside the trained range."""
         if not self.outside:
             return self.kind
         shown = ", ".join(

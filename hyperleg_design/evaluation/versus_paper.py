@@ -41,9 +41,9 @@ class PaperRow:
     """`AGREES` where the printed number lies in our interval, `DIFFERS`, `TOO_FEW_SEEDS`, or
     `NOT_REPRODUCED`."""
     ablation_verdict: str
-    """The same without the toe."""
+    """Verdict on the value without the toe."""
     change_verdict: str
-    """Of `change_verdict`, for the relative change between the two."""
+    """Verdict of `change_verdict` on the relative change between the two."""
     why: str
     """Why it differs or cannot be reproduced, where that is known."""
 

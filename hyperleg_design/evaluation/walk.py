@@ -307,7 +307,7 @@ _STEADY = (
 
 
 def _run_measures(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> dict[str, float]:
-    """From the start to the arrival, the fall or the time limit."""
+    """Measures from the start to the arrival, the fall or the time limit."""
     time = (
         course.crossing_time(away, protocol.distance, trial.time_step)
         if trial.outcome == rollout.ARRIVED

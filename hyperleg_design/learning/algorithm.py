@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.environment import Environment
 
 FACTOR = 1.5
-"""On the learning rate when it is adapted (as rsl-rl has it)."""
+"""Factor by which the learning rate is raised or lowered (as in rsl-rl)."""
 QUIET = 0.01
-"""On the actor's last layer at the start: all robots begin about their default posture, and the
-policy is its own mirror image, without which the probability ratios of mirrored samples are mostly
-clipped and nothing is learnt from them."""
+"""Factor on the usual size of the actor's last layer at the start. It lets all robots begin near
+their default posture, and makes the first policy its own mirror image. Otherwise the probability
+ratios of mirrored samples are mostly clipped, and nothing is learnt from them."""
 GROUPS = {"actor": ["policy"], "critic": ["critic"]}
 """Observation groups of each network."""
 

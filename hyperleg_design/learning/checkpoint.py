@@ -15,7 +15,7 @@ from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.writing import write_bytes
 
 FORMAT = "hyperleg-checkpoint-1"
-"""Of the file."""
+"""Name and version of the file format."""
 
 
 def save_checkpoint(path: Path, content: dict[str, Any]) -> None:

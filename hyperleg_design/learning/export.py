@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from rsl_rl.models import MLPModel
 
 FORMAT = "hyperleg-policy-1"
-"""Of the metadata."""
+"""Name and version of the metadata of a policy."""
 CRITIC_FORMAT = "hyperleg-critic-1"
-"""Of the metadata of a critic."""
+"""Name and version of the metadata of a critic."""
 TOLERANCE = 1e-5
 """Largest difference between torch and ONNX Runtime, over 1 + |action|."""
 OPSET = 18
@@ -64,8 +64,8 @@ def export_policy(
 
 
 def largest_difference(content: bytes, actor: MLPModel, count: int = 64) -> float:
-    """Between actions of an ONNX file and of torch, over 1 + |action|, on observations as the
-    normaliser has seen them.
+    """Largest difference between the actions of an ONNX file and of torch, over 1 + |action|, on
+    observations as the normaliser has seen them.
     """
     import onnxruntime
 

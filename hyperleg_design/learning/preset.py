@@ -18,7 +18,7 @@ from hyperleg_design.simulation.rewards import TERMS
 from hyperleg_design.simulation.settings import Checked
 
 BEGINS = ("stage", "assist_gone")
-"""From when a ramp counts: the stage's beginning, or the first iteration without assist."""
+"""When a ramp begins: with its stage, or with the first iteration without assist."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -32,7 +32,7 @@ class Algorithm(Checked):
     trace: Any = number("", 0, 1, default=0.95)
     """lambda of the generalised advantage (paper, Table II)."""
     clip: Any = number("", 0.01, 1, default=0.2)
-    """Of the probability ratio (paper, Table II)."""
+    """Bound of the change of the probability ratio (paper, Table II)."""
     entropy: Any = number("", 0, 1, default=0.002)
     learning_rate: Any = number("", 1e-7, 1, default=3e-4)
     kl_target: Any = number("", 1e-5, 1, default=0.02)
@@ -44,7 +44,7 @@ class Algorithm(Checked):
     fastest: Any = number("", 0, 1, default=2e-3)
     """Largest learning rate when adapted once an iteration."""
     value_weight: Any = number("", 0, 100, default=1.0)
-    """Of the value loss."""
+    """Weight of the value loss."""
     value_clipped: Any = flag(default=False)
     """Whether the value loss is clipped as the probability ratio is."""
     gradient_norm: Any = number("", 1e-3, 1e6, default=1.0)
@@ -68,7 +68,7 @@ class Network(Checked):
     hidden: tuple[int, ...] = (512, 256, 128)
     """Widths of the hidden layers (paper, Table II)."""
     activation: Any = text("elu", "relu", "tanh", default="elu")
-    """(paper, Table II)"""
+    """Activation function (paper, Table II)."""
     deviation: Any = number("", 1e-3, 10, default=0.8)
     """Standard deviation of the actions at the start."""
     normalised: Any = flag(default=True)

@@ -65,7 +65,7 @@ PACKAGES = (*provenance.PACKAGES, "torch", "rsl-rl-lib")
 SHOW_EVERY = 5.0
 """Seconds between two lines of progress."""
 TRIAL_SEED = 20_000
-"""Of the trials' starting states, other than any training's."""
+"""Seed of the starting states of trials, different from the seed of any training."""
 
 
 def train(
@@ -494,7 +494,7 @@ class Training:
 
     @contextlib.contextmanager
     def _stoppable(self) -> Iterator[None]:
-        """On an interrupt or a request to end, finish the iteration and write a checkpoint."""
+        """Finish the iteration and write a checkpoint on an interrupt or a request to end."""
         if threading.current_thread() is not threading.main_thread():
             yield
             return

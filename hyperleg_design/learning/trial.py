@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alterations
 
 Policy = Callable[[np.ndarray], np.ndarray]
-"""From observations `(n, size)` of the group `policy` to actions `(n, J)`."""
+"""A function from observations of the group `policy`, `(n, size)`, to actions, `(n, J)`."""
 WALK = 12.0
 """Length of a walking trial [s]; its second half is measured."""
 COURSE = 30.0

@@ -43,13 +43,13 @@ class StartPolicy:
     """Names of its observation's numbers."""
     joints: tuple[str, ...]
     mean: np.ndarray
-    """Of its normaliser, `(size,)`."""
+    """Means of its normaliser, `(size,)`."""
     deviation: np.ndarray
-    """Of its normaliser, `(size,)`."""
+    """Standard deviations of its normaliser, `(size,)`."""
     weights: tuple[np.ndarray, ...]
-    """Of each layer, `(outputs, inputs)`."""
+    """Weights of each layer, `(outputs, inputs)`."""
     biases: tuple[np.ndarray, ...]
-    """Of each layer, `(outputs,)`."""
+    """Biases of each layer, `(outputs,)`."""
     commands: str
     """Kind of the commands that it follows, `velocity` or `waypoints`."""
     posture: dict[str, float]
@@ -68,13 +68,13 @@ class StartCritic:
     columns: tuple[str, ...]
     """Names of its observation's numbers."""
     mean: np.ndarray
-    """Of its normaliser, `(size,)`."""
+    """Means of its normaliser, `(size,)`."""
     deviation: np.ndarray
-    """Of its normaliser, `(size,)`."""
+    """Standard deviations of its normaliser, `(size,)`."""
     weights: tuple[np.ndarray, ...]
-    """Of each layer, `(outputs, inputs)`."""
+    """Weights of each layer, `(outputs, inputs)`."""
     biases: tuple[np.ndarray, ...]
-    """Of each layer, `(outputs,)`."""
+    """Biases of each layer, `(outputs,)`."""
     action_deviation: np.ndarray
     """Standard deviation of the policy's actions, `(J,)`."""
 

@@ -70,7 +70,7 @@ def _find(path: str) -> Path:
 
 
 def checks_text(found: list[dict[str, Any]]) -> str:
-    """The same for a terminal."""
+    """Lay out the findings as text for a terminal."""
     lines = []
     for entry in found:
         verdict = (

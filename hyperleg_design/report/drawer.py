@@ -30,7 +30,7 @@ class Drawer:
 
     folder: Path
     prefix: str = ""
-    """In front of each figure's name."""
+    """Text in front of each figure's name."""
 
     def together(
         self, jobs: Sequence[tuple[str, str, Callable[[Path], object], str, bool]]

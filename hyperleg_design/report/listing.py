@@ -143,7 +143,7 @@ def _parameters() -> dict[str, Any]:
 
 
 def listing_text(found: dict[str, Any]) -> str:
-    """The same for a terminal."""
+    """Lay out a listing as tables for a terminal."""
     parts = []
     for kind, entries in found.items():
         parts.append(kind)

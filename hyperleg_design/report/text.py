@@ -45,7 +45,7 @@ def _cell(value: object) -> str:
 
 
 _LIMITS = ("max_torque", "torque_alone", "speed", "reflected_inertia")
-"""Of `joint_limits` in an analysis."""
+"""Entries of `joint_limits` in an analysis."""
 
 
 def analysis_text(found: Mapping[str, Any]) -> str:

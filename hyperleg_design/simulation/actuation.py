@@ -45,17 +45,17 @@ class ActuationModel:
     motor_from_joint: np.ndarray
     """M^-1, or the map of least Joule heat, `(..., motors, joints)` [-]."""
     envelope: MotorEnvelope
-    """`(..., motors)` each."""
+    """Torque-speed envelopes of the motors, `(..., motors)` each."""
     rated_torque: np.ndarray
     """Continuous torque [Nm], `(..., motors)`."""
     stiffness: np.ndarray
-    """[Nm/rad], `(..., joints)`."""
+    """Position gains of the controller [Nm/rad], `(..., joints)`."""
     damping: np.ndarray
-    """[Nms/rad], `(..., joints)`."""
+    """Velocity gains of the controller [Nms/rad], `(..., joints)`."""
     coulomb: np.ndarray
-    """[Nm], `(..., joints)`."""
+    """Coulomb friction [Nm], `(..., joints)`."""
     viscous: np.ndarray
-    """[Nms/rad], `(..., joints)`."""
+    """Viscous friction [Nms/rad], `(..., joints)`."""
 
 
 def actuation_model(design: RobotDesign) -> ActuationModel:

@@ -40,19 +40,20 @@ class Machine:
     """M of the transmission as it is, `(J, K)` [-]: joint torque M tau, motor velocity M^T
     q_dot."""
     motor_from_joint: np.ndarray
-    """By which the controller turns joint torques into motor torques, `(K, J)` [-]."""
+    """Matrix by which the controller turns joint torques into motor torques, `(K, J)` [-]."""
     stiffness: np.ndarray
-    """Of the controller [Nm/rad], `(J,)`."""
+    """Position gains of the controller [Nm/rad], `(J,)`."""
     damping: np.ndarray
-    """Of the controller [Nms/rad], `(J,)`."""
+    """Velocity gains of the controller [Nms/rad], `(J,)`."""
     rotor_inertia: np.ndarray
-    """[kg m^2] on the motor's side of M, `(K,)`; the simulator keeps it where its model has it."""
+    """Rotor inertia on the motor's side of M [kg m^2], `(K,)`; the simulator keeps it where its
+    model has it."""
     no_load_speed: np.ndarray
-    """[rad/s], `(K,)`; inf where unlimited."""
+    """No-load speed [rad/s], `(K,)`; infinite where unlimited."""
     stall_torque: np.ndarray
     """Where the voltage line meets zero speed [Nm], `(K,)`; inf where unlimited."""
     peak_torque: np.ndarray
-    """[Nm], `(K,)`; inf where unlimited."""
+    """Peak torque [Nm], `(K,)`; infinite where unlimited."""
     power_constant: np.ndarray
     """Joule heat over squared torque [W/Nm^2], `(K,)`; 0 where unknown."""
     rated_torque: np.ndarray
@@ -80,7 +81,7 @@ class Machine:
         return self.motors.index(name)
 
     def changed(self, field: str, place: int, change: Callable[[np.ndarray], Any]) -> Machine:
-        """With one joint's or motor's constant changed.
+        """A copy in which a constant of one joint or motor is changed.
 
         Args:
             field: name of a `(J,)` or `(K,)` field.
@@ -127,25 +128,25 @@ class Tick:
     """One simulation step as hooks see it; filled from top to bottom as the step goes on."""
 
     step: float
-    """Of the simulation [s]."""
+    """Time step of the simulation [s]."""
     position: np.ndarray
     velocity: np.ndarray
     """True, of the joints `(n, J)` [rad, rad/s], at the start of the step."""
     motor_position: np.ndarray
     motor_velocity: np.ndarray
-    """Of the rotors `(n, K)` [rad, rad/s]: M^T q, or an alteration's own where it lets them move
+    """Speeds of the rotors [rad/s], `(n, K)`: M^T q, or an alteration's own where it lets them move
     apart from the joints."""
     last_torque: np.ndarray
-    """That the motors gave in the step before `(n, K)` [Nm]; zero in the first."""
+    """Motor torques of the step before [Nm], `(n, K)`; zero in the first step."""
     temperature: np.ndarray | None
-    """Of the motors `(n, K)` [degC], where somebody measured it."""
+    """Measured temperatures of the motors [degC], `(n, K)`; None where they were not measured."""
     battery: np.ndarray | None
     """Voltage `(n,)` [V], where somebody measured it."""
     command: np.ndarray | None = None
     """Motor torque that the controller asked for, before any hook `(n, K)` [Nm]; None where torque
     is replayed."""
     torque: np.ndarray | None = None
-    """At the rotors, `(n, K)` [Nm]: after `motor_torque`."""
+    """Torque at the rotors [Nm], `(n, K)`; None until `motor_torque` has computed it."""
     joint_torque: np.ndarray | None = None
     """M torque, `(n, J)` [Nm]."""
 
@@ -194,8 +195,8 @@ class Live:
         return target
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
-        """From the motor torque that the controller asks for to the one that the drive tries to
-        give `(n, K)` [Nm].
+        """Change the motor torque that the controller asks for into the one that the drive tries to
+        give [Nm], `(n, K)`.
         """
         return command
 
@@ -204,8 +205,8 @@ class Live:
         return limits
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
-        """From the torque within the limits, which the drive believes, to the torque at the rotor
-        `(n, K)` [Nm].
+        """Change the torque that the drive believes to give, within its limits, into the torque at
+        the rotor [Nm], `(n, K)`.
         """
         return torque
 
@@ -231,8 +232,8 @@ class Live:
     def transmitted(
         self, torque: np.ndarray, damping: np.ndarray | None, tick: Tick
     ) -> tuple[np.ndarray, np.ndarray | None]:
-        """From torque and resistance at the rotors to those on the motor's side of a rigid M, `(n,
-        K)` each.
+        """Change torque and resistance at the rotors into those on the motor's side of a rigid M,
+        `(n, K)` each.
         """
         return torque, damping
 

@@ -27,21 +27,21 @@ class Driven:
     """What a step gives the simulator to apply, and what a log of it would say."""
 
     command: np.ndarray | None
-    """That the controller asked for `(n, K)` [Nm]."""
+    """Torque that the controller asked for [Nm], `(n, K)`."""
     believed: np.ndarray
     """Torque within the limits, which the drive takes itself to give `(n, K)` [Nm]."""
     torque: np.ndarray
-    """At the rotors `(n, K)` [Nm]."""
+    """Torque at the rotors [Nm], `(n, K)`."""
     motor_velocity: np.ndarray
-    """Of the rotors `(n, K)` [rad/s]."""
+    """Speeds of the rotors [rad/s], `(n, K)`."""
     transmitted: np.ndarray
-    """To be applied through M `(n, K)` [Nm]."""
+    """Torque to be applied through M [Nm], `(n, K)`."""
     motor_damping: np.ndarray | None
-    """To be applied through M, implicitly: `M diag(D) M^T` `(n, K)` [Nms/rad]."""
+    """Damping to be applied through M, implicitly, as `M diag(D) M^T` [Nms/rad], `(n, K)`."""
     joint_damping: np.ndarray | None
-    """To be applied at the joints, implicitly `(n, J)` [Nms/rad]."""
+    """Damping to be applied at the joints, implicitly [Nms/rad], `(n, J)`."""
     joint_torque: np.ndarray | None
-    """To be applied at the joints `(n, J)` [Nm]."""
+    """Torque to be applied at the joints [Nm], `(n, J)`."""
 
 
 class Chain:

@@ -61,7 +61,7 @@ class Divergence:
     velocity: np.ndarray
     """MuJoCo's qvel before, `(6 + J,)`."""
     action: np.ndarray
-    """`(J,)`"""
+    """Last action of the policy, `(J,)`."""
 
 
 @dataclass(eq=False)
@@ -71,9 +71,9 @@ class Step:
     """
 
     observations: dict[str, np.ndarray]
-    """By group, `(n, size)`, single precision; of the new episode where one ended."""
+    """Observations by group, `(n, size)`, single precision; of the new episode where one ended."""
     reward: np.ndarray
-    """`(n,)`; zero for a diverged simulation."""
+    """Rewards, `(n,)`; zero for a diverged simulation."""
     terminated: np.ndarray
     """Whether the robot fell, `(n,)`."""
     truncated: np.ndarray
@@ -246,7 +246,7 @@ class Chunk:
 
     @property
     def phase(self) -> np.ndarray:
-        """Of the gait clock, 0 .. 1, `(n,)`."""
+        """Phase of the gait clock, 0 to 1, `(n,)`."""
         elapsed = self.episode_step * (self.task.physics.policy_step / self.task.clock.period)
         return np.asarray((self._clock_start + elapsed) % 1.0)
 

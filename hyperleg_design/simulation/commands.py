@@ -22,9 +22,9 @@ class VelocityCommands(Checked):
     """Velocities drawn anew now and then; uniform within their ranges."""
 
     forward_low: Any = number("m/s", -5, 5, default=0.6)
-    """[m/s]"""
+    """Smallest commanded forward speed [m/s]."""
     forward_high: Any = number("m/s", -5, 5, default=1.4)
-    """[m/s]"""
+    """Largest commanded forward speed [m/s]."""
     sideways: Any = number("m/s", 0, 3, default=0.0)
     """Either way [m/s]."""
     turning: Any = number("rad/s", 0, 5, default=0.0)
@@ -32,11 +32,11 @@ class VelocityCommands(Checked):
     test_share: Any = number("", 0, 1, default=0.4)
     """Fraction of commands that are the test's: straight on at `test_speed` [-]."""
     test_speed: Any = number("m/s", -5, 5, default=1.33)
-    """[m/s]; 1.33 is the paper's walk (Table III)."""
+    """Forward speed of the test's commands [m/s]; 1.33 is the paper's walk (Table III)."""
     standing_share: Any = number("", 0, 1, default=0.0)
     """Fraction of commands that are zero [-]."""
     interval: Any = number("s", 0.1, 10000, default=10.0)
-    """Between commands [s]."""
+    """Time between two commands [s]."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -28,9 +28,9 @@ class Range:
     """Values that one leaf of a design takes in training."""
 
     low: float
-    """In the leaf's unit."""
+    """Smallest value, in the unit of the leaf."""
     high: float
-    """In the leaf's unit."""
+    """Largest value, in the unit of the leaf."""
     log: bool = False
     """Whether its logarithm is observed, for leaves that are drawn evenly in it."""
 
@@ -54,7 +54,7 @@ class DesignRanges:
     """The design part of an observation: one number a leaf, in the order of `ranges`."""
 
     ranges: Mapping[str, Range]
-    """By dotted path of the leaf."""
+    """Ranges by dotted path of the leaf."""
 
     @property
     def columns(self) -> list[str]:
@@ -90,7 +90,7 @@ class DesignRanges:
         return drawn
 
     def to_mapping(self) -> dict[str, Any]:
-        """As plain values, for the metadata of a policy."""
+        """The ranges as plain values, for the metadata of a policy."""
         return {path: vars(one) for path, one in self.ranges.items()}
 
 

@@ -407,7 +407,7 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
 
 
 def _parts(simulations: int) -> int:
-    """In how many parts simulations are worked on."""
+    """Number of parts into which the simulations are divided for the threads."""
     return max(-(-simulations // CHUNK), 2 if simulations >= SMALLEST_SPLIT else 1)
 
 

@@ -13,7 +13,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from hyperleg_design.simulation.environment import Environment
 
 ACTION_BOUND = 10.0
-"""Of the action space; actions have no unit and the task clips them at its own limit."""
+"""Bound of the action space; actions have no unit, and the task clips them at its own limit."""
 
 
 class GymnasiumVector(VectorEnv):  # type: ignore[misc]

@@ -11,9 +11,9 @@ from functools import lru_cache
 import numpy as np
 
 PERIOD = 0.9
-"""Of a stride [s]; of a person with legs of 0.79 m at 1.33 m/s; assumed."""
+"""Duration of a stride of a person with legs of 0.79 m at 1.33 m/s [s]; assumed."""
 PHASES = 50
-"""Of the cycle that are compared with."""
+"""Number of phases of the cycle that a state is compared with."""
 ANGLE, RATE = 0.25, 2.5
 """Scales of the distance from the cycle [rad], [rad/s]; assumed."""
 SHARES = tuple(100 * place / 12 for place in range(12))
@@ -29,7 +29,7 @@ and Burnfield, Gait Analysis, 2nd edition, 2010) with which the feet of this rob
 float at `SPEED`. With the human angles as they are, its heel would still be 50 mm above the floor
 at touchdown, and the standing foot would move at 1.18 m/s."""
 SPEED = 1.33
-"""Of the pelvis in this cycle [m/s]."""
+"""Speed of the pelvis in this cycle [m/s]."""
 SLOWER, FASTER = 0.8, 1.1
 """Shares of `SPEED` between which an episode that starts in mid-stride begins; assumed."""
 

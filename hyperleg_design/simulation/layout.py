@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.kinematic_tree import Tree
 
 GRAVITY = 9.81
-"""[m/s^2], as in the MuJoCo model."""
+"""Gravitational acceleration [m/s^2], as in the MuJoCo model."""
 
 
 @dataclass(frozen=True, eq=False)

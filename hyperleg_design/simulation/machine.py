@@ -39,7 +39,7 @@ def machine_from(
     inertia: np.ndarray,
     voltage: float = float("nan"),
 ) -> Machine:
-    """Of the legs of an actuation model.
+    """Describe joints and motors from the actuation model of the legs.
 
     Args:
         model: constants of one leg `(k,)`, or of all L limbs in n simulations `(n, L, k)`.
@@ -109,5 +109,7 @@ def bus_voltage(design: RobotDesign) -> float:
 
 
 def rotor_inertia(design: RobotDesign) -> np.ndarray:
-    """Of one leg's motors [kg m^2], a robot's `(motors,)` or a batch's `(n, motors)`."""
+    """Rotor inertia of the motors of one leg [kg m^2], `(motors,)` for a robot or `(n, motors)` for
+    a batch.
+    """
     return gear.rotor_inertia(design)[..., : len(transmission.motor_names(design))]

@@ -24,7 +24,7 @@ class MirrorMap:
     index: np.ndarray
     """Place that each number comes from, `(k,)`."""
     sign: np.ndarray
-    """`(k,)`"""
+    """Sign of each entry in the mirror, `(k,)`."""
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Mirror image, `(..., k)`."""
@@ -32,7 +32,7 @@ class MirrorMap:
 
 
 def mirror_joints(layout: Layout) -> MirrorMap:
-    """Of joint values and actions.
+    """How joint values and actions are mirrored.
 
     Raises:
         InputError: the robot is not its own mirror image.
@@ -50,7 +50,7 @@ def mirror_joints(layout: Layout) -> MirrorMap:
 
 
 def mirror_observation(parts: Sequence[str], layout: Layout) -> MirrorMap:
-    """Of an observation made of parts."""
+    """How an observation that is made of parts is mirrored."""
     index, sign, start, joints = [], [], 0, mirror_joints(layout)
     for name, count, signs in columns(parts, layout):
         turned = np.array(signs, np.float32) if signs else np.ones(count, np.float32)

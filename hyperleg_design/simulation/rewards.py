@@ -30,11 +30,11 @@ class Robot:
     """What terms know of the robot and the task besides the state."""
 
     layout: Layout
-    """Of all simulations, or of each of them."""
+    """Layout of all simulations together, or of each of them."""
     clock: Clock
 
     def take(self, rows: np.ndarray) -> Robot:
-        """The same for some simulations."""
+        """The robots of some of the simulations."""
         return dataclasses.replace(self, layout=self.layout.take(rows))
 
 

@@ -11,7 +11,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.simulation.environment import Environment
 
 Policy = Callable[[np.ndarray], np.ndarray]
-"""From observations of the group `policy`, `(n, size)`, to actions, `(n, J)`."""
+"""A function from observations of the group `policy`, `(n, size)`, to actions, `(n, J)`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,15 +19,15 @@ class Recording:
     """What n simulations did, in T policy steps of S simulation steps each."""
 
     signals: dict[str, np.ndarray]
-    """`(n, T S, ...)` each, see `Environment.signals`."""
+    """Recorded signals by name, `(n, T S, ...)` each; see `Environment.signals`."""
     time_step: float
-    """Between two entries of a signal [s]."""
+    """Time between two entries of a signal [s]."""
     commands: np.ndarray
-    """That the policy saw, `(n, T, 3)`."""
+    """Commands that the policy saw, `(n, T, 3)`."""
     actions: np.ndarray
-    """`(n, T, J)`"""
+    """Actions of the policy, `(n, T, J)`."""
     reward_terms: np.ndarray
-    """`(n, T, terms)`"""
+    """Value of each reward term, `(n, T, terms)`."""
     ending: np.ndarray
     """Index into `ENDINGS` of each step, `(n, T)`."""
     first_end: np.ndarray

@@ -28,7 +28,7 @@ class Physics(Checked):
     """Settings of MuJoCo's time steps, contacts and solver."""
 
     time_step: Any = number("s", 1e-5, 0.02, default=0.005)
-    """Of the simulation [s]; 200 Hz (paper, Table II)."""
+    """Time step of the simulation [s]; 200 Hz in the paper (Table II)."""
     substeps: Any = number("", 1, 2000, default=4)
     """Simulation steps in one policy step; 4 give 50 Hz (paper, Table II)."""
     cone: Any = text("pyramidal", "elliptic", default="pyramidal")
@@ -42,7 +42,7 @@ class Physics(Checked):
     iterations: Any = number("", 1, 1000, default=100)
     """Most iterations of the contact solver."""
     tolerance: Any = number("", 0, 1e-2, default=1e-8)
-    """At which the contact solver stops."""
+    """Tolerance at which the contact solver stops."""
     friction: Any = text("implicit", "explicit", default="implicit")
     """How joint friction enters a step, see `actuation`."""
     friction_space: Any = text("joint", "motor", default="joint")
@@ -74,7 +74,7 @@ class Physics(Checked):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Control(Checked):
-    """From the policy's action to joint targets: target = default + scale * EMA(action)."""
+    """How the policy's action becomes joint targets: target = default + scale * EMA(action)."""
 
     smoothing: Any = number("", 0.01, 1, default=0.2)
     """Weight alpha of the newest action in the moving average (paper, Table II)."""
@@ -91,11 +91,11 @@ class Start(Checked):
     """
 
     joint_position: Any = number("rad", 0, 1, default=0.05)
-    """[rad]"""
+    """Largest deviation of joint angles from the default posture [rad]."""
     joint_velocity: Any = number("rad/s", 0, 10, default=0.0)
-    """[rad/s]"""
+    """Largest joint speed [rad/s]."""
     linear_velocity: Any = number("m/s", 0, 3, default=0.0)
-    """Of the pelvis, forward and sideways [m/s]."""
+    """Largest speed of the pelvis, forward and sideways [m/s]."""
     tilt: Any = number("rad", 0, 0.5, default=0.02)
     """Roll and pitch of the pelvis [rad]."""
     yaw: Any = number("rad", 0, 3.1416, default=3.1415)
@@ -132,9 +132,9 @@ class Thermal(Checked):
     """
 
     reading: Any = text("ema_of_square", "square_of_ema", default="ema_of_square")
-    """Which of the two readings of the paper's formula."""
+    """Which of the two readings of the paper's formula is used."""
     time_constant: Any = number("s", 0.05, 1000, default=3.0)
-    """Of the moving average [s] (paper, Section III)."""
+    """Time constant of the moving average [s] (paper, Section III)."""
     threshold: Any = number("", 0.01, 100, default=1.0)
     """h_th [-]; the paper tunes it and prints no value."""
 
@@ -144,7 +144,7 @@ class Clock(Checked):
     """Gait clock; a deviation from the paper."""
 
     period: Any = number("s", 0.1, 5, default=1.0)
-    """Of a stride [s]."""
+    """Duration of a stride [s]."""
     stance: Any = number("", 0.3, 0.9, default=0.62)
     """Fraction of the stride for which each foot should stand [-]."""
 
@@ -161,7 +161,7 @@ class Limits(Checked):
     tilt: Any = number("rad", 0.1, 3.2, default=0.9273)
     """Pelvis leaning more than this has fallen [rad]; cos 0.9273 = 0.6."""
     duration: Any = number("s", 0.1, 10000, default=20.0)
-    """Of an episode [s] (paper, Table II); the end is a truncation."""
+    """Duration of an episode [s] (paper, Table II); its end is a truncation."""
     deviation: Any = number("m", 0.1, 1000, default=4.0)
     """Farther than this from the path to a waypoint an episode is truncated [m]."""
 

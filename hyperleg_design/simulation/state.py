@@ -16,19 +16,19 @@ class Motion:
     """
 
     position: np.ndarray
-    """Of the pelvis in the world [m], `(n, 3)`."""
+    """Position of the pelvis in the world [m], `(n, 3)`."""
     rotation: np.ndarray
     """Pelvis to world, `(n, 3, 3)`."""
     velocity: np.ndarray
-    """Of the pelvis in the world [m/s], `(n, 3)`."""
+    """Velocity of the pelvis in the world [m/s], `(n, 3)`."""
     angular_velocity: np.ndarray
-    """In the pelvis's frame [rad/s], `(n, 3)`."""
+    """Angular velocity of the pelvis in its own frame [rad/s], `(n, 3)`."""
     heading: np.ndarray
     """Cosine and sine of the yaw angle, `(n, 2)`."""
     joint_position: np.ndarray
-    """[rad], `(n, J)`."""
+    """Joint angles [rad], `(n, J)`."""
     joint_velocity: np.ndarray
-    """[rad/s], `(n, J)`."""
+    """Joint speeds [rad/s], `(n, J)`."""
 
     @property
     def gravity(self) -> np.ndarray:
@@ -66,17 +66,17 @@ class Goal:
     """The waypoint of each simulation, as the step found it."""
 
     offset: np.ndarray
-    """From the pelvis to the waypoint in the yaw frame [m], `(n, 2)`."""
+    """Vector from the pelvis to the waypoint in the yaw frame [m], `(n, 2)`."""
     distance: np.ndarray
-    """[m], `(n,)`."""
+    """Distance to the waypoint [m], `(n,)`."""
     heading_error: np.ndarray
     """Angle from the heading to the waypoint, counterclockwise [rad], `(n,)`."""
     following: np.ndarray
-    """From the pelvis to the waypoint after that, in the yaw frame [m], `(n, 2)`."""
+    """Vector from the pelvis to the waypoint after that, in the yaw frame [m], `(n, 2)`."""
     speed_cap: np.ndarray
     """Speed up to which speed toward the waypoint is asked for [m/s], `(n,)`."""
     progress: np.ndarray
-    """By how much this step came closer than ever before, max(d* - d, 0) [m], `(n,)`."""
+    """How much closer this step came than any before, max(d* - d, 0) [m], `(n,)`."""
     arrived: np.ndarray
     """Whether this step reached it, `(n,)`."""
     deviation: np.ndarray
@@ -100,13 +100,13 @@ class Sensed:
     """What the robot's own sensors tell, where that is not the truth."""
 
     angular_velocity: np.ndarray
-    """Of the pelvis in its frame [rad/s], `(n, 3)`."""
+    """Angular velocity of the pelvis in its own frame [rad/s], `(n, 3)`."""
     gravity: np.ndarray
     """Unit vector of gravity in the pelvis's frame, `(n, 3)`."""
     joint_position: np.ndarray
-    """[rad], `(n, J)`."""
+    """Joint angles [rad], `(n, J)`."""
     joint_velocity: np.ndarray
-    """[rad/s], `(n, J)`."""
+    """Joint speeds [rad/s], `(n, J)`."""
 
 
 @dataclass(slots=True, eq=False)
@@ -122,9 +122,9 @@ class State:
     """Forward, sideways [m/s] and turning [rad/s] speed; or offset to the waypoint (clipped) and
     heading error, `(n, 3)`."""
     motor_torque: np.ndarray
-    """[Nm], `(s, n, K)`."""
+    """Motor torques [Nm], `(s, n, K)`."""
     motor_velocity: np.ndarray
-    """[rad/s], `(s, n, K)`."""
+    """Motor speeds [rad/s], `(s, n, K)`."""
     pad_load: np.ndarray
     """Vertical force on each sole pad [N], `(s, n, P)`."""
     foot_load: np.ndarray
@@ -136,11 +136,11 @@ class State:
     thermal_excess: np.ndarray
     """Sum over motors of [-(dh/dt + h / T)]+ [1/s], `(n,)`."""
     phase: np.ndarray
-    """Of the gait clock, 0 .. 1, `(n,)`."""
+    """Phase of the gait clock, 0 to 1, `(n,)`."""
     terminated: np.ndarray
     """Whether the robot has fallen, `(n,)`."""
     goal: Goal | None
-    """In tasks with waypoints."""
+    """Goals of tasks with waypoints; None in other tasks."""
     sensed: Sensed | None = None
     """What sensors tell of `motion`, where alterations make a difference."""
 

@@ -47,7 +47,7 @@ class RowStreams:
 
     @property
     def state(self) -> list[dict[str, Any]]:
-        """Of the generators, for `restore`."""
+        """State of the generators, for `restore`."""
         return [dict(generator.bit_generator.state) for generator in self.generators]
 
     def restore(self, state: Sequence[dict[str, Any]] | dict[str, Any]) -> None:

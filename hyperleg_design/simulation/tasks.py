@@ -70,7 +70,7 @@ class Task:
     observations: Mapping[str, tuple[str, ...]]
     """Parts of each observation group."""
     rewards: Mapping[str, Reward]
-    """By name of the term."""
+    """Reward terms with weight and parameters, by name."""
     physics: Physics = field(default_factory=Physics)
     control: Control = field(default_factory=Control)
     start: Start = field(default_factory=Start)

@@ -23,8 +23,8 @@ from hyperleg_design.simulation.actuation import applied
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine, Tick
 
 DAMPING_RATIO = 0.05
-"""Of the rotor on its belt, where nobody gives a damping (assumed: steel-corded belts ring for a
-few periods)."""
+"""Damping ratio of the rotor on its belt where no damping is given (assumed: belts with steel cords
+ring for a few periods)."""
 STIFFEST = 100.0
 """Highest frequency of a rotor on its belt that is resolved [Hz]; logs at 200 Hz show nothing
 faster."""
@@ -40,11 +40,11 @@ class Belt(Alteration):
 
     motor: str
     compliance: Any = 0.0
-    """[rad/Nm], `()` or `(n,)`."""
+    """Compliance of the belt [rad/Nm], `()` or `(n,)`."""
     play: Any = 0.0
     """Whole width of the dead zone [rad], `()` or `(n,)`."""
     damping: Any = None
-    """Of the belt while it is taut [Nms/rad], `()` or `(n,)`; by default that of
+    """Damping of the belt while it is taut [Nms/rad], `()` or `(n,)`; by default that of
     `DAMPING_RATIO`."""
     stiffening: Any = 0.0
     """1 over the stretch at which it is twice as stiff [1/rad], `()` or `(n,)`: torque grows as s
@@ -54,7 +54,7 @@ class Belt(Alteration):
     rotor, which it takes for them."""
 
     def machine(self, machine: Machine) -> Machine:
-        """With this rotor free where the belt is not rigid."""
+        """The machine with this rotor free to move where the belt is not rigid."""
         place = machine.motor(self.motor)
         loose = (np.asarray(self.compliance, float) > 0) | (np.asarray(self.play, float) > 0)
         inertia = np.asarray(machine.rotor_inertia, float)

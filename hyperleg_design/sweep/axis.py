@@ -39,7 +39,7 @@ class Axis:
     scaled: bool = False
     """Whether values multiply each leaf's base value instead of replacing it."""
     unit: str = ""
-    """Of the values; empty for factors, texts and ratios."""
+    """Unit of the values; empty for factors, texts and ratios."""
 
     @property
     def numeric(self) -> bool:

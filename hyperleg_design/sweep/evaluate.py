@@ -84,7 +84,9 @@ def evaluate_samples(
 
 
 def _refused(error: InputError, count: int) -> np.ndarray | None:
-    """Which designs of a batch an error refuses, at least one; None where it does not say."""
+    """Find the designs of a batch that an error refuses, at least one; None where the error does
+    not name any.
+    """
     if (
         error.bad is None
         or np.shape(error.bad) not in ((), (1,), (count,))

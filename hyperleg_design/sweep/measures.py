@@ -55,7 +55,7 @@ class Batch:
 
     @cached_property
     def inertials(self) -> dict[str, Inertial]:
-        """Of the links of the left leg, and the pelvis."""
+        """Inertials of the links of the left leg and of the pelvis."""
         return inertials(self.design)
 
     @cached_property
@@ -70,7 +70,7 @@ class Batch:
 
     @cached_property
     def envelope(self) -> MotorEnvelope:
-        """Of the motors of one leg."""
+        """Torque-speed envelopes of the motors of one leg."""
         return motor_envelope(self.design)
 
     @cached_property
@@ -207,13 +207,13 @@ def leg_mass(batch: Batch) -> np.ndarray:
 
 @measure("m", "high")
 def leg_length(batch: Batch) -> np.ndarray:
-    """From the hip-pitch axis to the sole, straight."""
+    """Length of the straight leg, from the hip-pitch axis to the sole."""
     return consistency.leg_length(batch.design)
 
 
 @measure("m", "low")
 def height(batch: Batch) -> np.ndarray:
-    """From the sole to the top of the pelvis, legs straight."""
+    """Height of the robot from the sole to the top of the pelvis, legs straight."""
     return consistency.leg_length(batch.design) + batch.design.pelvis.height
 
 

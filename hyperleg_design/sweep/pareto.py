@@ -11,7 +11,7 @@ _BLOCK = 512
 
 
 def nondominated(values: np.ndarray, better: Sequence[str]) -> np.ndarray:
-    """Which points are on the Pareto front.
+    """Find the points that lie on the Pareto front.
 
     A point dominates another if it is at least as good in all objectives and better in one. Equal
     points do not dominate each other, so all of them stay. Points with a nan are never on the front
@@ -61,7 +61,7 @@ def _staircase(cost: np.ndarray) -> np.ndarray:
 
 
 def _blockwise(cost: np.ndarray) -> np.ndarray:
-    """Of sorted, different points."""
+    """The front of sorted, different points, one block at a time."""
     kept = np.zeros(len(cost), dtype=bool)
     front = np.empty((0, cost.shape[1]))
     for start in range(0, len(cost), _BLOCK):
@@ -78,7 +78,7 @@ def _blockwise(cost: np.ndarray) -> np.ndarray:
 
 
 def _beaten(points: np.ndarray, front: np.ndarray) -> np.ndarray:
-    """Which points some other point of the front is no worse than everywhere."""
+    """Find the points that some other point of the front equals or beats in every objective."""
     beaten = np.zeros(len(points), dtype=bool)
     for start in range(0, len(front), 4 * _BLOCK):
         part = front[start : start + 4 * _BLOCK]

@@ -63,7 +63,7 @@ class StaticLoad:
     pressure_point: np.ndarray
     """Where it acts, ahead of the hip axis [m], `(...)`."""
     torque: np.ndarray
-    """Of the joints that move, in their order [Nm], `(..., joints)`."""
+    """Torques of the joints that move, in their order [Nm], `(..., joints)`."""
 
 
 def squat(design: Design, inertials: Mapping[str, Inertial]) -> StaticLoad:

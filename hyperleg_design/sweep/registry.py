@@ -32,7 +32,7 @@ class Entry:
     """`low`, `high`, or empty where neither is."""
     doc: str
     protocol: str = ""
-    """Of trials; empty for what is computed of the design alone."""
+    """Protocol of the trials that it is measured in; empty for a measure of the design alone."""
 
     @property
     def of_trial(self) -> str:

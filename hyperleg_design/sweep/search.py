@@ -55,7 +55,9 @@ class Constraint:
     """Whether the measure must not be above the bound; else not below."""
 
     def violation(self, value: float) -> float:
-        """By how much a value breaks it; not positive where it holds, infinite where unknown."""
+        """Amount by which a value breaks the constraint; not positive where the constraint holds,
+        infinite where the value is unknown.
+        """
         if not np.isfinite(value):
             return float("inf")
         return value - self.bound if self.at_most else self.bound - value

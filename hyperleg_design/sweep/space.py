@@ -82,7 +82,8 @@ class Sweep:
     name: str
     description: str
     base: RobotDesign
-    """With `set` applied and the active toe; variants are made of it after the axes are set."""
+    """Design with `set` applied and the active toe; variants are made of it after the axes are
+    set."""
     variants: tuple[str, ...]
     sampling: str
     """One of `SAMPLINGS`."""
@@ -91,7 +92,7 @@ class Sweep:
     seed: int
     axes: tuple[Axis, ...]
     measures: tuple[str, ...]
-    """Of `measures.MEASURES`."""
+    """Names of the measures to compute, of `measures.MEASURES`."""
     objectives: tuple[str, ...]
     """Columns that span Pareto fronts."""
     maps: tuple[Map, ...]

@@ -60,9 +60,9 @@ class Plan:
 
     protocols: tuple[Protocol, ...]
     policies: dict[tuple[str, str], list[Shipped]]
-    """By protocol and variant."""
+    """Policies by protocol and variant."""
     digest: str
-    """Of protocols and policies' contents."""
+    """SHA-256 of the protocols and of the policies' contents."""
 
 
 def plan(

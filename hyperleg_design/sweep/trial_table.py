@@ -51,9 +51,10 @@ SPEED_SHARE = 0.95
 MOST_FALLS = 0.05
 """Share of falls up to which a design counts as one that walks; assumed."""
 _RESAMPLES = 1000
-"""Of the bootstrap of each design's interval."""
+"""Number of resamples of the bootstrap of each design's interval."""
 _DRAWS = 400
-"""Of all objectives, for the probability of being on the front."""
+"""Number of draws of all objectives from which the probability of being on the front is
+estimated."""
 _Z = 1.96
 
 
@@ -109,7 +110,7 @@ def _of_protocol(protocol: str, part: pd.DataFrame) -> dict[str, Any]:
 
 
 def acting_limits(part: pd.DataFrame) -> str:
-    """Which limits of the motors act in the mean over trials: envelope, heat, speed, or none."""
+    """Limits of the motors that act in the mean over trials: envelope, heat, speed, or none."""
     acting = []
     for name, column, level in (
         (ENVELOPE, "limit_share", ENVELOPE_SHARE),

@@ -204,8 +204,8 @@ def motions_figure(experiment: Experiment) -> Figure:
 
 
 def separation_figure(experiment: Experiment) -> Figure:
-    """Which motion tells which look-alikes apart, at the least clear joint, and how clear each
-    effect is.
+    """Draw how clearly each motion separates effects that look alike, at the least clear joint, and
+    how clear each effect is.
     """
     with figure_style():
         import matplotlib.pyplot as plt

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 _MEASURED, _EXPLAINED, _LEFT = "#2f6db3", "#c8602a", "#6b7280"
 TORQUE = "torque [Nm]"
 AXIS = {"transmission": "speed [rad/s]", "base": "force, moment [N, Nm]", "ground": "force [N]"}
-"""Of residuals that are none of torques."""
+"""Axis labels of residuals that are not torques."""
 SIZE = (5.8, 3.4)
-"""Of a figure; legible where a phone scales it down [in]."""
+"""Size of a figure [in]; it stays legible where a phone scales it down."""
 _SPAN = 6.0
 """Longest stretch of a log drawn [s]."""
 _MOST_DOTS = 3000

@@ -17,7 +17,7 @@ TURN = 0.05
 PLAIN = 0.5
 """Share of the mean square that friction must explain to be named."""
 NEARLY = 0.8
-"""Of what another shape would explain, how much friction must explain to be named instead."""
+"""Share of what another shape would explain that friction must explain to be named instead [-]."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +25,11 @@ class Friction:
     """Least-squares fit of friction to what is left of one joint's torque."""
 
     constant: float
-    """[Nm]"""
+    """Coulomb friction [Nm]."""
     viscous: float
-    """[Nms/rad]"""
+    """Viscous friction [Nms/rad]."""
     share: float
-    """Of the mean square that it explains."""
+    """Share of the mean square that friction explains [-]."""
 
     def sentence(self, joint: str) -> str:
         """Describe the remaining friction of a joint in one sentence."""

@@ -319,7 +319,7 @@ def _not_judged(diagnosis: Mapping[str, Any]) -> Details | None:
 
 
 def _remarks(diagnosis: Mapping[str, Any]) -> Details | None:
-    """Of the checks of the logs."""
+    """Remarks of the checks of the logs."""
     rows = [[plain(entry)] for entry in diagnosis.get("checks", ())]
     return Details("Remarks on the logs", [Table(["remark"], rows)]) if rows else None
 

@@ -29,7 +29,7 @@ class ValueRow:
     name: str
     value: str
     interval: str
-    """Of 95 %; empty of a choice."""
+    """Interval of 95 %; empty for a choice."""
 
 
 @dataclass(frozen=True)

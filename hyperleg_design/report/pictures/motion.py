@@ -27,11 +27,12 @@ if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
 
 MOST_BYTES = 2_000_000
-"""Of a GIF file."""
+"""Largest size of a GIF file [byte]."""
 SNAPSHOTS = 8
-"""Of a strip, over one gait cycle from touchdown to touchdown of the right foot."""
+"""Number of snapshots of a strip, over one gait cycle from touchdown to touchdown of the right
+foot."""
 FORCE_LENGTH = 0.3
-"""Of an arrow for one body weight [m]."""
+"""Length of an arrow for a force of one body weight [m]."""
 _MARGIN = np.array([2.5, 0.7, 0.0])
 _FLOOR, _GRID, _COURSE, _FORCE = "#eceef2", "#bcc2cc", "#c8602a", "#2c7a4b"
 
@@ -43,9 +44,9 @@ class Motion:
     solids: tuple[Solid, ...]
     """Their places are those of `rotations` and `positions`, `(n,)`."""
     rotations: np.ndarray
-    """`(f, n, 3, 3)`"""
+    """Rotations of the bodies in each frame, `(f, n, 3, 3)`."""
     positions: np.ndarray
-    """[m], `(f, n, 3)`"""
+    """Positions of the bodies in each frame [m], `(f, n, 3)`."""
     focus: np.ndarray
     """What the camera looks at [m], `(f, 3)`."""
     eye: np.ndarray
@@ -53,16 +54,16 @@ class Motion:
     still: tuple[Solid, ...] = ()
     """What does not move."""
     lines: tuple[tuple[np.ndarray, np.ndarray, str, float], ...] = ()
-    """From, to [m], colour, width [px]."""
+    """Lines: start and end [m], colour, width [px]."""
     labels: tuple[tuple[np.ndarray, str, str], ...] = ()
     """Place [m], text, colour."""
     height: float = 1.3
     """What the picture's height spans [m]."""
     size: tuple[int, int] = (480, 360)
-    """[px]"""
+    """Width and height of a frame [px]."""
     font: int = 18
     frame_time: float = 0.04
-    """Between frames, as shown [s]."""
+    """Time between two frames as shown [s]."""
 
 
 def render_gif(motion: Motion, path: str | os.PathLike[str]) -> Path:

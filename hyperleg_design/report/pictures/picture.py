@@ -62,11 +62,11 @@ class Scene:
 
     solids: tuple[Solid, ...] = ()
     lines: tuple[tuple[np.ndarray, np.ndarray, str, float], ...] = ()
-    """From, to [m], colour, width [px]."""
+    """Lines: start and end [m], colour, width [px]."""
     labels: tuple[tuple[np.ndarray, str, str], ...] = ()
     """Place [m], text, colour."""
     arrows: tuple[tuple[np.ndarray, np.ndarray, str], ...] = ()
-    """From, vector [m], colour."""
+    """Arrows: start [m], vector [m], colour."""
     camera: tuple[tuple[float, float, float], tuple[float, float, float]] = (
         (2.0, -2.0, 0.9),
         (0.0, 0.0, 0.45),
@@ -75,7 +75,7 @@ class Scene:
     height: float = 1.1
     """What the picture's height spans [m]."""
     size: tuple[int, int] = (900, 1000)
-    """[px]"""
+    """Width and height of the picture [px]."""
     font: int = 20
 
 

@@ -297,7 +297,9 @@ def compare_walks(
 
 
 def compare_text(found: dict[str, Any]) -> str:
-    """The same for a terminal: a row a measure, a column a design."""
+    """Lay out a comparison for a terminal, with a row for each measure and a column for each
+    design.
+    """
     rows: dict[str, list[object]] = {}
     for name in found:
         for key, value in _flat(found[name]).items():

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 WALK, T_TEST = "walk", "t_test"
 """Kinds of protocol."""
 TIME_CONSTANTS = (0.01, 0.014, 0.02, 0.028, 0.04)
-"""Of the contact, over which impacts are shown [s]; the first is the stiffest that steps of 5 ms
-allow."""
+"""Time constants of the contact over which impacts are shown [s]; the first is the stiffest that
+steps of 5 ms allow."""
 BAND_SEEDS, BAND_TRIALS = 3, 4
 """Trainings of each design, and walks of each, at every time constant."""
 
@@ -38,7 +38,7 @@ class Evaluated:
 
     policies: list[Shipped]
     evaluations: list[Evaluation]
-    """Of each policy."""
+    """Evaluations of all policies."""
     missing: list[str] = field(default_factory=list)
     """Trainings of the shipped campaign that are not there."""
     band: Mapping[str, Mapping[float, list[Evaluation]]] = field(default_factory=dict)

@@ -19,7 +19,7 @@ SHOWN = (
     ("cost_of_transport", "CoT"),
     ("assist", "assist"),
 )
-"""Of a learning curve, and its axis."""
+"""Measures that are drawn as learning curves, with the labels of their axes."""
 _GREY = "#6b7280"
 _HIGHEST = {"cost_of_transport": 1.5}
 """Where an axis ends, because what stands or falls has no cost of transport."""

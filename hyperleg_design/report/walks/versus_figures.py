@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 _OURS, _PAPER, _GREY = "#2f6db3", "#c8602a", "#6b7280"
 WIDEST = 120.0
-"""Of an axis of changes [%]; wider intervals are cut."""
+"""Largest change on an axis [%]; wider intervals are cut."""
 CAUSE_COLOURS = ("#c8602a", "#8172b3", "#6b7280", "#1d2129")
-"""Of the steps of the ladder, and of all together."""
+"""Colours of the steps of the ladder, and of all steps together."""
 
 
 def change_figure(groups: Mapping[str, Sequence[PaperRow]]) -> Figure:
