@@ -14,8 +14,7 @@ from hyperleg_design.cli.output import Printing, emit, require
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.design import changed
-from hyperleg_design.robot.load import load_robot, walker
+from hyperleg_design.robot.load import changed_robot, load_robot, walker
 
 if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alterations
@@ -229,7 +228,7 @@ class Evaluate(Printing):
             raise InputError("evaluate", "variant", self.variant, "needs --design")
         if not (self.set or self.set_file):
             return None
-        return changed(load_policy(policy).design, overrides=self.set, overlays=self.set_file)
+        return changed_robot(load_policy(policy).design, overrides=self.set, overlays=self.set_file)
 
 
 @dataclass(frozen=True, kw_only=True)

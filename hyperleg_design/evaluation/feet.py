@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def foot_places(trial: Trial, samples: np.ndarray) -> np.ndarray:
-    """Middle of each foot's sole pads on the floor at some samples, `(k,)` -> `(k, 2 feet, 2)`
+    """Middle of each foot's sole pads on the floor at some samples, `(k,)` -> `(k, F feet, 2)`
     [m].
     """
     import mujoco
@@ -19,7 +19,7 @@ def foot_places(trial: Trial, samples: np.ndarray) -> np.ndarray:
     model = trial.model
     data = mujoco.MjData(model)
     pads = np.array([model.geom(pad).id for pad in trial.layout.pads])
-    found = np.empty((len(samples), 2, 2))
+    found = np.empty((len(samples), len(trial.layout.feet), 2))
     for i, sample in enumerate(samples):
         data.qpos[:3], data.qpos[3:7], data.qpos[7:] = (
             trial.base_position[sample],
@@ -28,6 +28,6 @@ def foot_places(trial: Trial, samples: np.ndarray) -> np.ndarray:
         )
         mujoco.mj_kinematics(model, data)
         places = data.geom_xpos[pads, :2]
-        for foot in (0, 1):
+        for foot in range(len(trial.layout.feet)):
             found[i, foot] = places[trial.layout.pad_foot == foot].mean(0)
     return found

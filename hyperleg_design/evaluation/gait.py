@@ -20,10 +20,10 @@ of the same foot."""
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Touchdowns after a swing, in order of time, of both feet; `(k,)` each."""
+    """Touchdowns after a swing, in order of time, of all feet; `(k,)` each."""
 
     foot: np.ndarray
-    """0 left, 1 right."""
+    """Place in `Layout.feet`; of a biped 0 left, 1 right."""
     touchdown: np.ndarray
     """First sample of the contact."""
     heel_off: np.ndarray
@@ -84,13 +84,13 @@ def find_steps(feet: np.ndarray, heel: np.ndarray, forefoot: np.ndarray, time_st
     """Steps from the contacts of whole feet, heels and forefeet.
 
     Args:
-        feet: whether each foot stands, `(t, 2)`.
-        heel: whether its heel is loaded, `(t, 2)`.
-        forefoot: whether the rest of it is, `(t, 2)`.
+        feet: whether each foot stands, `(t, F)`.
+        heel: whether its heel is loaded, `(t, F)`.
+        forefoot: whether the rest of it is, `(t, F)`.
         time_step: between samples [s].
     """
     rows = []
-    for foot in (0, 1):
+    for foot in range(feet.shape[1]):
         change = np.diff(feet[:, foot].astype(int))
         downs, ups = np.flatnonzero(change == 1) + 1, np.flatnonzero(change == -1) + 1
         for down in downs:
@@ -142,11 +142,11 @@ def alternation(steps: Steps) -> float:
 
 
 def event_shares(steps: Steps) -> dict[str, float]:
-    """Means over whole strides of both feet [-]: `duty_factor` (toe-off over stride) and `heel_off`
+    """Means over whole strides of all feet [-]: `duty_factor` (toe-off over stride) and `heel_off`
     (heel-off over stride).
     """
     duty, heel = [], []
-    for foot in (0, 1):
+    for foot in np.unique(steps.foot):
         mine = np.flatnonzero(steps.foot == foot)
         for i, following in pairwise(mine):
             stride = steps.touchdown[following] - steps.touchdown[i]
@@ -159,7 +159,7 @@ def event_shares(steps: Steps) -> dict[str, float]:
 
 
 def support_shares(feet: np.ndarray) -> dict[str, float]:
-    """Shares of time [-] with both feet, one foot and none on the floor, from `(t, 2)`:
+    """Shares of time [-] with two feet, one foot and none on the floor, from `(t, F)`:
     `double_support`, `single_support`, `flight`.
     """
     standing = feet.sum(-1)
@@ -217,7 +217,7 @@ def slip_per_step(
         time_step: between samples [s].
     """
     found = np.full(len(steps), np.nan)
-    for foot in (0, 1):
+    for foot in np.unique(steps.foot):
         mine = pad_foot == foot
         load = pad_load[:, mine]
         total = load.sum(-1)

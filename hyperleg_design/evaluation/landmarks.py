@@ -60,16 +60,21 @@ def landmark_measures(trial: Trial, steps: Steps, events: Events) -> dict[str, f
         `event_order`, the share of contacts with heel strike, foot flat, heel off and toe off in
         that order; `force_humps`, the humps of the mean contact's vertical force; `push_off_force`,
         its last hump [body weights]; `ankle_push_off_power`, which the motors give the ankle pitch
-        joint during push-off, mean [W]. NaN where there is nothing to measure.
+        joint during push-off, mean [W]. NaN where there is nothing to measure, as on limbs
+        without knee and ankle.
     """
+    layout = trial.layout
+    if not {"knee", "ankle_pitch"} <= set(layout.own_joints) or len(layout.feet) != len(
+        layout.limbs
+    ):
+        return dict.fromkeys(LANDMARKS, np.nan)  # no leg of a human's kind
     contacts = foot_contacts(trial, events)
     force = low_pass(trial.foot_load, trial.time_step, SHAPE_CUTOFF, 4)
-    layout = trial.layout
+    names = layout.own_joints
     rows, shapes = [], []
     for i in np.flatnonzero(steps.toe_off > 0):
         foot, down, up = int(steps.foot[i]), int(steps.touchdown[i]), int(steps.toe_off[i])
         side = slice(foot * layout.leg_joints, (foot + 1) * layout.leg_joints)
-        names = [name.split("_", 1)[1] for name in layout.joints[side]]
         knee, ankle = (
             side.start + names.index("knee"),
             side.start + names.index("ankle_pitch"),

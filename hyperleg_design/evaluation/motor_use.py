@@ -20,10 +20,10 @@ AT_LIMIT = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class MotorUse:
-    """How every motor of both legs is used in a trial, `(K,)` each."""
+    """How every motor of all limbs is used in a trial, `(K,)` each."""
 
     motors: tuple[str, ...]
-    """Names with the side in front."""
+    """Names with the limb's in front."""
     rms_torque: np.ndarray
     """Root mean square of the torque [Nm]."""
     peak_torque: np.ndarray
@@ -43,9 +43,9 @@ class MotorUse:
 
 def motor_use(trial: Trial, first: int = 0, last: int | None = None) -> MotorUse:
     """Use of the motors between two samples; heat from the start of the trial on."""
-    legs = trial.layout.leg_motors
+    limbs, own = len(trial.layout.limbs), trial.layout.leg_motors
     envelope = motor_envelope(trial.design)
-    rated = np.tile(motor_arrays(trial.design).rated_torque[:legs], 2)
+    rated = np.tile(motor_arrays(trial.design).rated_torque[:own], limbs)
     part = slice(first, last)
     torque, speed = trial.motor_torque[part], trial.motor_velocity[part]
     heat = thermal_use(trial.motor_torque[:last], rated, trial.time_step)
@@ -55,7 +55,9 @@ def motor_use(trial: Trial, first: int = 0, last: int | None = None) -> MotorUse
         rms_torque=rms,
         peak_torque=np.abs(torque).max(0),
         peak_speed=np.abs(speed).max(0),
-        limit_share=at_limit(envelope, torque.reshape(-1, 2, legs), speed.reshape(-1, 2, legs))
+        limit_share=at_limit(
+            envelope, torque.reshape(-1, limbs, own), speed.reshape(-1, limbs, own)
+        )
         .mean(0)
         .reshape(-1),
         continuous_use=rms / rated,

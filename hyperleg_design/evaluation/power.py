@@ -46,7 +46,7 @@ def ledger(trial: Trial, first: int = 0, last: int | None = None) -> EnergyLedge
     """Ledger of all motors between two samples, `(t, K)`."""
     part = slice(first, last)
     constants = power_constants(trial)
-    electrical = trial.design.electrical
+    electrical = trial.design.electrical_section
     return energy_ledger(
         trial.motor_torque[part],
         trial.motor_velocity[part],
@@ -61,7 +61,10 @@ def power_constants(trial: Trial) -> np.ndarray:
     """Joule heat over squared torque of all motors of a trial, as simulated [W/Nm^2], `(K,)`."""
     if trial.power_constant is not None:
         return trial.power_constant
-    return np.tile(motor_arrays(trial.design).power_constant[: trial.layout.leg_motors], 2)
+    layout = trial.layout
+    return np.tile(
+        motor_arrays(trial.design).power_constant[: layout.leg_motors], len(layout.limbs)
+    )
 
 
 def flows(entries: EnergyLedger) -> dict[str, float]:
@@ -115,12 +118,12 @@ def cycle_power(
     constants = power_constants(trial)[motors]
     mechanical = joint_power(trial.driven_joint_torque[:, joints], trial.joint_velocity[:, joints])
     joule = constants * trial.motor_torque[:, motors] ** 2
-    names = tuple(name.split("_", 1)[1] for name in layout.joints[joints])
+    names = layout.own_joints
     begins, ends = strides(steps, foot)
     whole = slice(int(begins[0]), int(ends[-1])) if len(begins) else slice(0)
     return CyclePower(
         joints=names,
-        motors=tuple(name.split("_", 1)[1] for name in layout.motors[motors]),
+        motors=layout.own_motors,
         mechanical=cycles(mechanical, steps, foot, points),
         joule=cycles(joule, steps, foot, points),
         means=leg_means(names, mechanical[whole], joule[whole]),

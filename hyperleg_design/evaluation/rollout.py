@@ -116,9 +116,13 @@ class Trial:
 
     @property
     def foot_load(self) -> np.ndarray:
-        """Vertical force on the left and the right foot [N], `(t, 2)`."""
+        """Vertical force on each foot [N], `(t, F)`; of a biped left and right."""
         return np.stack(
-            [self.pad_load[:, self.layout.pad_foot == foot].sum(-1) for foot in (0, 1)], -1
+            [
+                self.pad_load[:, self.layout.pad_foot == foot].sum(-1)
+                for foot in range(len(self.layout.feet))
+            ],
+            -1,
         )
 
 

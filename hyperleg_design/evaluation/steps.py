@@ -14,11 +14,12 @@ from hyperleg_design.evaluation.impact import impacts, low_pass
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.protocol import Events, Impact
     from hyperleg_design.evaluation.rollout import Trial
+    from hyperleg_design.simulation.layout import Layout
 
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """What stands on the floor, `(t, 2)` each, left and right."""
+    """What stands on the floor, `(t, F)` each; of a biped left and right."""
 
     feet: np.ndarray
     """Whole foot."""
@@ -40,7 +41,7 @@ def foot_contacts(trial: Trial, events: Events) -> Contacts:
         return np.stack(
             [
                 trial.pad_load[:, chosen & (trial.layout.pad_foot == foot)].sum(-1)
-                for foot in (0, 1)
+                for foot in range(len(trial.layout.feet))
             ],
             -1,
         )
@@ -59,7 +60,7 @@ def measured_steps(trial: Trial, events: Events) -> gait.Steps:
 
 
 def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[str, float]:
-    """Means over the touchdowns of both feet: `grf_peak` and the others of `Impacts`."""
+    """Means over the touchdowns of all feet: `grf_peak` and the others of `Impacts`."""
     filtered = low_pass(trial.foot_load, trial.time_step, settings.cutoff, int(settings.order))
     each = [
         impacts(
@@ -69,7 +70,7 @@ def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[s
             trial.time_step,
             settings.window,
         )
-        for f in (0, 1)
+        for f in range(len(trial.layout.feet))
     ]
     mean = {
         name: mean_of(np.concatenate([getattr(e, name) for e in each]))
@@ -94,19 +95,34 @@ def step_measures(
     )
     places = foot_places(trial, steps.touchdown)[np.arange(len(steps)), steps.foot]
     length, width = gait.step_vectors(steps, places)
+    if len(trial.layout.feet) != 2:
+        length, width = np.zeros(0), np.zeros(0)  # of a step from one foot to the other
+    heeled = has_heels(trial.layout)
+    shares = gait.event_shares(steps)
+    if not heeled:
+        shares["heel_off"] = np.nan
     return {
         "cadence": gait.cadence(steps, trial.time_step),
         "step_length": mean_of(length),
         "step_width": mean_of(width),
-        **gait.event_shares(steps),
+        **shares,
         **gait.support_shares(contacts.feet[slice(*window)]),
         "alternation": gait.alternation(steps),
-        "heel_lead": mean_of(steps.heel_lead),
-        "heel_or_flat": mean_of((steps.heel_lead >= 0).astype(float)),
+        "heel_lead": mean_of(steps.heel_lead) if heeled else np.nan,
+        "heel_or_flat": mean_of((steps.heel_lead >= 0).astype(float)) if heeled else np.nan,
         "slip_per_step": mean_of(slip),
         "foot_drift": mean_of(flat_drift(trial, steps, contacts)),
         "largest_slip": float(np.nanmax(slip)) if np.isfinite(slip).any() else np.nan,
     }
+
+
+def has_heels(layout: Layout) -> bool:
+    """Whether every foot has pads behind its first link's joint and pads before it."""
+    behind = layout.pad_position[:, 0] < 0
+    return all(
+        0 < behind[layout.pad_foot == foot].sum() < np.sum(layout.pad_foot == foot)
+        for foot in range(len(layout.feet))
+    )
 
 
 def flat_drift(trial: Trial, steps: gait.Steps, contacts: Contacts) -> np.ndarray:

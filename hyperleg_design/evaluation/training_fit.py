@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy
-from hyperleg_design.robot.masses import mass_table
+from hyperleg_design.robot.dimensions import limb_mass, total_mass
 from hyperleg_design.robot.parameters import leaves
 from hyperleg_design.simulation.actuation import actuation_model
 from hyperleg_design.simulation.design_observation import design_ranges
@@ -17,6 +17,7 @@ from hyperleg_design.simulation.machine import rotor_inertia
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.design import Design
 
 SPECIALIST, CONDITIONED, ZERO_SHOT, UNKNOWN = "specialist", "conditioned", "zero-shot", "unknown"
 RANGES = "design_ranges"
@@ -58,6 +59,8 @@ def training_fit(policy: Policy, design: RobotDesign) -> TrainingFit:
     if not isinstance(policy, OnnxPolicy):
         return TrainingFit(UNKNOWN)
     trained, own = leaves(policy.design), leaves(design)
+    if trained.keys() != own.keys():
+        return TrainingFit(ZERO_SHOT)
     changed = {
         path: (trained[path], value)
         for path, value in own.items()
@@ -68,7 +71,7 @@ def training_fit(policy: Policy, design: RobotDesign) -> TrainingFit:
         changed = parts  # laws only say how a robot follows from its parts
     if RANGES in policy.metadata:
         ranges = design_ranges(policy.metadata[RANGES], f"{policy.name}: {RANGES}")
-        beyond = set(ranges.outside(design))
+        beyond = set(ranges.outside(cast("Design", design)))
         outside = tuple(p for p in changed if p in beyond or p not in ranges.ranges)
         return TrainingFit(ZERO_SHOT if outside else CONDITIONED, changed, outside)
     return TrainingFit(ZERO_SHOT if changed else SPECIALIST, changed, tuple(changed))
@@ -82,7 +85,7 @@ def _same_actuation(a: RobotDesign, b: RobotDesign) -> bool:
         (one.joint_from_motor, other.joint_from_motor),
         (rotor_inertia(a), rotor_inertia(b)),
         (one.envelope.peak_torque, other.envelope.peak_torque),
-        *((getattr(mass_table(a), n), getattr(mass_table(b), n)) for n in ("total", "leg")),
+        *((mass(a), mass(b)) for mass in (total_mass, limb_mass)),
     ]
     return all(np.allclose(x, y, rtol=1e-6) for x, y in pairs)
 

@@ -17,6 +17,7 @@ from hyperleg_design.evaluation.power import LEG_MEANS, CyclePower, cycle_power,
 from hyperleg_design.evaluation.protocol import WalkProtocol, load_protocol
 from hyperleg_design.evaluation.result import Evaluation, evaluations_of
 from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
+from hyperleg_design.robot.names import SIDES
 from hyperleg_design.simulation.commands import VelocityCommands
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.sizing.energy import cost_of_transport
@@ -169,11 +170,12 @@ def measure_walk(
     gait cycle.
 
     A measure that a trial cannot give is NaN: all of a diverged trial; those of the steady state
-    where it fell or has fewer than `STRIDES` whole strides.
+    where it fell or has fewer than `STRIDES` whole strides; those of heel, ankle or right leg where
+    the robot has none.
 
     Returns:
         Measures by name, see `measures.WALK`; use of the motors and right-leg power, None without a
-        steady state.
+        steady state, the power also without a left and a right leg.
     """
     found = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(trial)
     if trial.outcome == rollout.DIVERGED or not trial.samples:
@@ -184,6 +186,9 @@ def measure_walk(
     if window is None:
         return found | dict.fromkeys(_STEADY, np.nan), None, None
     steady, steps = _steady_measures(trial, window, protocol)
+    if trial.layout.limbs != SIDES:
+        nothing = {f"right_{name}_power": np.nan for name in LEG_MEANS}
+        return found | steady | nothing, motor_use(trial, *window), None
     cycle = cycle_power(trial, steps)
     leg = {f"right_{name}_power": value for name, value in cycle.means.items()}
     return found | steady | leg, motor_use(trial, *window), cycle

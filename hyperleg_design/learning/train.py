@@ -57,6 +57,7 @@ from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
 from hyperleg_design.simulation.tasks import Task, load_task
 from hyperleg_design.writing import MARKER, check_output_folder, write_json, write_text
@@ -118,6 +119,7 @@ def train(
     design = design if isinstance(design, RobotDesign) else load_robot(design)
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
+    task.check_robot(layout_of(task.posed(design)), design.name)
     folder = check_output_folder(out)
     origin = {
         "start": started and started.source,

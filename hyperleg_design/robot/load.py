@@ -6,7 +6,7 @@ import dataclasses
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
@@ -14,6 +14,7 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.design import (
     Design,
+    changed,
     design_from_mapping,
     leaf_values,
     load_design,
@@ -53,12 +54,28 @@ def load_robot(
         return load_design(name, overrides=overrides, overlays=overlays, variant=variant)
     if variant:
         raise InputError("variant", "", variant, f"{name} has no variants; leave it out")
-    design = _read(path)
+    return changed_robot(_read(path), overrides=overrides, overlays=overlays)
+
+
+def changed_robot(
+    design: RobotDesign,
+    *,
+    overrides: Mapping[str, Any] | Iterable[str] = (),
+    overlays: Iterable[str | Path] = (),
+) -> RobotDesign:
+    """A design of any family with other values, as `load_robot` takes them.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    if isinstance(design, Design):
+        return changed(design, overrides=overrides, overlays=overlays)
+    tree = cast("TreeDesign", design)
     for overlay in overlays:
         place = resources.find("descriptions", overlay)
-        design = _overlaid(design, read_yaml(place), short_name(place))
+        tree = _overlaid(tree, read_yaml(place), short_name(place))
     chosen = parse_overrides(overrides)
-    return design.with_values(chosen, "--set") if chosen else design
+    return tree.with_values(chosen, "--set") if chosen else tree
 
 
 def walker(design: RobotDesign, what: str) -> Design:

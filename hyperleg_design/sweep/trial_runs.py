@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
     from hyperleg_design.sweep.run import SweepResult
 
@@ -291,11 +292,12 @@ def trial_rows(
     return pd.DataFrame(rows)
 
 
-def _speed_use(design: Design | None, peak_speed: np.ndarray) -> float:
+def _speed_use(design: RobotDesign | None, peak_speed: np.ndarray) -> float:
     if design is None:
         return float("nan")
-    free = motor_arrays(design).no_load_speed[: len(peak_speed) // 2]
-    return float(np.max(peak_speed / np.tile(free, 2)))
+    limbs = len(design.copies)
+    free = motor_arrays(design).no_load_speed[: len(peak_speed) // limbs]
+    return float(np.max(peak_speed / np.tile(free, limbs)))
 
 
 def _parquet(rows: pd.DataFrame) -> bytes:

@@ -217,3 +217,21 @@ def test_the_actions_deviation_keeps_to_its_bound(tmp_path: Path) -> None:
     bounds = [0.3, 0.3 - 0.2 / 3, 0.3 - 0.4 / 3, 0.1]
     for row, bound in zip(rows, bounds, strict=True):
         assert row["deviation"] <= 1.01 * bound  # one update may raise it by its learning rate
+
+
+def test_a_quadruped_trains_and_its_policy_is_evaluated(tiny: Preset, tmp_path: Path) -> None:
+    from hyperleg_design.evaluation.evaluate import evaluate
+    from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
+
+    data = tiny_mapping()
+    data["tasks"] = {"walk_any": [{"name": "all", "steps": 32, "assist": 0.0}]}
+    preset = preset_from_mapping(data, "tiny.yaml")
+    assert train("walk_any", "mini_cheetah", 0, preset, tmp_path / "run")
+    protocol = WalkProtocol(trials=2, distance=0.5, time_limit=1.0, steady=Steady(begin=0.1))
+    found = evaluate(tmp_path / "run" / POLICY, protocol, threads=1)
+    assert found.design == "mini_cheetah"
+    assert found.trained.kind == "specialist"
+    assert len(found.trials) == 2
+    with pytest.raises(InputError, match=r"hip_deviation.*lacks joints hip_yaw"):
+        train("walk", "mini_cheetah", 0, tiny, tmp_path / "other")
+    assert not (tmp_path / "other").exists()

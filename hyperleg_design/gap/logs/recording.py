@@ -26,7 +26,6 @@ from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.robot.models import quaternion_matrix
 from hyperleg_design.robot.motors import find_motor
-from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SIDES
 from hyperleg_design.simulation.actuation import actuation_model
 from hyperleg_design.simulation.layout import GRAVITY
 from hyperleg_design.simulation.told import TOLD
@@ -35,7 +34,7 @@ from hyperleg_design.writing import output_folder, write_text
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.actuation import ActuationModel
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
@@ -163,7 +162,7 @@ def write_logs(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]
     return [Path(folder) / name for name in names]
 
 
-def _robot_file(design: Design, robots: dict[str, str]) -> str:
+def _robot_file(design: RobotDesign, robots: dict[str, str]) -> str:
     """Name of the file of a design; a new one where its content differs from those there."""
     import yaml
 
@@ -187,7 +186,7 @@ def _file_name(name: str) -> str:
 
 
 def _log(
-    design: Design,
+    design: RobotDesign,
     layout: Layout,
     time_step: float,
     found: Mapping[str, np.ndarray],
@@ -242,7 +241,7 @@ def _as_told(model: ActuationModel, found: Mapping[str, np.ndarray]) -> dict[str
 
 
 def _joint_signals(
-    design: Design, layout: Layout, found: Mapping[str, np.ndarray]
+    design: RobotDesign, layout: Layout, found: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
     kinds = {
         "position_target": "joint_target",
@@ -259,7 +258,7 @@ def _joint_signals(
 
 
 def _motor_signals(
-    design: Design, layout: Layout, found: Mapping[str, np.ndarray]
+    design: RobotDesign, layout: Layout, found: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
     columns = {
         "motor_torque": found["motor_torque"],
@@ -269,7 +268,7 @@ def _motor_signals(
     if "motor_command" in found:
         columns = {"motor_torque_command": found["motor_command"], **columns}
     elif "joint_target" in found:
-        model, legs = actuation_model(design), (len(found["joint_target"]), 2, -1)
+        model, legs = actuation_model(design), (len(found["joint_target"]), len(layout.limbs), -1)
         error = (found["joint_target"] - found["joint_position"]).reshape(legs)
         wanted = model.stiffness * error - model.damping * found["joint_velocity"].reshape(legs)
         command = (wanted @ model.motor_from_joint.T).reshape(len(wanted), -1)
@@ -281,13 +280,11 @@ def _motor_signals(
     }
 
 
-def _torque_constants(design: Design, layout: Layout) -> np.ndarray:
-    """Of both legs' motors, before any gear, `(K,)` [Nm/A]."""
-    places = [ACTUATOR_OF_MOTOR[i] for i in range(layout.leg_motors)]
-    constants = [
-        find_motor(str(getattr(design.actuators, place).motor)).torque_constant for place in places
-    ]
-    return np.tile(np.array(constants), 2)
+def _torque_constants(design: RobotDesign, layout: Layout) -> np.ndarray:
+    """Of the motors of all limbs, before any gear, `(K,)` [Nm/A]."""
+    actuators = design.every_actuator[: layout.leg_motors]
+    constants = [find_motor(str(actuator.motor)).torque_constant for actuator in actuators]
+    return np.tile(np.array(constants), len(layout.limbs))
 
 
 def _base_signals(found: Mapping[str, np.ndarray], time_step: float) -> dict[str, np.ndarray]:
@@ -326,9 +323,7 @@ def _at_its_time(velocity: np.ndarray) -> np.ndarray:
 
 def _contact_signals(layout: Layout, pad_force: np.ndarray) -> dict[str, np.ndarray]:
     """Forces on each foot, and on each of its pads."""
-    feet = {
-        f"{side}_foot": pad_force[:, layout.pad_foot == i].sum(1) for i, side in enumerate(SIDES)
-    }
+    feet = {foot: pad_force[:, layout.pad_foot == i].sum(1) for i, foot in enumerate(layout.feet)}
     pads = {pad: pad_force[:, i] for i, pad in enumerate(layout.pads)}
     return {
         f"contact_force/{place}_{axis}": force[:, i]

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -322,7 +322,9 @@ def _posed(
             zip(trial.layout.joints, map(float, trial.joint_position[sample]), strict=True)
         )
         frames.append(
-            robot_solids(trial.design, angles=angles, tree=tree, pelvis=(turn[i], place[i]))
+            robot_solids(
+                cast("Any", trial.design), angles=angles, tree=tree, pelvis=(turn[i], place[i])
+            )
         )
     rotations = np.array([[s.rotation for s in frame] for frame in frames])
     positions = np.array([[s.position for s in frame] for frame in frames])
@@ -344,7 +346,7 @@ def _force_arrows(
     if len(pads) != len(trial.layout.pads):
         return []
     found = []
-    for foot in (0, 1):
+    for foot in range(len(trial.layout.feet)):
         mine = trial.layout.pad_foot == foot
         force = trial.pad_force[sample, mine]
         if force[:, 2].sum() < 0.05 * trial.layout.weight:

@@ -32,6 +32,7 @@ from hyperleg_design.report.walks.beside_paper import (
 from hyperleg_design.report.walks.evaluated import WALK, Evaluated
 from hyperleg_design.report.walks.versus_figures import attribution_figure, change_figure
 from hyperleg_design.report.walks.walk_figures import cycle_power_figure, impact_band_figure
+from hyperleg_design.robot.load import walker
 
 ATTRIBUTED = ("power", "joule_power", "steady_cost_of_transport", "grf_peak", "grf_loading_rate")
 """Measures whose difference is split into toe, torque and mass."""
@@ -213,8 +214,9 @@ def impacts(found: Evaluated, draw: Drawer) -> Part:
             ["Cannot be told: the walk that would say what mass stands behind a heel has no step."],
         )
     constants = sorted(next(iter(found.band.values())))
-    pads = {c: pad_of_contact(trial.design, mass, c) for c in constants}
-    own = float(trial.design.contact.time_constant)
+    robot = walker(trial.design, "the stiffness of the sole")
+    pads = {c: pad_of_contact(robot, mass, c) for c in constants}
+    own = float(robot.contact.time_constant)
     rows: list[list[Any]] = []
     for c in constants:
         pad = pads[c]
