@@ -56,6 +56,7 @@ VERBS: dict[str, Any] = {
     "train": policies.Train,
     "campaign": policies.Campaign,
     "evaluate": policies.Evaluate,
+    "robustness": policies.Robustness,
     "replay": policies.Replay,
     "paper": policies.Paper,
     "gap": Gap,

@@ -232,6 +232,42 @@ class Evaluate(Printing):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Robustness(Printing):
+    """Curves of what policies bear: pushes, slopes, floor friction, payload, errors of friction and
+    torque constants, uneven floors, and speeds.
+    """
+
+    policies: Annotated[tuple[str, ...], tyro.conf.Positional]
+    """ONNX files, or names of shipped trainings, all of walks or all of T-tests."""
+    conditions: tuple[str, ...] = ()
+    """speed, push, slope, floor_friction, payload, joint_friction, torque_constant, uneven_floor;
+    all that there are for the task by default."""
+    trials: Annotated[int, AtLeast(1)] = 10
+    """At each level."""
+    out: Path
+    """Folder to write: robustness.png, trials.parquet and curves.json."""
+    workers: Annotated[int, AtLeast(1)] = 2
+    """Processes side by side."""
+
+    def run(self) -> None:
+        """Evaluate and draw."""
+        from hyperleg_design.report.walks.robustness_page import run_robustness
+
+        points = run_robustness(
+            self.policies,
+            self.out,
+            conditions=self.conditions,
+            trials=self.trials,
+            workers=self.workers,
+            progress=not self.json,
+        )
+        if self.json:
+            emit(points)
+        else:
+            print(f"{len(points)} points of curves in {self.out / 'robustness.png'}")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Paper(Printing):
     """Evaluate the shipped policies, and put Tables III and IV and Figs. 4 to 7 beside the paper's
     on a page.

@@ -17,6 +17,7 @@ VARIANT_COLOUR = {
     "toe_locked": "#8172b3",
     "toe_removed_matched": "#2f6db3",
     "toe_removed": "#6b7280",
+    "toe_passive": "#2a8a5f",
 }
 """Colour of each ablation, told apart by colour-blind readers too."""
 

@@ -247,6 +247,21 @@ class Alteration:
     live: ClassVar[type[Live] | None] = None
     """Its hooks, if it has any."""
 
+    def shape(self, spec: mujoco.MjSpec) -> None:
+        """Change the model before it is compiled, such as the form of the floor; structure that
+        `edit` cannot change. Robot, joints, motors and the names of pads and floor stay.
+
+        Args:
+            spec: of the simulation, of one robot.
+        """
+
+    @property
+    def vertical(self) -> np.ndarray | None:
+        """Direction against gravity in the world `(3,)`, where that is not z; the robot's sensors
+        tell it.
+        """
+        return None
+
     def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
         """Change a compiled model in place; whoever calls runs `mj_setConst` afterwards (`edited`
         does both).

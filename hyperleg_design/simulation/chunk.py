@@ -122,6 +122,9 @@ class Chunk:
             _give_models(self.batch, models)
             _give_models(self._starter, models)
         _vary_models(self.batch, task, rng)
+        verticals = [a.vertical for a in alterations if a.vertical is not None]
+        self._vertical = verticals[0] if verticals else None
+        """Direction against gravity where alterations make that another than the world's z."""
         self.drive = Drive(
             design, layout, task.physics, self.batch, task.randomisation, rng, alterations
         )
@@ -352,7 +355,7 @@ class Chunk:
             motion.joint_position,
             motion.joint_velocity,
             motion.angular_velocity,
-            motion.gravity,
+            motion.gravity if self._vertical is None else -(self._vertical @ motion.rotation),
         )
         whole = [np.zeros((self.count, values.shape[-1])) for values in given]
         for place, values in zip(whole, given, strict=True):

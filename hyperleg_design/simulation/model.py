@@ -107,10 +107,13 @@ def _check_walker(design: RobotDesign, layout: Layout) -> None:
 def simulation_model(
     design: RobotDesign, physics: Physics | None = None, alterations: Sequence[Alteration] = ()
 ) -> mujoco.MjModel:
-    """Compiled `simulation_spec`, with the edits of alterations."""
+    """Compiled `simulation_spec`, with the shapes and edits of alterations."""
     import mujoco
 
-    model = edited(simulation_spec(design, physics).compile(), alterations)
+    spec = simulation_spec(design, physics)
+    for alteration in alterations:
+        alteration.shape(spec)
+    model = edited(spec.compile(), alterations)
     if damps_motors(alterations):
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     # MuJoCo's solver stops where an improvement over `meaninertia` is below `tolerance`. A batch
