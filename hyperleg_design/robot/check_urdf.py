@@ -69,7 +69,7 @@ def check_urdf(source: str | Path) -> list[Finding]:
     if not links:
         return [*found, Finding("error", "<robot>", "has no links", "add at least one <link>")]
     found += _tree(links, joints)
-    carried = {_ends(joint)[1] for joint in joints if joint.get("type") == "fixed"}
+    carried = {end for joint in joints if joint.get("type") == "fixed" for end in _ends(joint)}
     for link in links:
         found += _inertial(link, link.get("name") in carried) + _drawings(link)
         found += _meshes(link, source)

@@ -31,6 +31,8 @@ class FileLink:
     """Centre of mass in the link's frame [m], `(3,)`."""
     inertia: np.ndarray
     """Inertia about the centre of mass, in the axes of the link [kg m^2], `(3, 3)`."""
+    spheres: tuple[tuple[np.ndarray, float], ...] = ()
+    """Centre in the link's frame `(3,)` and radius [m] of each sphere that collides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +125,9 @@ def _urdf(path: Path, root: Any, where: str, meshes: bool) -> FileRobot:
             _require_mesh(str(mesh.get("filename", "")), path, where)
     links = {fit_name(e.get("name")): _urdf_link(e) for e in root.findall("link")}
     joints = {fit_name(e.get("name")): _urdf_joint(e) for e in root.findall("joint")}
+    for name, joint in list(joints.items()):
+        if joint.kind == "floating" and not any(joint.parent == j.child for j in joints.values()):
+            del joints[name], links[joint.parent]  # the world, from which the robot is free
     carried = {joint.child for joint in joints.values()}
     (base,) = [name for name in links if name not in carried]
     return FileRobot(fit_name(root.get("name", "robot")), where, base, True, links, joints)
@@ -154,8 +159,13 @@ def _numbers(element: Any, key: str, default: str) -> np.ndarray:
 
 def _urdf_link(element: Any) -> FileLink:
     inertial = element.find("inertial")
+    spheres = tuple(
+        (_numbers(part.find("origin"), "xyz", "0 0 0"), float(sphere.get("radius")))
+        for part in element.findall("collision")
+        for sphere in part.findall("geometry/sphere")
+    )
     if inertial is None:
-        return FileLink(0.0, np.zeros(3), np.zeros((3, 3)))
+        return FileLink(0.0, np.zeros(3), np.zeros((3, 3)), spheres)
     origin, tensor = inertial.find("origin"), inertial.find("inertia")
     xx, yy, zz, xy, xz, yz = (
         float(tensor.get(k, 0)) for k in ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
@@ -163,7 +173,7 @@ def _urdf_link(element: Any) -> FileLink:
     turn = _rotation(_numbers(origin, "rpy", "0 0 0"))
     own = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     mass = float(inertial.find("mass").get("value"))
-    return FileLink(mass, _numbers(origin, "xyz", "0 0 0"), turn @ own @ turn.T)
+    return FileLink(mass, _numbers(origin, "xyz", "0 0 0"), turn @ own @ turn.T, spheres)
 
 
 def _urdf_joint(element: Any) -> FileJoint:
@@ -228,7 +238,14 @@ def _mjcf(path: Path, where: str) -> FileRobot:
         turn = quat.reshape(3, 3)
         own = turn @ np.diag(model.body_inertia[body]) @ turn.T
         com = model.body_ipos[body] - shift[body]
-        links[names[body]] = FileLink(float(model.body_mass[body]), com, own)
+        spheres = tuple(
+            (model.geom_pos[g] - shift[body], float(model.geom_size[g, 0]))
+            for g in range(model.ngeom)
+            if model.geom_bodyid[g] == body
+            and model.geom_type[g] == mujoco.mjtGeom.mjGEOM_SPHERE
+            and (model.geom_contype[g] or model.geom_conaffinity[g])
+        )
+        links[names[body]] = FileLink(float(model.body_mass[body]), com, own, spheres)
     name = fit_name(path.stem)
     return FileRobot(name, where, names[root], bool(free), links, joints)
 

@@ -6,7 +6,8 @@
     actuators:                           # motors, by joint or pattern of joints, or by a name of
       "leg_*": {motor: U10, gear: 25}    # their own where transmission says what they drive
     joints: {"leg_*": {stiffness: 80, damping: 3, default_deg: 0}}
-    transmission, rods, pads, masses, electrical, contact, stops: as in a design of `family: tree`
+    pads: {"*_foot": {}}                 # links whose colliding spheres are pads, or pads by name
+    transmission, rods, masses, electrical, contact, stops: as in a design of `family: tree`
 
 `lint` says where the effort, velocity and rotor inertia that the file states contradict those motors.
 """  # noqa: E501
@@ -29,6 +30,9 @@ from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.tree_design import TreeDesign
 from hyperleg_design.robot.tree_load import tree_design_from_mapping
 
+DUMMY_INERTIA = 1e-5
+"""Moment of inertia up to which a link is a placeholder, as root links of URDFs often are, and gets
+the moments of a ball where it has those of no body [kg m^2]."""
 AGREES = 0.05
 """Relative difference up to which a limit of the file agrees with the motors [-]."""
 KEYS = (
@@ -111,6 +115,8 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
             joints[name] |= held
     trunk = {"link": robot.root, "motion": "floating" if robot.floating else "fixed"}
     rest = {k: data[k] for k in KEYS[5:] if k in data}
+    if "pads" in data:
+        rest["pads"] = _pads(robot, _section(data, "pads", where), where)
     return {
         "family": "tree",
         "name": str(data.get("name", robot.name)),
@@ -121,7 +127,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
                 "com": _leaf(link.com.tolist(), robot.source),
                 "inertia": _leaf(
                     [
-                        float(link.inertia[i])
+                        float(_real(link.inertia)[i])
                         for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
                     ],
                     robot.source,
@@ -133,6 +139,40 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         "actuators": actuators,
         **rest,
     }
+
+
+def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """Pads by name; a pattern of links without a position stands for their colliding spheres, or,
+    with a radius, for a sphere at the origin of each that has none.
+
+    Raises:
+        InputError: a pattern that matches no link with colliding spheres.
+    """
+    found: dict[str, Any] = {}
+    for name, held in given.items():
+        if isinstance(held, Mapping) and "position" in held:
+            found[name] = held
+            continue
+        links = [link for link in robot.links if fnmatchcase(link, name)]
+        origin = ((np.zeros(3), 0.0),) if "radius" in (held or {}) else ()
+        spheres = {link: robot.links[link].spheres or origin for link in links}
+        spheres = {link: own for link, own in spheres.items() if own}
+        if not spheres:
+            known = parameters.some([n for n, link in robot.links.items() if link.spheres])
+            remedy = (
+                f"no link of this name has a colliding sphere in {robot.source} (those that have: "
+                f"{known or 'none'}); give a radius for a pad at the link's origin, or link, position "
+                f"and radius of each pad"
+            )
+            raise InputError(where, f"pads.{name}", None, remedy)
+        for link, own in spheres.items():
+            for index, (place, radius) in enumerate(own):
+                found[f"{link}_{index}"] = {
+                    "link": link,
+                    "position": _leaf(place.tolist(), robot.source),
+                    "radius": _leaf(radius, robot.source),
+                } | dict(held or {})
+    return found
 
 
 def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
@@ -148,6 +188,15 @@ def _matching(pattern: str, names: list[str], where: str, place: str) -> list[st
         remedy = parameters.unknown(pattern, names).replace("such field", "such moving joint")
         raise InputError(where, f"{place}.{pattern}", None, remedy)
     return found
+
+
+def _real(inertia: np.ndarray) -> np.ndarray:
+    """The inertia of a link; of a placeholder with moments of no body, a ball's, `(3, 3)`."""
+    low, middle, high = np.linalg.eigvalsh(inertia)
+    real = low > 0 and high <= (low + middle) * (1 + 1e-6)
+    if real or not 0 < high < DUMMY_INERTIA:
+        return inertia
+    return float(high) * np.eye(3)
 
 
 def _leaf(value: Any, source: str) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.parameters import leaves
+from hyperleg_design.robot.tree_design import TreeDesign
 from hyperleg_design.simulation.alteration import Alteration, damps_motors, edited
 from hyperleg_design.simulation.layout import Layout, layout_of
 from hyperleg_design.simulation.settings import Physics
@@ -95,6 +96,9 @@ def _check_walker(design: RobotDesign, layout: Layout) -> None:
         InputError: names what is missing.
     """
     where = design.source or design.name
+    if isinstance(design, TreeDesign) and design.trunk.motion != "floating":
+        remedy = "expects floating: what is simulated walks; a robot on a stand can be analysed"
+        raise InputError(where, "trunk.motion", str(design.trunk.motion), remedy)
     if not layout.pads:
         remedy = "has no pads, so it stands on nothing; add pads to its feet"
         raise InputError(where, "pads", None, remedy)

@@ -57,25 +57,27 @@ def mirrored_order(tree: Tree, links: Sequence[str]) -> tuple[int, ...] | None:
     if images is None:
         return None
     of_link = {tree.base: tree.base} | {
-        joint.child: images[joint.name][0].child for joint in tree.joints
+        joint.child: images[joint.name][0].child for joint in tree.joints if joint.name in images
     }
-    places = [of_link[link] for link in links]
-    return tuple(list(links).index(p) for p in places) if set(places) <= set(links) else None
+    places = [of_link.get(link) for link in links]
+    if not set(places) <= set(links):
+        return None
+    return tuple(list(links).index(place) for place in places if place is not None)
 
 
 def _images(tree: Tree) -> dict[str, tuple[TreeJoint, float]] | None:
-    """Mirror image and sign of every joint by name; None where one has none."""
+    """Mirror image and sign of the joints by name; None where one that moves has none.
+
+    Links that are fixed to others need no image: sensors are often on one side only.
+    """
     poses = link_poses(tree)
     image_of = {tree.base: tree.base}
     found: dict[str, tuple[TreeJoint, float]] = {}
     taken: set[str] = set()
     for joint in tree.joints:
         for other in tree.joints:
-            if (
-                other.name in taken
-                or other.parent != image_of.get(joint.parent)
-                or other.fixed != joint.fixed
-            ):
+            hangs = other.parent == image_of.get(joint.parent) and other.fixed == joint.fixed
+            if other.name in taken or not hangs:
                 continue
             sign = _sign(joint, other, poses)
             if sign:
@@ -84,7 +86,8 @@ def _images(tree: Tree) -> dict[str, tuple[TreeJoint, float]] | None:
                 taken.add(other.name)
                 break
         else:
-            return None
+            if not joint.fixed:
+                return None
     return found
 
 

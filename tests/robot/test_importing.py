@@ -196,3 +196,40 @@ def test_the_command_writes_a_design_that_loads(tmp_path, capsys):
     assert main(["import", str(path), "--actuation", str(motors), "--out", str(out)]) == 0
     assert "limits agree with the motors" in capsys.readouterr().out
     assert list(load_robot(out).joint_sections) == ["hip", "knee"]
+
+
+def two_feet(sphere='<sphere radius="0.02"/>'):
+    """A body with a leg that ends in a foot, hanging freely in the world."""
+    inertial = (
+        '<inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" '
+        'iyz="0"/></inertial>'
+    )
+    return f"""<robot name="hopper"><link name="world"/><link name="body">{inertial}</link>
+    <link name="shank">{inertial}</link>
+    <link name="tip">{inertial}<collision><origin xyz="0 0 -0.1"/><geometry>{sphere}</geometry>
+    </collision></link>
+    <joint name="free" type="floating"><parent link="world"/><child link="body"/></joint>
+    <joint name="knee" type="revolute"><parent link="body"/><child link="shank"/>
+    <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="10" velocity="10"/></joint>
+    <joint name="end" type="fixed"><parent link="shank"/><child link="tip"/></joint></robot>"""
+
+
+def test_a_floating_joint_from_the_world_is_a_free_base(tmp_path):
+    (tmp_path / "hopper.urdf").write_text(two_feet())
+    motors = {"actuators": {"knee": {"motor": "RI60", "gear": 9}}, "pads": {"tip": {}}}
+    design, _ = import_robot(tmp_path / "hopper.urdf", actuation(tmp_path / "m.yaml", **motors))
+    assert (design.trunk.link, design.trunk.motion) == ("body", "floating")
+    assert list(design.link_sections) == ["body", "shank", "tip"]
+    (pad,) = design.pad_sections.values()
+    assert (pad.link, list(pad.position), pad.radius) == ("tip", [0.0, 0.0, -0.1], 0.02)
+
+
+def test_pads_of_links_without_spheres(tmp_path):
+    (tmp_path / "hopper.urdf").write_text(two_feet('<box size="0.1 0.1 0.1"/>'))
+    motors = {"actuators": {"knee": {"motor": "RI60", "gear": 9}}, "pads": {"tip": {}}}
+    with pytest.raises(InputError, match=r"pads\.tip.*no link of this name has a colliding sphere"):
+        import_robot(tmp_path / "hopper.urdf", actuation(tmp_path / "m.yaml", **motors))
+    motors["pads"] = {"tip": {"radius": 0.03}}
+    design, _ = import_robot(tmp_path / "hopper.urdf", actuation(tmp_path / "m.yaml", **motors))
+    (pad,) = design.pad_sections.values()
+    assert (list(pad.position), pad.radius) == ([0.0, 0.0, 0.0], 0.03)

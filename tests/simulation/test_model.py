@@ -138,7 +138,11 @@ def test_robots_written_out_have_the_dynamics_of_an_independent_library(name):
 
 @pytest.mark.parametrize(
     ("change", "field"),
-    [("joints.knee.stiffness=0", r"joints\.knee\.stiffness"), ("pads", "has no pads")],
+    [
+        ("joints.knee.stiffness=0", r"joints\.knee\.stiffness"),
+        ("trunk.motion=fixed", r"trunk\.motion.*expects floating"),
+        ("pads", "has no pads"),
+    ],
 )
 def test_a_robot_that_cannot_be_simulated_is_refused(change, field):
     if change == "pads":
