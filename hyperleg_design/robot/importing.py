@@ -161,8 +161,8 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
             known = parameters.some([n for n, link in robot.links.items() if link.spheres])
             remedy = (
                 f"no link of this name has a colliding sphere in {robot.source} (those that have: "
-                f"{known or 'none'}); give a radius for a pad at the link's origin, or link, position "
-                f"and radius of each pad"
+                f"{known or 'none'}); give a radius for a pad at the link's origin, or link, "
+                f"position and radius of each pad"
             )
             raise InputError(where, f"pads.{name}", None, remedy)
         for link, own in spheres.items():
