@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.checks.excitation import Excitation, excitation_of
+from hyperleg_design.gap.checks.excitation import excitation_of
 from hyperleg_design.gap.checks.gates import unusable
 from hyperleg_design.gap.checks.plausibility import implausible
+from hyperleg_design.gap.effects.excitation import Excitation
 from hyperleg_design.gap.logs.sampling import Column, Sampling, columns_of, sampling_of
 from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
 

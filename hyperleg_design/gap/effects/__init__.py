@@ -28,6 +28,11 @@ def _found() -> dict[str, Effect]:
 EFFECTS: dict[str, Effect] = _found()
 """By identifier, in the order of the alphabet."""
 
+LOOK_ALIKES: tuple[tuple[str, str, str], ...] = tuple(
+    (one.identifier, other, by) for one in EFFECTS.values() for other, by in one.look_alikes.items()
+)
+"""Pairs that are taken for each other, and what separates them."""
+
 
 def effect(identifier: str) -> Effect:
     """An effect of the catalogue.

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
+from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     commanded,
@@ -19,8 +22,11 @@ from hyperleg_design.gap.effects.series import lagged
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
+BANDWIDTH = 10.0
+"""Content of the command that tells a motor's bandwidth from delay [Hz]."""
 
 
 class ActuatorBandwidth(Effect):
@@ -44,10 +50,20 @@ class ActuatorBandwidth(Effect):
             "torque loops of 15-100 Hz, 2-10 ms, on series-elastic and servo drives (assumed)",
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "log torque or current": BEYOND_COMMANDS,
+        "chirp past 8 Hz": frozenset({"controller_gain", "rotor_inertia", "viscous_friction"}),
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        good = f"commands reach past {BANDWIDTH:.0f} Hz"
+        lacking = f"commands hold nothing above {BANDWIDTH:.0f} Hz: looks like delay"
+        return at_drives(self.identifier, motion, motion.command > BANDWIDTH, good, lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

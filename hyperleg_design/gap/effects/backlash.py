@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import (
+    FEW,
+    REVERSES,
+    Excitation,
+    Motion,
+    at_joints,
+    by_speeds,
+)
+from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.placing import SIDES, driven_motors
 from hyperleg_design.gap.model import machine
 from hyperleg_design.simulation.two_mass import STIFFEST, Belt
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
@@ -40,10 +51,20 @@ class Backlash(Effect):
         Parameter("coasting", "", 1.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=COASTING),
         Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "preload": FRICTION | LATE | {"cogging", "transmission_elasticity"},
+        "log rotor speeds": BESIDE_TRANSMISSIONS,
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        return by_speeds(self.identifier, log, motion) or at_joints(
+            self.identifier, motion, motion.reversing, REVERSES, FEW
+        )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.placing import (
     at_motor,
     driven_motors,
@@ -20,6 +23,7 @@ from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -70,10 +74,20 @@ class Cogging(Effect):
             shape=True,
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "slow ramp": FRICTION | {"encoder_offset", "joint_spring"},
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        slow = motion.swinging & (motion.slow > SLOW)
+        return at_joints(
+            self.identifier, motion, slow, "slow motion over a range", "no slow motion over a range"
+        )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
+from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
 from hyperleg_design.gap.effects.placing import (
     ROBOT,
     before_measurement,
@@ -23,6 +25,7 @@ from hyperleg_design.gap.effects.series import delayed
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -30,6 +33,8 @@ LATE = ("all that controllers ask for", "their targets alone")
 """Choices of the parameter `late`."""
 TARGETS = 0.5
 """Value of it from which it is the targets."""
+COMMAND = 0.5
+"""Content of the command from which a delay shows [Hz]."""
 
 
 class CommandDelay(Effect):
@@ -49,11 +54,29 @@ class CommandDelay(Effect):
         Parameter("delay", "s", 0.0, 0.0, 0.05, 0.005, "up to 25 ms (PACE, arXiv 2509.06342)"),
         Parameter("late", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=LATE),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "log torque or current": BEYOND_COMMANDS,
+        "chirp past 8 Hz": frozenset({"actuator_bandwidth", "controller_gain", "viscous_friction"}),
+    }
+    look_alikes: ClassVar[Mapping[str, str]] = {
+        "actuator_bandwidth": "gain and phase at high frequency",
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """The robot, and where it has several motors, each of them."""
         motors = driven_motors(subject)
         return (ROBOT, *(motors if len(motors) > 1 else ()))
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        lacking = f"commands hold nothing above {COMMAND} Hz"
+        return at_drives(
+            self.identifier,
+            motion,
+            motion.command > COMMAND,
+            "commands change fast enough",
+            lacking,
+        )
 
     def place(self, location: str, subject: Subject) -> str:
         """The one that is meant; the only motor is the robot."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import STILL, Excitation, Motion, at_drives
+from hyperleg_design.gap.effects.families import BEYOND_COMMANDS, FRICTION, WITH_LOAD, WITHOUT_DRIVE
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     commanded,
@@ -19,6 +22,7 @@ from hyperleg_design.gap.effects.placing import (
 from hyperleg_design.simulation.alteration import Alteration, Machine
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -47,11 +51,26 @@ class ControllerGain(Effect):
         ),
         Parameter("damping_scale", "", 1.0, 0.0, 5.0, 0.2, "as the stiffness"),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "log torque or current": BEYOND_COMMANDS,
+        "several amplitudes": FRICTION - {"viscous_friction"} | {"backlash", "torque_saturation"},
+        "torque-off swing": WITHOUT_DRIVE,
+        "known payload": WITH_LOAD,
+    }
+    look_alikes: ClassVar[Mapping[str, str]] = {
+        "torque_saturation": "several amplitudes",
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints with known gains."""
         known = np.isfinite(subject.gains).all(1) & (subject.gains != 0).any(1) & ~subject.passive
         return tuple(name for name, here in zip(subject.joints, known, strict=True) if here)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        return at_drives(
+            self.identifier, motion, motion.swinging, "targets, gains and motion", STILL
+        )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

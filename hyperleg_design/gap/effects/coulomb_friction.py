@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import FEW, REVERSES, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
 from hyperleg_design.gap.signals.sliding import WIDTH, sliding
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
@@ -43,10 +47,20 @@ class CoulombFriction(Effect):
         ),
     )
     linear: ClassVar[bool] = True
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "slow ramp": FRICTION | {"cogging", "joint_spring"},
+    }
+    look_alikes: ClassVar[Mapping[str, str]] = {
+        "backlash": "preload",
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints."""
         return subject.joints
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        return at_joints(self.identifier, motion, motion.reversing, REVERSES, FEW)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -15,6 +15,8 @@ import numpy as np
 from hyperleg_design.errors import InputError
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.effects.excitation import Excitation, Motion
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
@@ -70,6 +72,12 @@ class Effect(ABC):
     linear: ClassVar[bool] = False
     """Whether the trace is linear in (values - nulls), but for parameters that only shape it: these
     are one of `variants`."""
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {}
+    """By name of an experiment of `gap/experiments/experiment.py`, effects that it tells apart from
+    this one; that one of two effects says so is enough."""
+    look_alikes: ClassVar[Mapping[str, str]] = {}
+    """Effects that are taken for this one most, and what separates them; that one of two says so is
+    enough."""
 
     @abstractmethod
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -95,6 +103,15 @@ class Effect(ABC):
             location,
             f"did you mean {near[0]}?" if near else f"expects one of {', '.join(found)}",
         )
+
+    @abstractmethod
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """Whether a log can show it, where, and why or why not.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+        """
 
     @abstractmethod
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:

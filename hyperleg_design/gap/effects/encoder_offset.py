@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import WeakKeyDictionary
@@ -9,10 +10,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.simulation.alteration import Alteration, Live
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -48,10 +52,20 @@ class EncoderOffset(Effect):
             "up to 0.1 rad on calibrated legs (PACE, arXiv 2509.06342)",
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "several postures": INERTIAL | {"imu_bias", "joint_spring", "torque_constant"},
+    }
+    look_alikes: ClassVar[Mapping[str, str]] = {
+        "link_com": "several postures",
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints."""
         return subject.joints
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

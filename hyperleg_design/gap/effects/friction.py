@@ -1,4 +1,4 @@
-"""What effects of friction share: their names, and friction in a simulation."""
+"""What effects of friction share: friction in a simulation."""
 
 from __future__ import annotations
 
@@ -7,13 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from hyperleg_design.gap.effects.families import FRICTION as FRICTION
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
-
-FRICTION = frozenset(
-    {"coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction"}
-)
-"""Effects of joints that rub."""
 
 
 @dataclass(frozen=True, eq=False)

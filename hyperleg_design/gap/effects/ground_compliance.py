@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
 from hyperleg_design.gap.effects.ground_friction import ChangedGround, ground_trace
 from hyperleg_design.gap.signals import ground
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
@@ -47,10 +51,19 @@ class GroundCompliance(Effect):
             "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)",
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "push on the ground": FRICTION | INERTIAL | {"ground_friction"},
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Feet."""
         return subject.feet if subject.floating else ()
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        feet = tuple(f for f in log.feet if log.has("contact_force", f"{f}_z"))
+        why = "vertical contact forces" if feet else "no contact forces"
+        return Excitation(self.identifier, bool(feet), feet, why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

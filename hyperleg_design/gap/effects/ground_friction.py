@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
 from hyperleg_design.gap.signals import ground
 from hyperleg_design.simulation.alteration import Alteration
 
 if TYPE_CHECKING:
     import mujoco
 
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -42,10 +46,21 @@ class GroundFriction(Effect):
             "rubber on dry to wet floors 0.9-0.4 (engineering tables), 30 % of a nominal 0.8",
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "push on the ground": FRICTION | INERTIAL | {"ground_compliance"},
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Feet."""
         return subject.feet if subject.floating else ()
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        feet = tuple(
+            f for f in log.feet if any(log.has("contact_force", f"{f}_{axis}") for axis in "xy")
+        )
+        why = "forces along the ground" if feet else "no contact forces along the ground"
+        return Excitation(self.identifier, bool(feet), feet, why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.simulation.alteration import Alteration, Live
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -44,10 +48,19 @@ class ImuBias(Effect):
             for axis in "xyz"
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "rest level": INERTIAL | {"encoder_offset", "joint_spring"},
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """The sensor, on a floating base."""
         return (IMU,) if subject.floating else ()
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        known = tuple(k for k in ("gyro", "accelerometer") if log.has(k, "x"))
+        why = "inertial data" if known else "no gyroscope and no accelerometer"
+        return Excitation(self.identifier, bool(known), known, why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

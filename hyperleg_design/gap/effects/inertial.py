@@ -12,6 +12,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
+from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
 from hyperleg_design.gap.model.mechanism import (
     BASE,
     inertial_parameters,
@@ -24,6 +25,7 @@ from hyperleg_design.simulation.alteration import Alteration
 if TYPE_CHECKING:
     import mujoco
 
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -48,6 +50,10 @@ class InertialEffect(Effect):
         tree = subject.tree
         carriers = tree.link_joint.tolist()
         return tuple(name for i, name in enumerate(tree.links) if carriers[i] not in carriers[:i])
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def place(self, location: str, subject: Subject) -> str:
         """The link that is meant; any moving link will do, or a joint, for the link that it

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -51,10 +55,18 @@ class JointSpring(Effect):
         ),
     )
     linear: ClassVar[bool] = True
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "several amplitudes": frozenset({"backlash", "coulomb_friction"}),
+        "several postures": INERTIAL,
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints."""
         return subject.joints
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

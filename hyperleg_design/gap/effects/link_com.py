@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Parameter
+from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.inertial import InertialEffect, fitted
 from hyperleg_design.gap.model.mechanism import inertial_parameters, mass_properties
 
@@ -34,6 +36,9 @@ class LinkCom(InertialEffect):
         )
         for axis in "xyz"
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "several postures": INERTIAL,
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -37,6 +38,9 @@ class LinkMass(InertialEffect):
         ),
     )
     linear: ClassVar[bool] = True
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "several postures": frozenset({"payload"}),
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass."""

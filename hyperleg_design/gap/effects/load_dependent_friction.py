@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.sliding import sliding
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
@@ -41,6 +45,10 @@ class LoadDependentFriction(Effect):
         ),
     )
     linear: ClassVar[bool] = True
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "preload": FRICTION,
+        "known payload": FRICTION,
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints that some motor moves."""
@@ -49,6 +57,12 @@ class LoadDependentFriction(Effect):
             for name, row in zip(subject.joints, subject.joint_from_motor, strict=True)
             if row.any()
         )
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        loaded = motion.reversing & motion.swinging
+        lacking = "no joint reverses under different loads"
+        return at_joints(self.identifier, motion, loaded, "reverses under different loads", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

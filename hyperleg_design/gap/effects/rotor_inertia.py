@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.placing import at_motor, driven_motors, joint_inertia
 from hyperleg_design.simulation.alteration import Alteration, Machine
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
 SHARE = 0.3
 """Usual error over the rotor's inertia, or, where the model has none, over that of its joint
 (assumed)."""
+CONTENT = 1.0
+"""Content of the motion from which a rotor's inertia shows [Hz]."""
 
 
 class RotorInertia(Effect):
@@ -42,10 +48,24 @@ class RotorInertia(Effect):
         ),
     )
     linear: ClassVar[bool] = True
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "chirp past 8 Hz": frozenset({"controller_gain", "torque_constant", "transmission_ratio"}),
+        "several postures": INERTIAL,
+    }
+    look_alikes: ClassVar[Mapping[str, str]] = {
+        "link_mass": "several postures",
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        moved = motion.reversing & (motion.content > CONTENT)
+        return at_joints(
+            self.identifier, motion, moved, "motion accelerates", "hardly any acceleration"
+        )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
 from hyperleg_design.gap.signals.sliding import sliding
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
@@ -54,10 +57,21 @@ class StribeckFriction(Effect):
             shape=True,
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "slow ramp": frozenset(
+            {"backlash", "cogging", "load_dependent_friction", "viscous_friction"}
+        ),
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints."""
         return subject.joints
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        slow = motion.reversing & (motion.slow > SLOW)
+        lacking = "no slow motion: breakaway is passed in a few ticks"
+        return at_joints(self.identifier, motion, slow, "slow and fast motion", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.families import SCALING, WITH_LOAD
 from hyperleg_design.gap.effects.placing import (
     at_motor,
     driven_motors,
@@ -18,6 +21,7 @@ from hyperleg_design.gap.effects.placing import (
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -30,6 +34,8 @@ TIME_CONSTANT = 60.0
 """Of a motor's windings and iron [s]; assumed."""
 RATED_SHARE = 1 / 3
 """Rated over largest torque where nobody gives it (assumed)."""
+WARMING = 10.0
+"""Rise of a motor's temperature that changes torque visibly [K]."""
 
 
 class ThermalDerating(Effect):
@@ -55,10 +61,33 @@ class ThermalDerating(Effect):
         ),
     )
     linear: ClassVar[bool] = True
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "known payload": WITH_LOAD,
+        "cold and warm": SCALING | {"load_dependent_friction"},
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        known = {m: log.column(f"motor_temperature/{m}") for m in log.motors}
+        rise = {
+            m: float(np.nanmax(values) - np.nanmin(values))
+            for m, values in known.items()
+            if log.has("motor_temperature", m)
+        }
+        if not rise:
+            return Excitation(self.identifier, False, (), "no motor temperature")
+        warm = tuple(m for m, value in rise.items() if value >= WARMING)
+        why = f"temperature changes by {max(rise.values()):.0f} K"
+        return Excitation(
+            self.identifier,
+            bool(warm) and bool(motion.torque.any()),
+            warm,
+            why if warm else f"{why}; {WARMING:.0f} K are needed",
+        )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.families import FRICTION, WITH_LOAD, WITHOUT_DRIVE
 from hyperleg_design.gap.effects.placing import (
     at_motor,
     before_measurement,
@@ -19,6 +22,7 @@ from hyperleg_design.gap.effects.placing import (
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -53,10 +57,30 @@ class TorqueConstant(Effect):
         ),
     )
     linear: ClassVar[bool] = True
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "several amplitudes": FRICTION - {"viscous_friction"},
+        "torque-off swing": WITHOUT_DRIVE,
+        "known payload": WITH_LOAD,
+    }
+    look_alikes: ClassVar[Mapping[str, str]] = {
+        "payload": "a known payload, or several loads",
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        motors = tuple(
+            m for m in log.motors if log.has("motor_current", m) or log.has("motor_torque", m)
+        )
+        if not motors:
+            why = "no current and no motor torque: not told from controller_gain or payload"
+            return Excitation(self.identifier, False, (), why)
+        moved = bool(motion.swinging.any())
+        why = "current or torque under a changing load" if moved else "the load hardly changes"
+        return Excitation(self.identifier, moved, motors if moved else (), why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
+from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     commanded,
@@ -21,6 +24,7 @@ from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -53,10 +57,23 @@ class TorqueSaturation(Effect):
             "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor",
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "log torque or current": BEYOND_COMMANDS,
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        return at_drives(
+            self.identifier,
+            motion,
+            motion.swinging,
+            "commands of different size",
+            "commands hardly change",
+        )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

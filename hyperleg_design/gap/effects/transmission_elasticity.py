@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints, by_speeds
+from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.placing import SIDES, driven_motors
 from hyperleg_design.gap.model import machine
 from hyperleg_design.simulation.two_mass import DAMPING_RATIO, Belt
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
@@ -25,6 +29,8 @@ SLOWEST = 0.5
 """Lowest frequency of a rotor on its belt that is searched [Hz]."""
 STIFFER = 30.0
 """Usual stiffening [1/rad], twice as stiff at 2 degrees; that a search starts from, too."""
+RESONANCE = 8.0
+"""Content of the motion that tells elasticity from delay [Hz]."""
 
 
 class TransmissionElasticity(Effect):
@@ -70,10 +76,26 @@ class TransmissionElasticity(Effect):
             shape=True,
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "several amplitudes": FRICTION - {"viscous_friction"} | {"backlash"},
+        "chirp past 8 Hz": LATE | {"controller_gain", "rotor_inertia", "viscous_friction"},
+        "log rotor speeds": BESIDE_TRANSMISSIONS,
+    }
+    look_alikes: ClassVar[Mapping[str, str]] = {
+        "command_delay": "a chirp past 8 Hz",
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        good = f"motion reaches past {RESONANCE:.0f} Hz"
+        lacking = f"motion holds nothing above {RESONANCE:.0f} Hz: looks like delay"
+        return by_speeds(self.identifier, log, motion) or at_joints(
+            self.identifier, motion, motion.content > RESONANCE, good, lacking
+        )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

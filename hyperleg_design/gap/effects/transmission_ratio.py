@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import WeakKeyDictionary
@@ -10,6 +11,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, by_speeds
+from hyperleg_design.gap.effects.families import (
+    BESIDE_TRANSMISSIONS,
+    SCALING,
+    WITH_LOAD,
+    WITHOUT_DRIVE,
+)
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.placing import (
     SIDES,
@@ -23,6 +31,7 @@ from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live, Machine
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -55,10 +64,29 @@ class TransmissionRatio(Effect):
         ),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "chirp past 8 Hz": frozenset({"torque_constant"}),
+        "torque-off swing": WITHOUT_DRIVE,
+        "known payload": WITH_LOAD,
+        "known angle": SCALING | {"rotor_inertia"},
+        "log rotor speeds": BESIDE_TRANSMISSIONS | {"transmission_elasticity", "backlash"},
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Motors."""
         return driven_motors(subject)
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        if (shown := by_speeds(self.identifier, log, motion)) is not None:
+            return shown
+        passed = motion.torque & motion.swinging
+        why = (
+            "through the torques only: it looks like controller_gain"
+            if passed.any()
+            else "no motor speeds, and joints hardly move"
+        )
+        return Excitation(self.identifier, bool(passed.any()), tuple(motion.joints[passed]), why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

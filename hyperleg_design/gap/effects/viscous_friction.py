@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import FRICTION, LATE
 from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
@@ -18,6 +22,8 @@ if TYPE_CHECKING:
 SHARE = 0.02
 """Usual viscous friction at 1 rad/s over the torque that a joint is made for: 1.3-9.7 Nms/rad on
 harmonic drives of 100 Nm (BAM)."""
+SPEED_SPREAD = 3.0
+"""Fastest tenth over slowest tenth of the moving time, that tells viscous from Coulomb friction."""
 
 
 class ViscousFriction(Effect):
@@ -40,10 +46,25 @@ class ViscousFriction(Effect):
         ),
     )
     linear: ClassVar[bool] = True
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "several amplitudes": FRICTION,
+        "slow ramp": LATE | {"controller_gain"},
+        "cold and warm": frozenset({"torque_constant"}),
+    }
+    look_alikes: ClassVar[Mapping[str, str]] = {
+        "voltage_sag": "drives off: no back-EMF, no damping gain",
+        "controller_gain": "drives off: no back-EMF, no damping gain",
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints."""
         return subject.joints
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        varied = motion.reversing & (motion.spread > SPEED_SPREAD)
+        lacking = "one speed only: viscous and Coulomb friction look alike"
+        return at_joints(self.identifier, motion, varied, "speeds differ", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """See `Effect.trace`."""

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.families import BEYOND_COMMANDS, LATE, SCALING, WITHOUT_DRIVE
 from hyperleg_design.gap.effects.placing import (
     BATTERY,
     before_measurement,
@@ -25,6 +28,7 @@ from hyperleg_design.gap.signals.loading import FULL
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Machine, Tick
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -38,6 +42,8 @@ FAR, FALLS_SHORT, FEWEST = 6.0, 0.02, 20
 error, and by this share of the torque that it is made for; ticks that a line needs."""
 REFERENCE_SPEED = 0.5
 """Reference power: the torque that the joints are made for at this speed [rad/s]; assumed."""
+SAGGING = 0.03
+"""Spread of the voltage over its mean that changes torque visibly."""
 
 
 class VoltageSag(Effect):
@@ -86,10 +92,38 @@ class VoltageSag(Effect):
             shape=True,
         ),
     )
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+        "log torque or current": BEYOND_COMMANDS,
+        "several amplitudes": frozenset(
+            {"controller_gain", "torque_constant", "torque_saturation"}
+        ),
+        "torque-off swing": WITHOUT_DRIVE,
+        "stiff supply": LATE | SCALING | {"torque_saturation"},
+    }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """The battery."""
         return (BATTERY,) if driven_motors(subject) else ()
+
+    def excited(self, log: Log, motion: Motion) -> Excitation:
+        """See `Effect.excited`."""
+        values = log.column("battery_voltage")
+        if not np.isfinite(values).any():
+            return Excitation(self.identifier, False, (), "no battery voltage")
+        following = log.metadata.supply
+        if following and following.keys() >= set(log.motors or log.joints):
+            why = "all drives follow the logged voltage already, as declared by `supply`"
+            return Excitation(self.identifier, False, (), why)
+        low, high = np.nanpercentile(values, [5, 95])
+        spread = float((high - low) / max(abs(np.nanmean(values)), 1e-9))
+        enough = spread >= SAGGING and bool(motion.torque.any())
+        why = f"voltage varies by {100 * spread:.0f} %"
+        return Excitation(
+            self.identifier,
+            enough,
+            (),
+            why if enough else f"{why}; {100 * SAGGING:.0f} % are needed",
+        )
 
     def place(self, location: str, subject: Subject) -> str:
         """The battery, also as the robot."""

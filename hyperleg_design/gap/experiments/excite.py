@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
+from hyperleg_design.gap.effects import LOOK_ALIKES
 from hyperleg_design.gap.experiments import information as info
 from hyperleg_design.gap.experiments.motions import LeftOut, Motion, recommended
 from hyperleg_design.gap.experiments.rehearsal import knows_gains, rehearsed
@@ -41,18 +42,6 @@ RATE = 200.0
 RATES = (50.0, 2000.0)
 """Allowed [Hz]."""
 FORMATS = ("csv", "parquet", "both")
-LOOK_ALIKE: tuple[tuple[str, str, str], ...] = (
-    ("torque_constant", "payload", "a known payload, or several loads"),
-    ("coulomb_friction", "backlash", "preload"),
-    ("command_delay", "actuator_bandwidth", "gain and phase at high frequency"),
-    ("transmission_elasticity", "command_delay", "a chirp past 8 Hz"),
-    ("viscous_friction", "voltage_sag", "drives off: no back-EMF, no damping gain"),
-    ("viscous_friction", "controller_gain", "drives off: no back-EMF, no damping gain"),
-    ("rotor_inertia", "link_mass", "several postures"),
-    ("encoder_offset", "link_com", "several postures"),
-    ("controller_gain", "torque_saturation", "several amplitudes"),
-)
-"""Pairs that are taken for each other, and what separates them."""
 
 
 @dataclass(frozen=True)
@@ -189,7 +178,7 @@ def design_experiment(
 def pairs_of(subject: Subject, blocks: Blocks) -> tuple[Pair, ...]:
     """Look-alikes joint by joint."""
     found: list[Pair] = []
-    for first, second, by in LOOK_ALIKE:
+    for first, second, by in LOOK_ALIKES:
         for index, joint in enumerate(subject.joints):
             places = [place_at(name, index, subject, blocks) for name in (first, second)]
             if (

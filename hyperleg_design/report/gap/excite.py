@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.effects import LOOK_ALIKES
 from hyperleg_design.gap.experiments import information as info
-from hyperleg_design.gap.experiments.excite import CLEAR, LOOK_ALIKE, hidden, inseparable
+from hyperleg_design.gap.experiments.excite import CLEAR, hidden, inseparable
 from hyperleg_design.report.style import figure_style, save
 from hyperleg_design.writing import write_text
 
@@ -76,7 +77,7 @@ def plan_text(experiment: Experiment) -> str:
     left = inseparable(experiment)
     if left:
         lines += ["", "Not told apart by all motions together, though each shows:"]
-        for first, second, by in LOOK_ALIKE:
+        for first, second, by in LOOK_ALIKES:
             joints = [p.joint for p in left if (p.first[0], p.second[0]) == (first, second)]
             if joints:
                 lines.append(f"  {first} / {second}, which {by} would separate: {_few(joints)}")
@@ -116,7 +117,7 @@ def _pair_rows(
 
     whole, blocks = experiment.gram(), experiment.blocks
     rows = []
-    for first, second, _ in LOOK_ALIKE:
+    for first, second, _ in LOOK_ALIKES:
         pairs = [p for p in experiment.pairs if (p.first[0], p.second[0]) == (first, second)]
         pairs = [
             p

@@ -32,10 +32,12 @@ def test_look_alikes_have_an_experiment(pair, name):
         assert name is None or found.name == name
 
 
-def test_experiments_speak_of_the_catalogue_only():
-    for experiment in EXPERIMENTS:
-        for a, b in experiment.between:
-            assert (a | b) <= set(EFFECTS)
+def test_effects_speak_of_experiments_and_effects_that_there_are():
+    names = {experiment.name for experiment in EXPERIMENTS}
+    for effect in EFFECTS.values():
+        assert set(effect.told_apart) <= names, effect.identifier
+        others = set().union(*effect.told_apart.values()) | set(effect.look_alikes)
+        assert others <= set(EFFECTS), effect.identifier
 
 
 def test_one_effect_at_two_places_asks_for_one_joint_at_a_time():
