@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 
 def settled_after(stages: Sequence[Stage]) -> float:
-    """Policy steps after which neither reward nor assist changes any more, at the latest.
+    """Policy steps after which neither reward, gait clock nor assist changes any more, at the
+    latest.
 
     A ramp that begins when the assist is gone counts from the stage's deadline for the assist.
 
@@ -40,7 +41,7 @@ def settled_after(stages: Sequence[Stage]) -> float:
             settled = max(settled, begun + deadline)
             assisted = stage.assist_gone_by >= 1.0  # goes on into the next stage otherwise
         for ramp in stage.ramps:
-            if ramp.target[0] != "rewards":
+            if ramp.target[0] not in ("rewards", "clock"):
                 continue
             end = ramp.steps + (deadline if ramp.begins == "assist_gone" else 0.0)
             if end > stage.steps * (1 + 1e-9):

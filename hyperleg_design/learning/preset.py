@@ -92,8 +92,9 @@ class Ramp:
     """A value that changes linearly over some steps and then stays."""
 
     target: tuple[str, str, str]
-    """`rewards`, term, `weight` or a parameter; `commands`, setting, empty; or `policy`,
-    `deviation`, empty: the largest standard deviation of the actions."""
+    """`rewards`, term, `weight` or a parameter; `commands`, setting, empty; `clock`, `shown`,
+    empty: gain of the gait clock in the observation; or `policy`, `deviation`, empty: the largest
+    standard deviation of the actions."""
     low: float
     """Value at its beginning."""
     high: float
@@ -328,12 +329,15 @@ def _ramp(data: Any, where: str, path: str) -> Ramp:
     if kind == "rewards" and name:
         parameter = parameter or "weight"
         _check_term(name, [parameter], where, f"{path}.set")
-    elif str(data["set"]) != "policy.deviation" and (kind != "commands" or not name or parameter):
+    elif str(data["set"]) not in ("policy.deviation", "clock.shown") and (
+        kind != "commands" or not name or parameter
+    ):
         raise InputError(
             where,
             f"{path}.set",
             data["set"],
-            "expects rewards.TERM, rewards.TERM.PARAMETER, commands.SETTING or policy.deviation",
+            "expects rewards.TERM, rewards.TERM.PARAMETER, commands.SETTING, clock.shown or "
+            "policy.deviation",
         )
     begins = data.get("begins", "stage")
     if begins not in BEGINS:

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 DECAY_EVERY = 2
 """Iterations between two decays of the assist, where the robots do well enough; assumed."""
-LONG_ENOUGH = 350.0
+LONG_ENOUGH = 500.0
 """Mean episode from which the assist decays [policy steps]; assumed."""
-FAST_ENOUGH = 0.6
+FAST_ENOUGH = 0.7
 """Share of the best velocity reward, or of the speed cap, from which the assist decays [-];
 assumed."""
 
@@ -158,6 +158,8 @@ def set_value(environment: Environment, ramp: Ramp, progress: float) -> None:
     value = _between(ramp, progress)
     if kind == "commands":
         environment.set_commands(**{name: value})
+    elif kind == "clock":
+        environment.set_clock(value)
     elif parameter == "weight":
         environment.set_reward(name, value)
     else:

@@ -475,13 +475,13 @@ class Chunk:
             offset[:, joints : 2 * joints],
             offset[:, 2 * joints : 2 * joints + 2],
         )
+        self._clock_start[ids] = 0.5 + 0.5 * drawn[:, -1]
         smoothed = self._stride(ids, position, velocity, offset[:, -1])
         self._tried[ids] = position
         self._starter.forward(ids, 1)
         radius = self._pad_radius[ids] if len(self._pad_radius) > 1 else self._pad_radius
         position[:, 2] -= self._places[ids][:, self._pad_ids, 2].min(-1) - radius
         self.drive.qpos[ids], self.drive.qvel[ids] = position, velocity
-        self._clock_start[ids] = 0.5 + 0.5 * drawn[:, -1]
         self.episode_step[ids] = 0
         self.thermal.reset(ids)
         self.drive.reset(ids, position[:, 7:], velocity[:, 6:])
@@ -493,8 +493,8 @@ class Chunk:
     def _stride(
         self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray, yaw: np.ndarray
     ) -> np.ndarray:
-        """Put some of the starting robots in mid-stride, in place; the smoothed actions that hold
-        them there, `(n, J)`, zero for those that stand.
+        """Put some of the starting robots in mid-stride, in place, and their clock at that phase;
+        the smoothed actions that hold them there, `(n, J)`, zero for those that stand.
         """
         smoothed = np.zeros((len(ids), len(self.layout.joints)))
         share = self.task.start.stride_share
@@ -502,7 +502,8 @@ class Chunk:
             return smoothed
         drawn = self.rng.of(ids).uniform(size=(len(ids), 3))
         rows, layout = np.flatnonzero(drawn[:, 0] < share), self.layout.take(ids)
-        places, angle, rate, speed = human_gait.stride(layout.joints, drawn[rows, 1:])
+        places, angle, rate, speed, phase = human_gait.stride(layout.joints, drawn[rows, 1:])
+        self._clock_start[ids[rows]] = phase
         lower, upper, default = (
             np.broadcast_to(limit, smoothed.shape)[np.ix_(rows, places)]
             for limit in (layout.lower, layout.upper, layout.default)

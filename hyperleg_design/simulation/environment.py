@@ -265,6 +265,16 @@ class Environment:
         for chunk in self.chunks:
             chunk.rewards[name] = new
 
+    def set_clock(self, shown: float) -> None:
+        """Change the gain of the gait clock in the observation.
+
+        Raises:
+            InputError: not within 0 .. 1.
+        """
+        clock = dataclasses.replace(self.chunks[0].robot.clock, shown=shown)
+        for chunk in self.chunks:
+            chunk.robot = dataclasses.replace(chunk.robot, clock=clock)
+
     def set_commands(self, **values: Any) -> None:
         """Change settings of the commands, for those drawn from now on.
 

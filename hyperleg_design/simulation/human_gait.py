@@ -14,7 +14,7 @@ PERIOD = 0.9
 """Duration of a stride of a person with legs of 0.79 m at 1.33 m/s [s]; assumed."""
 PHASES = 50
 """Number of phases of the cycle that a state is compared with."""
-ANGLE, RATE = 0.25, 2.5
+ANGLE, RATE = 0.15, 3.0
 """Scales of the distance from the cycle [rad], [rad/s]; assumed."""
 SHARES = tuple(100 * place / 12 for place in range(12))
 """Places of the knots in the cycle [%]."""
@@ -80,9 +80,26 @@ def distance(joints: tuple[str, ...], position: np.ndarray, velocity: np.ndarray
     return np.sqrt(np.maximum(squared.min(1), 0.0) / now.shape[1])
 
 
+def distance_at(
+    joints: tuple[str, ...], position: np.ndarray, velocity: np.ndarray, phase: np.ndarray
+) -> np.ndarray:
+    """Distance from the cycle at given phases [-], `(n,)`; as `distance` otherwise.
+
+    Args:
+        joints: names with the side in front, `(J,)`.
+        position: of the joints [rad], `(n, J)`.
+        velocity: of the joints [rad/s], `(n, J)`.
+        phase: of the cycle, 0 .. 1, `(n,)`.
+    """
+    places, phases = cycle(joints)
+    now = np.concatenate([position[:, places] / ANGLE, velocity[:, places] / RATE], 1)
+    there = phases[np.rint(phase * PHASES).astype(int) % PHASES]
+    return np.sqrt(np.mean((now - there) ** 2, 1))
+
+
 def stride(
     joints: tuple[str, ...], drawn: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Draw states in the middle of a human stride, for episodes to start from.
 
     Args:
@@ -91,10 +108,10 @@ def stride(
 
     Returns:
         Places of the joints of the cycle `(q,)`; their angles [rad] and rates [rad/s], `(n, q)`;
-        speed of the pelvis [m/s], `(n,)`.
+        speed of the pelvis [m/s], `(n,)`; phase of the cycle, 0 .. 1, `(n,)`.
     """
     places, phases = cycle(joints)
-    chosen = phases[np.minimum((drawn[:, 0] * PHASES).astype(int), PHASES - 1)]
-    count = len(places)
+    index = np.minimum((drawn[:, 0] * PHASES).astype(int), PHASES - 1)
+    chosen, count = phases[index], len(places)
     speed = SPEED * (SLOWER + (FASTER - SLOWER) * drawn[:, 1])
-    return places, chosen[:, :count] * ANGLE, chosen[:, count:] * RATE, speed
+    return places, chosen[:, :count] * ANGLE, chosen[:, count:] * RATE, speed, index / PHASES

@@ -53,9 +53,9 @@ def proprioception(state: State, robot: Robot) -> list[np.ndarray]:
 
 
 def clock(state: State, robot: Robot) -> list[np.ndarray]:
-    """Sine and cosine of the gait clock; a deviation from the paper."""
-    angle = 2 * np.pi * state.phase
-    return [np.sin(angle)[:, None], np.cos(angle)[:, None]]
+    """Sine and cosine of the gait clock times its gain; a deviation from the paper."""
+    angle, gain = 2 * np.pi * state.phase, robot.clock.shown
+    return [gain * np.sin(angle)[:, None], gain * np.cos(angle)[:, None]]
 
 
 def waypoint(state: State, robot: Robot) -> list[np.ndarray]:

@@ -147,6 +147,8 @@ class Clock(Checked):
     """Duration of a stride [s]."""
     stance: Any = number("", 0.3, 0.9, default=0.62)
     """Fraction of the stride for which each foot should stand [-]."""
+    shown: Any = number("", 0, 1, default=1.0)
+    """Gain of the clock in the observation [-]; at 0 a policy that has the input knows no time."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

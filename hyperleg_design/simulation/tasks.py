@@ -110,7 +110,11 @@ class Task:
         """
         found = {name: TERMS[name].description for name in self.rewards if not TERMS[name].paper}
         if any("clock" in parts for parts in self.observations.values()):
-            found["clock"] = "gait clock in the observation"
+            found["clock"] = (
+                "gait clock in the observation"
+                if self.clock.shown
+                else "input for a gait clock, at zero under this task"
+            )
         if self.physics.time_step != TIME_STEP:
             found["time_step"] = (
                 f"simulation steps of {1e3 * self.physics.time_step:g} ms, "

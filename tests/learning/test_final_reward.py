@@ -112,7 +112,19 @@ def test_the_primary_study_ends_with_the_papers_reward_and_a_penalty_on_joint_li
     final = final_rewards(study, load_task("walk_free"))
     assert final.pop("joint_limits").weight < 0
     assert final == {n: r for n, r in paper.rewards.items() if n != "joint_limits"}
-    assert load_task("walk_free").observations["policy"] == ("proprioception",)
+
+
+@pytest.mark.parametrize("name", sorted(set(STUDY) - {"walk_clock"}))
+def test_no_gait_clock_is_seen_in_the_final_stage_nor_under_the_task(name):
+    assert load_task(name).clock.shown == 0.0
+    shown = [
+        ramp
+        for stage in load_preset("study").stages(name)
+        for ramp in stage.ramps
+        if ramp.target[0] == "clock"
+    ]
+    assert shown[-1].high == 0.0
+    assert all(ramp.target[0] != "clock" for ramp in load_preset("study").stages(name)[-1].ramps)
 
 
 def test_each_variation_differs_from_the_primary_study_in_one_thing():

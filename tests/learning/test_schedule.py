@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from hyperleg_design.learning.preset import Preset, preset_from_mapping
-from hyperleg_design.learning.schedule import DECAY_EVERY, Schedule
+from hyperleg_design.learning.schedule import DECAY_EVERY, FAST_ENOUGH, LONG_ENOUGH, Schedule
 from hyperleg_design.robot.design import Design
 from hyperleg_design.simulation.assist import DECAY, OFF_BELOW
 from hyperleg_design.simulation.environment import Environment
@@ -63,17 +63,17 @@ def test_assist_decays_where_it_goes_well_and_never_grows(
     stage = replace(tiny.tasks["walk"][0], assist_gone_by=1.0, steps=32 * 1000)
     schedule = Schedule(replace(tiny, tasks={"walk": (stage,)}), "walk")
     for _ in range(DECAY_EVERY):
-        schedule.advance(400.0, 0.5)
+        schedule.advance(LONG_ENOUGH + 1, FAST_ENOUGH - 0.01)
     assert schedule.gain == 1.0
     for _ in range(DECAY_EVERY):
-        schedule.advance(300.0, 0.9)
+        schedule.advance(LONG_ENOUGH - 1, 0.9)
     assert schedule.gain == 1.0
     for _ in range(DECAY_EVERY):
-        schedule.advance(400.0, 0.9)
+        schedule.advance(LONG_ENOUGH + 1, 0.9)
     assert schedule.gain == DECAY
     last = schedule.gain
     while schedule.gain:
-        schedule.advance(400.0, 0.9)
+        schedule.advance(LONG_ENOUGH + 1, 0.9)
         assert schedule.gain <= last
         last = schedule.gain or last
     assert last * DECAY < OFF_BELOW <= last

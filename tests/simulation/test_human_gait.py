@@ -82,3 +82,32 @@ def test_episodes_start_in_mid_stride_at_walking_speed(hyperleg):
     assert np.all((speed[:, 0] > 1.0) & (speed[:, 0] < 1.5))
     np.testing.assert_allclose(speed[:, 1], 0.0, atol=0.05)
     environment.close()
+
+
+def test_distance_at_a_phase_is_zero_there_and_never_below_the_nearest(joints):
+    places, phases = human_gait.cycle(joints)
+    position, velocity = np.zeros((2, PHASES, len(joints)))
+    position[:, places] = phases[:, : len(places)] * ANGLE
+    velocity[:, places] = phases[:, len(places) :] * RATE
+    phase = np.arange(PHASES) / PHASES
+    on = human_gait.distance_at(joints, position, velocity, phase)
+    np.testing.assert_allclose(on, 0.0, atol=1e-6)
+    away = human_gait.distance_at(joints, position, velocity, phase + 0.3)
+    assert (away > human_gait.distance(joints, position, velocity) + 0.5).all()
+
+
+def test_standing_and_quick_half_steps_are_far_from_the_cycle(joints):
+    """A pull that pays for standing still, or for quick small steps, teaches those."""
+    places, phases = human_gait.cycle(joints)
+    count = len(places)
+    position, velocity = np.zeros((2, PHASES, len(joints)))
+    angle = phases[:, :count] * ANGLE
+    position[:, places] = angle.mean(0)
+    standing = human_gait.distance(joints, position, velocity)
+    assert np.exp(-(standing**2)).mean() < 0.25
+    phase = np.arange(PHASES) / PHASES
+    assert np.exp(-(human_gait.distance_at(joints, position, velocity, phase) ** 2)).mean() < 0.15
+    position[:, places] += (angle - angle.mean(0)) / 2
+    velocity[:, places] = phases[:, count:] * RATE
+    quick = human_gait.distance_at(joints, position, velocity, 2 * phase)
+    assert np.exp(-(quick**2)).mean() < 0.3
