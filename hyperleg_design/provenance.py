@@ -14,13 +14,13 @@ PACKAGES = ("hyperleg-design", "numpy", "mujoco", "pin", "cvxpy")
 
 def versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
     """Installed version of each package; `missing` where it is not installed."""
-    found = {}
+    installed = {}
     for name in packages:
         try:
-            found[name] = version(name)
+            installed[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "missing"
-    return found
+            installed[name] = "missing"
+    return installed
 
 
 @cache

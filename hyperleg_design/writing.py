@@ -116,9 +116,9 @@ def output_folder(folder: str | os.PathLike[str], keep: Sequence[str] = ()) -> I
         temporary = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
         temporary.chmod(0o755)
         yield temporary
-        kept = _carried(folder, temporary, keep)
+        carried = _carried(folder, temporary, keep)
         written = sorted(
-            {str(p.relative_to(temporary)) for p in temporary.rglob("*") if p.is_file()} - kept
+            {str(p.relative_to(temporary)) for p in temporary.rglob("*") if p.is_file()} - carried
         )
         (temporary / MARKER).write_text("\n".join((MADE, *written, "")))
         if folder.exists():

@@ -39,8 +39,7 @@ class Chosen(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class List(Printing):
-    """List what is shipped: designs, motors, sweeps, tasks, protocols, presets, policies, measures.
-    """
+    """List what is shipped: designs, motors, sweeps, tasks, protocols, presets and policies."""
 
     kind: Annotated[str, tyro.conf.Positional] = "all"
     """designs, variants, motors, sweeps, tasks, protocols, presets, policies, measures,
@@ -50,11 +49,11 @@ class List(Printing):
         """Print the list."""
         from hyperleg_design.report import listing
 
-        found = listing.listing(self.kind)
+        entries = listing.listing(self.kind)
         if self.json:
-            emit(found)
+            emit(entries)
         else:
-            print(listing.listing_text(found))
+            print(listing.listing_text(entries))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,11 +161,11 @@ class Analyze(Chosen):
         from hyperleg_design.report.tree_text import tree_analysis_text
         from hyperleg_design.sizing.analysis import analyze
 
-        found = analyze(self.load())
+        analysis = analyze(self.load())
         if self.json:
-            emit(found)
+            emit(analysis)
         else:
-            print((tree_analysis_text if "family" in found else analysis_text)(found))
+            print((tree_analysis_text if "family" in analysis else analysis_text)(analysis))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,7 +199,7 @@ class Compare(Printing):
         designs = [
             load_robot(name, overrides=self.set, overlays=self.set_file) for name in self.designs
         ]
-        found = comparison.compare(designs, demand=self.demand)
+        measures = comparison.compare(designs, demand=self.demand)
         walks = comparison.compare_walks(
             [walker(d, "compare --evaluate") for d in designs] if self.evaluate else [],
             self.evaluate,
@@ -208,12 +207,12 @@ class Compare(Printing):
             swap=self.swap,
         )
         for protocol, entries in walks.items():
-            for entry, walked in zip(found.values(), entries, strict=True):
+            for entry, walked in zip(measures.values(), entries, strict=True):
                 entry[f"evaluated {protocol}"] = walked
         if self.json:
-            emit(found)
+            emit(measures)
         else:
-            print(comparison.compare_text(found))
+            print(comparison.compare_text(measures))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -303,9 +302,9 @@ class Version(Printing):
         """Print the versions."""
         from importlib.metadata import version
 
-        found = {"hyperleg-design": __version__, "content": str(resources.home())}
-        found |= {name: version(name) for name in ("mujoco", "pin", "cvxpy", "numpy", "pyvista")}
+        about = {"hyperleg-design": __version__, "content": str(resources.home())}
+        about |= {name: version(name) for name in ("mujoco", "pin", "cvxpy", "numpy", "pyvista")}
         if self.json:
-            emit(found)
+            emit(about)
         else:
-            print("\n".join(f"{k} {v}" for k, v in found.items()))
+            print("\n".join(f"{k} {v}" for k, v in about.items()))

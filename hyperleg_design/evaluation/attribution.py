@@ -62,18 +62,18 @@ def attribute(
             "attribution", "variants", list(groups), f"expects at least two of {', '.join(LADDER)}"
         )
     shares = []
-    for cause, kept, removed in zip(CAUSES, LADDER[:-1], LADDER[1:], strict=True):
-        if kept in groups and removed in groups:
-            shares.append(_share(cause, groups, kept, removed, level, seed))
+    for cause, before, removed in zip(CAUSES, LADDER[:-1], LADDER[1:], strict=True):
+        if before in groups and removed in groups:
+            shares.append(_share(cause, groups, before, removed, level, seed))
     return [*shares, _share(WHOLE, groups, there[0], there[-1], level, seed)]
 
 
 def _share(
-    cause: str, groups: Mapping[str, Groups], kept: str, removed: str, level: float, seed: int
+    cause: str, groups: Mapping[str, Groups], before: str, removed: str, level: float, seed: int
 ) -> Share:
     return Share(
         cause,
         removed,
-        kept,
-        statistics.difference(groups[removed], groups[kept], level=level, seed=seed),
+        before,
+        statistics.difference(groups[removed], groups[before], level=level, seed=seed),
     )

@@ -74,15 +74,15 @@ def stop_measures(
     """
     position = np.asarray(joint_position, float)
     past = np.maximum(np.asarray(lower) - position, position - np.asarray(upper))
-    found = {"stop_overshoot": float(max(past.max(), 0.0))}
+    measures = {"stop_overshoot": float(max(past.max(), 0.0))}
     power = (
         np.full((1, 1), np.nan)
         if stop_torque is None
         else np.asarray(stop_torque, float) * np.asarray(joint_velocity, float)
     )
-    found["stop_absorbed_power"] = float(np.maximum(-power, 0.0).sum(-1).mean())
-    found["stop_returned_power"] = float(np.maximum(power, 0.0).sum(-1).mean())
-    return found
+    measures["stop_absorbed_power"] = float(np.maximum(-power, 0.0).sum(-1).mean())
+    measures["stop_returned_power"] = float(np.maximum(power, 0.0).sum(-1).mean())
+    return measures
 
 
 def vibration(joint_velocity: Any, time_step: float, above: float = VIBRATION) -> np.ndarray:

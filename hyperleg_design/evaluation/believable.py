@@ -82,9 +82,9 @@ def walk_findings(evaluations: Sequence[Evaluation]) -> list[Finding]:
         speed * (1 + SPEED_SHARE),
         "speed within 5 % of the command [m/s]",
     )
-    found = []
+    findings = []
     for demand in (*DEMANDS, near):
-        values = np.concatenate([one.values(demand.measure) for one in evaluations])
+        values = np.concatenate([evaluation.values(demand.measure) for evaluation in evaluations])
         values = values[np.isfinite(values)]
-        found.append(Finding(demand, float(values.mean()) if len(values) else np.nan))
-    return found
+        findings.append(Finding(demand, float(values.mean()) if len(values) else np.nan))
+    return findings

@@ -68,15 +68,15 @@ def arrivals(points: Any, course: Any, radius: float) -> np.ndarray:
         `(k - 1,)`
     """
     points, course = np.asarray(points, float), np.asarray(course, float)
-    found = np.full(len(course) - 1, -1)
+    reached = np.full(len(course) - 1, -1)
     begin = 0
     for i, waypoint in enumerate(course[1:]):
         near = np.flatnonzero(np.linalg.norm(points[begin:] - waypoint, axis=-1) < radius)
         if not len(near):
             break
-        found[i] = begin + near[0]
-        begin = found[i] + 1
-    return found
+        reached[i] = begin + near[0]
+        begin = reached[i] + 1
+    return reached
 
 
 def legs_run(reached: Any, samples: int) -> np.ndarray:

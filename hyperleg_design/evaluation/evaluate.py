@@ -158,27 +158,27 @@ def evaluate_many(
             strict=True,
         ),
     )
-    found = []
+    evaluations = []
     if workers == 1 or count < 2:
         for job in jobs:
-            found.append(_evaluated(job))
+            evaluations.append(_evaluated(job))
             if progress is not None:
-                progress(found[-1])
-        return found
+                progress(evaluations[-1])
+        return evaluations
     import multiprocessing
 
     with ProcessPoolExecutor(
         min(workers, count), mp_context=multiprocessing.get_context("spawn")
     ) as pool:
         try:
-            for one in pool.map(_evaluated, jobs):
-                found.append(one)
+            for evaluation in pool.map(_evaluated, jobs):
+                evaluations.append(evaluation)
                 if progress is not None:
-                    progress(one)
+                    progress(evaluation)
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-    return found
+    return evaluations
 
 
 def _evaluated(

@@ -104,7 +104,7 @@ def heel_mass(trial: Trial, samples: Any, feet: Any) -> np.ndarray:
 
     model, layout = trial.model, trial.layout
     data = mujoco.MjData(model)
-    found = []
+    masses = []
     for sample, foot in zip(np.asarray(samples, int), np.asarray(feet, int), strict=True):
         data.qpos[:3], data.qpos[3:7], data.qpos[7:] = (
             trial.base_position[sample],
@@ -123,5 +123,5 @@ def heel_mass(trial: Trial, samples: Any, feet: Any) -> np.ndarray:
             row += jacobian[2] / len(pads)
         solved = np.zeros((1, model.nv))
         mujoco.mj_solveM(model, data, solved, row[None])
-        found.append(1.0 / float(row @ solved[0]))
-    return np.array(found)
+        masses.append(1.0 / float(row @ solved[0]))
+    return np.array(masses)

@@ -84,19 +84,19 @@ def impacts(force: Any, filtered: Any, touchdown: Any, time_step: float, window:
         np.asarray(touchdown, int),
     )
     length = round(window / time_step)
-    found = np.full((4, len(downs)), np.nan)
+    values = np.full((4, len(downs)), np.nan)
     for i, down in enumerate(downs):
         if down + length >= len(force):
             continue
         part = slice(down, down + length + 1)
         place = down + int(np.argmax(filtered[part]))
-        found[:, i] = (
+        values[:, i] = (
             filtered[place],
             force[part].max(),
             _slope(filtered, place, time_step),
             np.trapezoid(filtered[part], dx=time_step),
         )
-    return Impacts(*found)
+    return Impacts(*values)
 
 
 def _slope(force: np.ndarray, peak: int, time_step: float) -> float:

@@ -55,9 +55,9 @@ def write_lerobot(folder: str | os.PathLike[str], evaluations: Sequence[Evaluati
     import pyarrow.parquet as pq
 
     trials = [
-        (trial, str(one.protocol.name))
-        for one in evaluations
-        for trial in one.trials
+        (trial, str(evaluation.protocol.name))
+        for evaluation in evaluations
+        for trial in evaluation.trials
         if trial.samples and trial.joint_target is not None
     ]
     if not trials:
@@ -108,12 +108,12 @@ def _rate(trial: Trial) -> int:
 
 def _frames(trial: Trial, rate: int) -> dict[str, np.ndarray]:
     """Signals at the start of each policy step, and the time since the episode's start [s]."""
-    found = {
+    columns = {
         feature: np.asarray(getattr(trial, signal), np.float32)[:: trial.substeps]
         for feature, signal in SIGNALS.items()
     }
-    count = len(found["observation.state"])
-    return {**found, "timestamp": (np.arange(count) / rate).astype(np.float32)}
+    count = len(columns["observation.state"])
+    return {**columns, "timestamp": (np.arange(count) / rate).astype(np.float32)}
 
 
 def _episode(
@@ -139,14 +139,16 @@ def _episode(
 def _statistics(values: np.ndarray) -> dict[str, list[float] | list[int]]:
     """Statistics of a feature over its frames, one number a component."""
     rows = np.asarray(values, float).reshape(len(values), -1)
-    found: dict[str, list[float] | list[int]] = {
+    statistics: dict[str, list[float] | list[int]] = {
         "min": rows.min(0).tolist(),
         "max": rows.max(0).tolist(),
         "mean": rows.mean(0).tolist(),
         "std": rows.std(0).tolist(),
         "count": [len(rows)],
     }
-    return found | {name: np.quantile(rows, q, axis=0).tolist() for name, q in QUANTILES.items()}
+    return statistics | {
+        name: np.quantile(rows, q, axis=0).tolist() for name, q in QUANTILES.items()
+    }
 
 
 def _arrow(values: np.ndarray) -> Any:

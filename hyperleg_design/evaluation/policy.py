@@ -239,23 +239,26 @@ def _metadata(session: Any, where: str) -> dict[str, Any]:
             f"callable"
         )
         raise InputError(where, "format", raw.get("format"), remedy)
-    found: dict[str, Any] = {}
+    metadata: dict[str, Any] = {}
     for key, text in raw.items():
         try:
-            found[key] = json.loads(text)
+            metadata[key] = json.loads(text)
         except ValueError:
-            found[key] = text
+            metadata[key] = text
     for key in NEEDED:
-        if key not in found:
+        if key not in metadata:
             raise InputError(
                 where, key, None, "is missing in the metadata; export the policy again"
             )
     for key in ("task", "design"):
-        if not isinstance(found[key], dict):
+        if not isinstance(metadata[key], dict):
             raise InputError(
-                where, key, found[key], "expects a mapping in the metadata; export the policy again"
+                where,
+                key,
+                metadata[key],
+                "expects a mapping in the metadata; export the policy again",
             )
-    return found
+    return metadata
 
 
 def _check_graph(session: Any, where: str, columns: int, joints: int) -> None:
@@ -263,12 +266,12 @@ def _check_graph(session: Any, where: str, columns: int, joints: int) -> None:
         (INPUT, session.get_inputs(), columns, "columns"),
         (OUTPUT, session.get_outputs(), joints, "joints"),
     )
-    for name, found, size, key in places:
-        if [f.name for f in found] != [name]:
+    for name, actual, size, key in places:
+        if [f.name for f in actual] != [name]:
             raise InputError(
-                where, name, [f.name for f in found], f"expects one tensor named {name}"
+                where, name, [f.name for f in actual], f"expects one tensor named {name}"
             )
-        shape = found[0].shape
+        shape = actual[0].shape
         if len(shape) != 2 or (isinstance(shape[1], int) and shape[1] != size):
             raise InputError(where, name, list(shape), f"does not fit the metadata: {size} {key}")
 

@@ -270,30 +270,30 @@ def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:
 def protocol_mapping(protocol: Protocol) -> dict[str, Any]:
     """A protocol such that `protocol_from_mapping` gives it back, every value written out."""
     kind = next(k for k, cls in _KINDS.items() if type(protocol) is cls)
-    found: dict[str, Any] = {"kind": kind, "name": protocol.name}
+    mapping: dict[str, Any] = {"kind": kind, "name": protocol.name}
     for item in dataclasses.fields(protocol):
         value = getattr(protocol, item.name)
         if parameters.is_leaf(item):
-            found[item.name] = value
+            mapping[item.name] = value
         elif dataclasses.is_dataclass(value):
-            found[item.name] = parameters.leaves(value)
+            mapping[item.name] = parameters.leaves(value)
     if isinstance(protocol, TTestProtocol):
-        found |= {
+        mapping |= {
             "points": {name: list(place) for name, place in protocol.points.items()},
             "order": list(protocol.order),
         }
-    return found
+    return mapping
 
 
 def _points(data: Any, where: str) -> dict[str, tuple[float, float]]:
     if not isinstance(data, Mapping) or not data:
         raise InputError(where, "points", data, "expects names with places [x, y] in metres")
     rule = parameters.Rule("number", "m", -1e4, 1e4, size=2)
-    found = {}
+    points = {}
     for name, value in data.items():
         x, y = parameters.checked(value, rule, where, f"points.{name}")
-        found[str(name)] = (float(x), float(y))
-    return found
+        points[str(name)] = (float(x), float(y))
+    return points
 
 
 def _order(data: Any, where: str) -> tuple[str, ...]:

@@ -172,23 +172,23 @@ def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
     import pandas as pd
 
     rows = []
-    for one in evaluations:
+    for evaluation in evaluations:
         head = {
-            "policy": one.policy,
-            "variant": one.variant,
-            "design": one.design,
-            "seed": one.seed,
-            "steps": one.steps,
-            "trained": one.trained.kind,
-            "outside": ", ".join(one.trained.outside),
+            "policy": evaluation.policy,
+            "variant": evaluation.variant,
+            "design": evaluation.design,
+            "seed": evaluation.seed,
+            "steps": evaluation.steps,
+            "trained": evaluation.trained.kind,
+            "outside": ", ".join(evaluation.trained.outside),
         }
-        for index, measures in enumerate(one.measures):
+        for index, measures in enumerate(evaluation.measures):
             ended = {
                 "trial": index,
-                "outcome": one.outcomes[index],
-                "end_time": one.end_times[index],
+                "outcome": evaluation.outcomes[index],
+                "end_time": evaluation.end_times[index],
             }
-            rows.append(head | {"protocol": one.protocol.name} | ended | measures)
+            rows.append(head | {"protocol": evaluation.protocol.name} | ended | measures)
     return pd.DataFrame(rows)
 
 
@@ -199,15 +199,15 @@ def motor_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
     import pandas as pd
 
     rows = []
-    for one in evaluations:
-        for index, use in enumerate(one.motors):
+    for evaluation in evaluations:
+        for index, use in enumerate(evaluation.motors):
             if use is None:
                 continue
             for k, motor in enumerate(use.motors):
                 head = {
-                    "policy": one.policy,
-                    "variant": one.variant,
-                    "seed": one.seed,
+                    "policy": evaluation.policy,
+                    "variant": evaluation.variant,
+                    "seed": evaluation.seed,
                     "trial": index,
                     "motor": motor,
                 }
@@ -232,18 +232,18 @@ def cycle_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
     import pandas as pd
 
     rows = []
-    for one in evaluations:
-        found = [c for c in one.cycles if c is not None and len(c.mechanical)]
-        if not found:
+    for evaluation in evaluations:
+        cycles = [c for c in evaluation.cycles if c is not None and len(c.mechanical)]
+        if not cycles:
             continue
-        for kind, names in (("mechanical", found[0].joints), ("joule", found[0].motors)):
-            power = np.concatenate([getattr(c, kind) for c in found])
+        for kind, names in (("mechanical", cycles[0].joints), ("joule", cycles[0].motors)):
+            power = np.concatenate([getattr(c, kind) for c in cycles])
             for k, name in enumerate(names):
                 for point, share in enumerate(np.linspace(0, 1, power.shape[1])):
                     head = {
-                        "policy": one.policy,
-                        "variant": one.variant,
-                        "seed": one.seed,
+                        "policy": evaluation.policy,
+                        "variant": evaluation.variant,
+                        "seed": evaluation.seed,
                         "kind": kind,
                         "part": name,
                         "share": float(share),
@@ -275,43 +275,45 @@ def write_results(folder: str | os.PathLike[str], evaluations: Sequence[Evaluati
 
     paths = [
         {
-            "policy": one.policy,
-            "variant": one.variant,
-            "seed": one.seed,
+            "policy": evaluation.policy,
+            "variant": evaluation.variant,
+            "seed": evaluation.seed,
             "trial": i,
             "step": k,
             "x": float(x),
             "y": float(y),
         }
-        for one in evaluations
-        for i, path in enumerate(one.paths)
+        for evaluation in evaluations
+        for i, path in enumerate(evaluation.paths)
         for k, (x, y) in enumerate(path)
     ]
     tables = {"trials": trial_table, "motors": motor_table, "cycles": cycle_table}
-    made = {name: build(evaluations) for name, build in tables.items()} | {
+    contents = {name: build(evaluations) for name, build in tables.items()} | {
         "paths": pd.DataFrame(paths)
     }
     described = {
         "protocols": [
             protocol_mapping(p)
-            for p in {id(one.protocol): one.protocol for one in evaluations}.values()
+            for p in {
+                id(evaluation.protocol): evaluation.protocol for evaluation in evaluations
+            }.values()
         ],
         "policies": [
             {
-                "policy": one.policy,
-                "variant": one.variant,
-                "seed": one.seed,
-                "steps": one.steps,
-                "trained": one.trained.text(),
-                **one.origin,
+                "policy": evaluation.policy,
+                "variant": evaluation.variant,
+                "seed": evaluation.seed,
+                "steps": evaluation.steps,
+                "trained": evaluation.trained.text(),
+                **evaluation.origin,
             }
-            for one in evaluations
+            for evaluation in evaluations
         ],
         "versions": versions(("hyperleg-design", "numpy", "scipy", "mujoco", "onnxruntime")),
         "commit": git_commit(),
     }
     with output_folder(folder) as place:
-        for name, table in made.items():
+        for name, table in contents.items():
             write_bytes(place / f"{name}.parquet", _parquet(table))
         write_json(place / "evaluation.json", described)
     return Path(folder)

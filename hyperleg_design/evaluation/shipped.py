@@ -104,17 +104,17 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
             str(folder),
             "no such folder; expects one with a folder a training, such as walk-toe-0",
         )
-    found = []
+    policies = []
     for training in place.iterdir():
         name = _NAME.fullmatch(training.name)
         if name is None or not (training / POLICY).is_file():
             continue
         files = [training / POLICY, *(sorted(training.glob(LATE), reverse=True) if late else [])]
-        found += [
+        policies += [
             Shipped(name["group"], name["design"], int(name["seed"]), i, file)
             for i, file in enumerate(files)
         ]
-    return sorted(found, key=lambda one: (one.group, one.design, one.seed, one.late))
+    return sorted(policies, key=lambda one: (one.group, one.design, one.seed, one.late))
 
 
 def check_different(paths: Iterable[str | Path], where: str = "policies") -> None:
@@ -152,9 +152,9 @@ def policies_for(
         InputError: there is none.
     """
     known = shipped_policies(folder, late=False)
-    fitting = [one for one in known if (one.group, one.design) == (group, variant)]
+    fitting = [policy for policy in known if (policy.group, policy.design) == (group, variant)]
     if not fitting:
-        have = ", ".join(sorted({f"{one.group}-{one.design}" for one in known})) or "none"
+        have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"
         raise InputError(
             "policies",
             "",
@@ -177,7 +177,7 @@ def find_policy(name: str | Path) -> Path:
     if len(path.parts) == 1 and named.is_file():
         return named
     known = shipped_policies(late=False)
-    near = difflib.get_close_matches(str(name), [one.training for one in known], 1)
+    near = difflib.get_close_matches(str(name), [policy.training for policy in known], 1)
     meant = f"did you mean {near[0]}? " if near else ""
     raise InputError(
         "policy",
@@ -190,8 +190,8 @@ def find_policy(name: str | Path) -> Path:
 def _briefly(policies: Sequence[Shipped]) -> str:
     """Names of trainings, seeds together: `walk-toe-0..4`."""
     seeds: dict[str, list[int]] = {}
-    for one in policies:
-        seeds.setdefault(f"{one.group}-{one.design}", []).append(one.seed)
+    for policy in policies:
+        seeds.setdefault(f"{policy.group}-{policy.design}", []).append(policy.seed)
     return ", ".join(
         f"{name}-{min(own)}..{max(own)}"
         if len(own) == max(own) - min(own) + 1 > 1
@@ -244,10 +244,10 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
         raise InputError(
             "pack", "from", str(source), "holds no training; expects folders such as walk-toe-0"
         )
-    found = []
+    packed = []
     for training in trainings:
         if not (training / POLICY).is_file():
-            found.append(Packed(training.name, 0, 0))
+            packed.append(Packed(training.name, 0, 0))
             continue
         policies = [training / POLICY, *sorted(training.glob(LATE))]
         files = [*policies, training / CRITIC, training / RUN]
@@ -259,38 +259,43 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
                 folder / PROGRESS,
                 "".join(json.dumps(row) + "\n" for row in learning_curve(training)),
             )
-        made = Path(target) / training.name
-        found.append(
-            Packed(training.name, len(policies), sum(f.stat().st_size for f in made.iterdir()))
+        destination = Path(target) / training.name
+        packed.append(
+            Packed(
+                training.name, len(policies), sum(f.stat().st_size for f in destination.iterdir())
+            )
         )
-    return found
+    return packed
 
 
-def pack_text(found: Iterable[Packed]) -> str:
+def pack_text(packed: Iterable[Packed]) -> str:
     """What was packed, for a terminal: a line a training, and a sum."""
-    found = list(found)
+    packed = list(packed)
     lines = [
         f"{p.training:<34} {p.policies} policies, {p.size / 1e6:.1f} MB"
         if p.policies
         else f"{p.training:<34} not finished"
-        for p in found
+        for p in packed
     ]
-    done = [p for p in found if p.policies]
+    done = [p for p in packed if p.policies]
     policies, size = sum(p.policies for p in done), sum(p.size for p in done)
     return "\n".join(
-        [*lines, f"{len(done)} of {len(found)} trainings, {policies} policies, {size / 1e6:.1f} MB"]
+        [
+            *lines,
+            f"{len(done)} of {len(packed)} trainings, {policies} policies, {size / 1e6:.1f} MB",
+        ]
     )
 
 
 def _mean(rows: list[dict[str, Any]]) -> dict[str, float]:
     """Mean of rows; steps and stage are those of the last."""
-    found: dict[str, float] = {}
+    means: dict[str, float] = {}
     for key in CURVE:
         values = [row[key] for row in rows if isinstance(row.get(key), int | float)]
         if values:
-            found[key] = (
+            means[key] = (
                 values[-1]
                 if key in ("steps", "stage")
                 else float(f"{sum(values) / len(values):.5g}")
             )
-    return found
+    return means

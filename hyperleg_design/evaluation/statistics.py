@@ -145,14 +145,16 @@ def estimate(
         InputError: no group, or a level or number of resamples that makes no sense.
     """
     _check(level, resamples)
-    kept, missing = _measured(groups)
-    trials = sum(len(_flat(g)) for g in kept)
-    if not kept:
+    seeds_measured, missing = _measured(groups)
+    trials = sum(len(_flat(g)) for g in seeds_measured)
+    if not seeds_measured:
         return Estimate(np.nan, np.nan, np.nan, np.nan, 0, 0, missing, level)
-    mean = float(np.mean([_mean(g) for g in kept]))
-    error, freedom = _standard_error(kept, _means(kept, resamples, np.random.default_rng(seed)))
+    mean = float(np.mean([_mean(g) for g in seeds_measured]))
+    error, freedom = _standard_error(
+        seeds_measured, _means(seeds_measured, resamples, np.random.default_rng(seed))
+    )
     low, high = _interval(mean, error, freedom, level)
-    return Estimate(mean, low, high, error, len(kept), trials, missing, level)
+    return Estimate(mean, low, high, error, len(seeds_measured), trials, missing, level)
 
 
 def share(
@@ -171,17 +173,27 @@ def share(
     """
     from scipy.stats import beta
 
-    found = estimate(groups, level=level, resamples=resamples, seed=seed)
-    if not found.trials:
-        return found
-    count, happened = found.trials, round(sum(float(_flat(g).sum()) for g in _measured(groups)[0]))
+    interval = estimate(groups, level=level, resamples=resamples, seed=seed)
+    if not interval.trials:
+        return interval
+    count, happened = (
+        interval.trials,
+        round(sum(float(_flat(g).sum()) for g in _measured(groups)[0])),
+    )
     tail = (1 - level) / 2
     low = 0.0 if happened == 0 else float(beta.ppf(tail, happened, count - happened + 1))
     high = 1.0 if happened == count else float(beta.ppf(1 - tail, happened + 1, count - happened))
-    if np.isfinite(found.low):
-        low, high = min(low, max(found.low, 0.0)), max(high, min(found.high, 1.0))
+    if np.isfinite(interval.low):
+        low, high = min(low, max(interval.low, 0.0)), max(high, min(interval.high, 1.0))
     return Estimate(
-        found.mean, low, high, found.standard_error, found.seeds, count, found.missing, level
+        interval.mean,
+        low,
+        high,
+        interval.standard_error,
+        interval.seeds,
+        count,
+        interval.missing,
+        level,
     )
 
 
@@ -333,11 +345,11 @@ def _measured(groups: Groups) -> tuple[list[_Seed], int]:
             "infinite",
             "expects finite values, or NaN where nothing could be measured",
         )
-    kept = [[a[~np.isnan(a)] for a in seed] for seed in seeds]
+    measured = [[a[~np.isnan(a)] for a in seed] for seed in seeds]
     missing = sum(len(a) for seed in seeds for a in seed) - sum(
-        len(a) for seed in kept for a in seed
+        len(a) for seed in measured for a in seed
     )
-    return [found for found in ([a for a in seed if len(a)] for seed in kept) if found], missing
+    return [found for found in ([a for a in seed if len(a)] for seed in measured) if found], missing
 
 
 def _pairs(first: Groups, second: Groups) -> tuple[list[Any], list[Any]]:
@@ -373,7 +385,7 @@ def _drawn_means(groups: list[_Seed], chosen: np.ndarray, rng: np.random.Generat
     for block, seed in zip(table, groups, strict=True):
         for row, values in zip(block, seed, strict=False):
             row[: len(values)] = values
-    found = np.empty(len(chosen))
+    resampled = np.empty(len(chosen))
     picked = (rng.random((*chosen.shape, table.shape[1])) * counts[chosen][..., None]).astype(int)
     at_once = max(1, _DRAWS // (chosen.shape[1] * table.shape[1] * table.shape[2]))
     for begin in range(0, len(chosen), at_once):
@@ -388,8 +400,8 @@ def _drawn_means(groups: list[_Seed], chosen: np.ndarray, rng: np.random.Generat
         )
         means = drawn.sum(-1) / length[..., 0]
         means[np.arange(table.shape[1]) >= count] = 0.0  # likewise of seeds with fewer checkpoints
-        found[begin : begin + at_once] = (means.sum(-1) / count[..., 0]).mean(-1)
-    return found
+        resampled[begin : begin + at_once] = (means.sum(-1) / count[..., 0]).mean(-1)
+    return resampled
 
 
 def _standard_error(groups: list[_Seed], means: np.ndarray) -> tuple[float, int]:
@@ -417,8 +429,8 @@ def _paired_error(
         error_a, error_b = (_standard_error(g, _means(g, resamples, rng)) for g in (a, b))
         return float(np.hypot(error_a[0], error_b[0])), _welch(*error_a, *error_b)
     chosen = rng.integers(seeds, size=(resamples, seeds))
-    found = _drawn_means(a, chosen, rng) - _drawn_means(b, chosen, rng)
-    return float(found.std() * np.sqrt(seeds / (seeds - 1))), seeds - 1
+    differences = _drawn_means(a, chosen, rng) - _drawn_means(b, chosen, rng)
+    return float(differences.std() * np.sqrt(seeds / (seeds - 1))), seeds - 1
 
 
 def _welch(error_a: float, freedom_a: int, error_b: float, freedom_b: int) -> int:

@@ -104,9 +104,14 @@ def evaluate_t_tests(
         trials = rollout.record(policy, environment, chosen.time_limit)
     finally:
         environment.close()
-    found = [measure_t_test(trial, chosen) for trial in trials]
+    measured = [measure_t_test(trial, chosen) for trial in trials]
     return evaluations_of(
-        policy, environment.designs, chosen, trials, [f[0] for f in found], [f[1] for f in found]
+        policy,
+        environment.designs,
+        chosen,
+        trials,
+        [f[0] for f in measured],
+        [f[1] for f in measured],
     )
 
 
@@ -130,9 +135,9 @@ def t_test_task(task: Task, protocol: TTestProtocol) -> Task:
         courses=(tuple((float(x), float(y)) for x, y in protocol.course[1:]),),
         course_share=1.0,
     )
-    made = rollout.under_protocol(task, protocol)
-    return made.changed(
-        commands=commands, limits=dataclasses.replace(made.limits, deviation=protocol.lost)
+    timed = rollout.under_protocol(task, protocol)
+    return timed.changed(
+        commands=commands, limits=dataclasses.replace(timed.limits, deviation=protocol.lost)
     )
 
 
@@ -146,9 +151,11 @@ def measure_t_test(
     all that was run, so a run that ends in a fall has them up to the fall.
     """
     waypoints = tuple(f"waypoint_{i}" for i in range(1, len(protocol.order)))
-    found = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(trial)
+    measures = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(
+        trial
+    )
     if trial.outcome == rollout.DIVERGED or trial.samples < 2:
-        return found | dict.fromkeys((*_MEASURES, *waypoints), np.nan), None
+        return measures | dict.fromkeys((*_MEASURES, *waypoints), np.nan), None
     heading = bearing.headings(trial.base_orientation)
     place = course.in_start_frame(
         trial.base_position[:, :2], trial.base_position[0, :2], heading[0]
@@ -170,7 +177,7 @@ def measure_t_test(
     steps = measured_steps(trial, protocol.events)
     use = motor_use(trial)
     stepped = step_measures(trial, steps, (0, trial.samples), protocol.events)
-    found |= {
+    measures |= {
         "time": trial.end_time if arrived else np.nan,
         "waypoints_reached": float(np.sum(np.isfinite(times))),
         "distance": way,
@@ -212,7 +219,7 @@ def measure_t_test(
         "thermal_peak": float(use.thermal_peak.max()),
         **dict(zip(waypoints, times, strict=True)),
     }
-    return found, use
+    return measures, use
 
 
 def reached_samples(trial: Trial, place: np.ndarray, protocol: TTestProtocol) -> np.ndarray:
@@ -227,11 +234,11 @@ def reached_samples(trial: Trial, place: np.ndarray, protocol: TTestProtocol) ->
     Returns:
         `(waypoints,)`; the last one ends the trial and lies one sample past it.
     """
-    found = course.arrivals(place[:: trial.substeps], protocol.course, protocol.arrival)
-    found = np.where(found >= 0, found * trial.substeps, -1)
+    reached = course.arrivals(place[:: trial.substeps], protocol.course, protocol.arrival)
+    reached = np.where(reached >= 0, reached * trial.substeps, -1)
     if trial.outcome == rollout.ARRIVED:
-        found[-1] = trial.samples
-    return found
+        reached[-1] = trial.samples
+    return reached
 
 
 _OF_STEPS = (

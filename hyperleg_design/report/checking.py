@@ -29,11 +29,11 @@ def check_paths(paths: Sequence[str]) -> list[dict[str, Any]]:
             "check", "", None, "expects files, or names of shipped designs, motors or sweeps"
         )
     places = [_find(path) for path in paths]
-    found = []
+    results = []
     for path, place in zip(paths, places, strict=True):
         findings = _check(place)
         errors = sum(f.severity == "error" for f in findings)
-        found.append(
+        results.append(
             {
                 "path": path,
                 "errors": errors,
@@ -41,7 +41,7 @@ def check_paths(paths: Sequence[str]) -> list[dict[str, Any]]:
                 "findings": [asdict(f) for f in findings],
             }
         )
-    return found
+    return results
 
 
 def _check(place: Path) -> list[Finding]:
@@ -69,10 +69,10 @@ def _find(path: str) -> Path:
     )
 
 
-def checks_text(found: list[dict[str, Any]]) -> str:
+def checks_text(findings: list[dict[str, Any]]) -> str:
     """Lay out the findings as text for a terminal."""
     lines = []
-    for entry in found:
+    for entry in findings:
         verdict = (
             "good"
             if not entry["findings"]

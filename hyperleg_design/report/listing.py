@@ -55,11 +55,11 @@ def listing(kind: str = "all") -> dict[str, Any]:
 
 
 def _designs() -> dict[str, Any]:
-    found = {}
+    designs = {}
     for name in resources.names("descriptions"):
         design = load_robot(name)
-        found[name] = {"variant": design.variant, "total_mass": float(total_mass(design))}
-    return found
+        designs[name] = {"variant": design.variant, "total_mass": float(total_mass(design))}
+    return designs
 
 
 def _motors() -> dict[str, Any]:
@@ -94,15 +94,15 @@ def _sweeps() -> dict[str, Any]:
 
 def _of_sim(what: str) -> dict[str, Any]:
     """Files `sim/WHAT_NAME.yaml`; each begins with a comment that says what it is."""
-    found = {}
+    entries = {}
     for name in resources.sim_names(what):
         comment = []
         for line in resources.find_sim(what, name).read_text(encoding="utf-8").splitlines():
             if not line.startswith("#"):
                 break
             comment.append(line.lstrip("# "))
-        found[name] = {"description": " ".join(comment)}
-    return found
+        entries[name] = {"description": " ".join(comment)}
+    return entries
 
 
 def _measures() -> dict[str, Any]:
@@ -118,34 +118,35 @@ def _measures() -> dict[str, Any]:
 def _policies() -> dict[str, Any]:
     from hyperleg_design.evaluation.shipped import shipped_policies
 
-    found: dict[str, Any] = {}
-    for one in shipped_policies():
-        found.setdefault(
-            one.training, {"group": one.group, "design": one.design, "seed": one.seed, "files": []}
-        )["files"].append(one.path.name)
-    return found
+    policies: dict[str, Any] = {}
+    for policy in shipped_policies():
+        policies.setdefault(
+            policy.training,
+            {"group": policy.group, "design": policy.design, "seed": policy.seed, "files": []},
+        )["files"].append(policy.path.name)
+    return policies
 
 
 def _parameters() -> dict[str, Any]:
     design = load_design("hyperleg")
-    found = {}
+    rows = {}
     for path, rule in parameters.rules(Design).items():
         value = design[path]
         origin = design.origins.get(path)
-        found[path] = {
+        rows[path] = {
             "value": value.tolist() if hasattr(value, "tolist") else value,
             "unit": rule.unit,
             "low": None if rule.low == float("-inf") else rule.low,
             "high": None if rule.high == float("inf") else rule.high,
             "label": origin.label if origin else "",
         }
-    return found
+    return rows
 
 
-def listing_text(found: dict[str, Any]) -> str:
+def listing_text(shipped: dict[str, Any]) -> str:
     """Lay out a listing as tables for a terminal."""
     parts = []
-    for kind, entries in found.items():
+    for kind, entries in shipped.items():
         parts.append(kind)
         if kind == "motors":
             columns = [

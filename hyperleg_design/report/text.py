@@ -48,15 +48,15 @@ _LIMITS = ("max_torque", "torque_alone", "speed", "reflected_inertia")
 """Entries of `joint_limits` in an analysis."""
 
 
-def analysis_text(found: Mapping[str, Any]) -> str:
+def analysis_text(analysis: Mapping[str, Any]) -> str:
     """An analysis as a page for a terminal."""
-    masses = ", ".join(f"{k} {v:.3g}" for k, v in found["segment_mass"].items())
-    limits = found["joint_limits"]
-    printed = ", ".join(f"{j} {v:.4g}" for j, v in found["max_joint_torque"].items())
+    masses = ", ".join(f"{k} {v:.3g}" for k, v in analysis["segment_mass"].items())
+    limits = analysis["joint_limits"]
+    printed = ", ".join(f"{j} {v:.4g}" for j, v in analysis["max_joint_torque"].items())
     parts = [
-        f"{found['design']} ({found['variant']}): {found['total_mass']:.2f} kg, leg "
-        f"{found['leg_mass']:.2f} kg, "
-        f"leg length {found['leg_length']:.3f} m, height {found['height']:.4f} m",
+        f"{analysis['design']} ({analysis['variant']}): {analysis['total_mass']:.2f} kg, leg "
+        f"{analysis['leg_mass']:.2f} kg, "
+        f"leg length {analysis['leg_length']:.3f} m, height {analysis['height']:.4f} m",
         f"segments [kg]: {masses}",
         "",
         table(
@@ -67,12 +67,12 @@ def analysis_text(found: Mapping[str, Any]) -> str:
                 "speed [rad/s]",
                 "reflected inertia [kg m^2]",
             ],
-            [[j, *(limits[name][j] for name in _LIMITS)] for j in found["joints"]],
+            [[j, *(limits[name][j] for name in _LIMITS)] for j in analysis["joints"]],
         ),
         f"all columns: {limits['convention']}; max torque: whatever the others do; alone: the "
         "others at zero torque",
         f"as the paper's Table I prints it, standing and derated [Nm]: {printed}",
-        f"reachable torques below the hip fill {100 * found['zonotope_to_box_volume']:.1f} % of "
+        f"reachable torques below the hip fill {100 * analysis['zonotope_to_box_volume']:.1f} % of "
         f"the box that their maxima span",
         "",
         table(
@@ -102,20 +102,20 @@ def analysis_text(found: Mapping[str, Any]) -> str:
                         )
                     ),
                 ]
-                for n, m in found["motors"].items()
+                for n, m in analysis["motors"].items()
             ],
         ),
     ]
-    if found["ablation_confound"]:
+    if analysis["ablation_confound"]:
         parts += [
             "",
             "what taking the toe away takes besides (torques standing, derated):",
-            confound_text(found["ablation_confound"]),
+            confound_text(analysis["ablation_confound"]),
         ]
     return "\n".join(parts)
 
 
-def confound_text(found: Mapping[str, Any]) -> str:
+def confound_text(effects: Mapping[str, Any]) -> str:
     """The ablations beside each other."""
     joints = [j for j in JOINTS if j in ("knee", "ankle_pitch", "ankle_roll", "toe")]
     rows = [
@@ -126,7 +126,7 @@ def confound_text(found: Mapping[str, Any]) -> str:
             *(v["max_joint_torque"].get(j, "") for j in joints),
             v["removes"],
         ]
-        for name, v in found.items()
+        for name, v in effects.items()
     ]
     return table(
         ["variant", "mass [kg]", "motors", *(f"{j} [Nm]" for j in joints), "what it is"], rows

@@ -8,33 +8,33 @@ from typing import Any
 from hyperleg_design.report.text import table
 
 
-def tree_analysis_text(found: Mapping[str, Any]) -> str:
+def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
     """What `tree_analysis.analyze_tree` returns, as a page for a terminal.
 
     Args:
-        found: the analysis.
+        analysis: the analysis.
     """
-    masses = ", ".join(f"{name} {mass:.3g}" for name, mass in found["link_mass"].items())
+    masses = ", ".join(f"{name} {mass:.3g}" for name, mass in analysis["link_mass"].items())
     joints = [
         [
             name,
-            found["max_joint_torque"][name],
-            found["torque_alone"][name],
-            found["single_joint_speed"][name],
-            found["reflected_inertia"][row][row],
-            found["link_inertia"][name],
+            analysis["max_joint_torque"][name],
+            analysis["torque_alone"][name],
+            analysis["single_joint_speed"][name],
+            analysis["reflected_inertia"][row][row],
+            analysis["link_inertia"][name],
         ]
-        for row, name in enumerate(found["joints"])
+        for row, name in enumerate(analysis["joints"])
     ]
     heads = ["joint", "max torque [Nm]", "alone [Nm]", "speed [rad/s]"]
     heads += ["reflected inertia [kg m^2]", "link inertia [kg m^2]"]
     keys = ("peak_torque", "rated_torque", "no_load_speed", "power_constant")
     motors = [
         [name, m["motor"], m["gear"], *(float(m[k]) for k in keys)]
-        for name, m in found["motors"].items()
+        for name, m in analysis["motors"].items()
     ]
     lines = []
-    for direction, force in found["contact_force"].items():
+    for direction, force in analysis["contact_force"].items():
         if force["force"] is None:
             lines.append(f"largest {direction} force of one limb: none; {force['reason']}")
             continue
@@ -45,16 +45,16 @@ def tree_analysis_text(found: Mapping[str, Any]) -> str:
         )
     return "\n".join(
         [
-            f"{found['design']} (limbs: {', '.join(found['limbs'])}): "
-            f"{found['total_mass']:.2f} kg, limb "
-            f"{found['limb_mass']:.2f} kg, standing height {found['standing_height']:.3f} m",
+            f"{analysis['design']} (limbs: {', '.join(analysis['limbs'])}): "
+            f"{analysis['total_mass']:.2f} kg, limb "
+            f"{analysis['limb_mass']:.2f} kg, standing height {analysis['standing_height']:.3f} m",
             f"links [kg]: {masses}",
             "",
             table(heads, joints),
             "max torque: derated, one joint at its best whatever the others do; alone: the others "
             "at zero torque; all in the default posture",
-            f"reachable torques of one limb fill {100 * found['zonotope_to_box_volume']:.1f} % of "
-            f"the box that their maxima span",
+            f"reachable torques of one limb fill {100 * analysis['zonotope_to_box_volume']:.1f} % "
+            f"of the box that their maxima span",
             "",
             table(
                 [

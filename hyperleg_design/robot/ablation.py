@@ -65,8 +65,8 @@ def ablate(design: Biped, variant: str) -> Biped:
         )
     if variant == "toe_removed":
         values["toe.mass"] = 0.0
-    made = design.with_values(values, f"variant {variant}", label="derived")
-    return dataclasses.replace(made, variant=variant)
+    ablated = design.with_values(values, f"variant {variant}", label="derived")
+    return dataclasses.replace(ablated, variant=variant)
 
 
 def variants(design: Biped) -> dict[str, Biped]:
@@ -94,14 +94,14 @@ def confound(design: HyperLeg, posture: str = "standing") -> dict[str, Any]:
         the active toe.
     """
     full = dict(zip(JOINTS, transmission.max_joint_torque(design, posture).tolist(), strict=False))
-    found: dict[str, Any] = {}
+    effects: dict[str, Any] = {}
     for name, variant in variants(design).items():
         table = masses.mass_table(variant)
         joints = transmission.joint_names(variant)
         torque = dict(
             zip(joints, transmission.max_joint_torque(variant, posture).tolist(), strict=True)
         )
-        found[name] = {
+        effects[name] = {
             "removes": DESCRIPTION[name],
             "joints": len(joints),
             "motors": len(transmission.motor_names(variant)),
@@ -110,4 +110,4 @@ def confound(design: HyperLeg, posture: str = "standing") -> dict[str, Any]:
             "max_joint_torque": torque,
             "lost": {j: full[j] - torque[j] for j in torque},
         }
-    return found
+    return effects

@@ -117,13 +117,13 @@ def _check_design_file(path: str | Path) -> list[Finding]:
     from hyperleg_design.robot.description import urdf
 
     design = load_robot(path)
-    found = check_urdf(urdf(design))
+    findings = check_urdf(urdf(design))
     try:
         if isinstance(design, Design):
             LinkageModel.of(design)
     except InputError as error:
-        found.append(finding_of(error, "warning"))
-    return found
+        findings.append(finding_of(error, "warning"))
+    return findings
 
 
 __all__ = ["KINDS", "Finding", "check_file", "check_mjcf", "check_urdf", "finding_of", "kind_of"]

@@ -32,9 +32,9 @@ def check_mjcf(source: str | Path) -> list[Finding]:
     """
     import mujoco
 
-    root, found = parse_xml(source)
+    root, findings = parse_xml(source)
     if root is None:
-        return found
+        return findings
     if root.tag != "mujoco":
         return [
             Finding(
@@ -59,20 +59,22 @@ def check_mjcf(source: str | Path) -> list[Finding]:
                 "correct what it names",
             )
         ]
-    found = _model(model) + _starts(model)
-    return sorted(found, key=lambda f: f.severity != "error")
+    findings = _model(model) + _starts(model)
+    return sorted(findings, key=lambda f: f.severity != "error")
 
 
 def _model(model: Any) -> list[Finding]:
     import mujoco
 
-    found = []
+    findings = []
     if not model.nv:
-        found.append(Finding("error", "<worldbody>", "nothing moves", "add joints"))
+        findings.append(Finding("error", "<worldbody>", "nothing moves", "add joints"))
     if not model.nu:
-        found.append(Finding("warning", "<actuator>", "there are no actuators", "add one a motor"))
+        findings.append(
+            Finding("warning", "<actuator>", "there are no actuators", "add one a motor")
+        )
     if model.opt.timestep > LARGEST_TIME_STEP:
-        found.append(
+        findings.append(
             Finding(
                 "warning",
                 "<option>",
@@ -83,7 +85,7 @@ def _model(model: Any) -> list[Finding]:
     for index in range(model.nu):
         low, high = model.actuator_ctrlrange[index]
         if model.actuator_ctrllimited[index] and low >= high:
-            found.append(
+            findings.append(
                 Finding(
                     "error",
                     f"actuator {model.actuator(index).name}",
@@ -99,23 +101,23 @@ def _model(model: Any) -> list[Finding]:
         ):
             continue
         if low > high:  # MuJoCo takes it for a joint without limits
-            found.append(
+            findings.append(
                 Finding(
                     "error", place, f"range is {low:.4g} .. {high:.4g}, reversed", "swap its ends"
                 )
             )
         else:
-            found.append(
+            findings.append(
                 Finding("warning", place, "has no range", "add range= if the joint has stops")
             )
-    return found
+    return findings
 
 
 def _starts(model: Any) -> list[Finding]:
     """Whether each keyframe, or the zero posture, is a state to start from."""
     import mujoco
 
-    found = []
+    findings = []
     data = mujoco.MjData(model)
     for key in range(model.nkey) if model.nkey else [-1]:
         place = f"keyframe {model.key(key).name}" if key >= 0 else "zero posture"
@@ -123,7 +125,7 @@ def _starts(model: Any) -> list[Finding]:
             mujoco.mj_resetDataKeyframe(model, data, key)
         mujoco.mj_forward(model, data)
         if not np.all(np.isfinite(data.qacc)):
-            found.append(
+            findings.append(
                 Finding(
                     "error",
                     place,
@@ -133,7 +135,7 @@ def _starts(model: Any) -> list[Finding]:
             )
         depth = -float(np.min(data.contact.dist, initial=0.0))
         if depth > DEEPEST_CONTACT:
-            found.append(
+            findings.append(
                 Finding(
                     "warning",
                     place,
@@ -151,7 +153,7 @@ def _starts(model: Any) -> list[Finding]:
             value, (low, high) = float(data.qpos[model.jnt_qposadr[index]]), model.jnt_range[index]
             if not low - 1e-9 <= value <= high + 1e-9:
                 name = model.joint(index).name
-                found.append(
+                findings.append(
                     Finding(
                         "warning",
                         place,
@@ -159,4 +161,4 @@ def _starts(model: Any) -> list[Finding]:
                         "move it inside its range",
                     )
                 )
-    return found
+    return findings

@@ -41,9 +41,9 @@ def check_urdf(source: str | Path) -> list[Finding]:
     Raises:
         InputError: the file cannot be read.
     """
-    root, found = parse_xml(source)
+    root, findings = parse_xml(source)
     if root is None:
-        return found
+        return findings
     if root.tag != "robot":
         return [
             Finding(
@@ -54,7 +54,7 @@ def check_urdf(source: str | Path) -> list[Finding]:
             )
         ]
     if not root.get("name"):
-        found.append(Finding("error", "<robot>", "has no name", "add name="))
+        findings.append(Finding("error", "<robot>", "has no name", "add name="))
     if any("}" in str(e.tag) for e in root.iter()):
         return [
             Finding(
@@ -65,20 +65,20 @@ def check_urdf(source: str | Path) -> list[Finding]:
             )
         ]
     links, joints = root.findall("link"), root.findall("joint")
-    found += _names(links) + _names(joints)
+    findings += _names(links) + _names(joints)
     if not links:
-        return [*found, Finding("error", "<robot>", "has no links", "add at least one <link>")]
-    found += _tree(links, joints)
+        return [*findings, Finding("error", "<robot>", "has no links", "add at least one <link>")]
+    findings += _tree(links, joints)
     carried = {end for joint in joints if joint.get("type") == "fixed" for end in _ends(joint)}
     for link in links:
-        found += _inertial(link, link.get("name") in carried) + _drawings(link)
-        found += _meshes(link, source)
+        findings += _inertial(link, link.get("name") in carried) + _drawings(link)
+        findings += _meshes(link, source)
     for joint in joints:
-        found += _joint(joint, {j.get("name") for j in joints})
-    found += _weightless(links, joints)
-    if not any(f.severity == "error" for f in found):
-        found += _loads(root)
-    return sorted(found, key=lambda f: f.severity != "error")
+        findings += _joint(joint, {j.get("name") for j in joints})
+    findings += _weightless(links, joints)
+    if not any(f.severity == "error" for f in findings):
+        findings += _loads(root)
+    return sorted(findings, key=lambda f: f.severity != "error")
 
 
 def parse_xml(source: str | Path) -> tuple[Any, list[Finding]]:
@@ -122,7 +122,7 @@ def _place(element: Any) -> str:
 
 def _names(elements: Iterable[Any]) -> list[Finding]:
     elements = list(elements)
-    found = [
+    findings = [
         Finding("error", _place(e), "has no name", "add name=")
         for e in elements
         if not e.get("name")
@@ -131,7 +131,7 @@ def _names(elements: Iterable[Any]) -> list[Finding]:
     for element in reversed(elements):
         if counts.get(element.get("name"), 0) > 1:
             counts[element.get("name")] = 0
-            found.append(
+            findings.append(
                 Finding(
                     "error",
                     _place(element),
@@ -139,7 +139,7 @@ def _names(elements: Iterable[Any]) -> list[Finding]:
                     "names must be unique; rename one",
                 )
             )
-    return found
+    return findings
 
 
 def _ends(joint: Any) -> tuple[str | None, str | None]:
@@ -151,7 +151,7 @@ def _ends(joint: Any) -> tuple[str | None, str | None]:
 
 def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
     """One root, every link behind it, no loops."""
-    found: list[Finding] = []
+    findings: list[Finding] = []
     names = {link.get("name"): link for link in links}
     joint_of: dict[str, Any] = {}
     children: dict[str, list[str]] = {}
@@ -159,7 +159,7 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
         parent, child = _ends(joint)
         for role, link in (("parent", parent), ("child", child)):
             if link is None:
-                found.append(
+                findings.append(
                     Finding(
                         "error",
                         _place(joint),
@@ -168,7 +168,7 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
                     )
                 )
             elif link not in names:
-                found.append(
+                findings.append(
                     Finding(
                         "error",
                         _place(joint),
@@ -180,7 +180,7 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
             continue
         if child in joint_of:
             other = joint_of[child].get("name")
-            found.append(
+            findings.append(
                 Finding(
                     "error",
                     _place(joint),
@@ -205,7 +205,7 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
     looped = [name for name in names if name is not None and name not in reached]
     if looped:
         shown = ", ".join(looped[:5])
-        found.append(
+        findings.append(
             Finding(
                 "error",
                 _place(names[looped[0]]),
@@ -217,7 +217,7 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
     for name, tree in trees.items():
         if name != main:
             size = f" and {len(tree) - 1} behind it" if len(tree) > 1 else ""
-            found.append(
+            findings.append(
                 Finding(
                     "error",
                     _place(names[name]),
@@ -225,7 +225,7 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
                     "add the joint, or remove the link",
                 )
             )
-    return found
+    return findings
 
 
 def numbers(text: str | None, count: int) -> np.ndarray | None:
@@ -245,21 +245,21 @@ def _inertial(link: Any, carried: bool) -> list[Finding]:
     if part is None:
         return []
     place = _place(link)
-    found = _origin(part, place)
+    findings = _origin(part, place)
     mass, inertia = part.find("mass"), part.find("inertia")
     weight = None if mass is None else numbers(mass.get("value"), 1)
     if weight is None:
         shown = None if mass is None else mass.get("value")
-        found.append(
+        findings.append(
             Finding(
                 "error", place, f"mass is {shown!r}", "expects <mass value=...>, one number in kg"
             )
         )
     elif weight[0] < 0:
-        found.append(Finding("error", place, f"mass is {weight[0]:g} kg", "a mass is positive"))
+        findings.append(Finding("error", place, f"mass is {weight[0]:g} kg", "a mass is positive"))
     if inertia is None:
         return [
-            *found,
+            *findings,
             Finding(
                 "error", place, "has a mass but no <inertia>", "add ixx, iyy, izz, ixy, ixz, iyz"
             ),
@@ -270,7 +270,7 @@ def _inertial(link: Any, carried: bool) -> list[Finding]:
     ]
     if any(v is None for v in values):
         return [
-            *found,
+            *findings,
             Finding(
                 "error",
                 place,
@@ -279,13 +279,13 @@ def _inertial(link: Any, carried: bool) -> list[Finding]:
             ),
         ]
     if weight is not None and weight[0] > 0:
-        found += _tensor(
+        findings += _tensor(
             np.array([float(v[0]) for v in values if v is not None]),
             float(weight[0]),
             place,
             carried,
         )
-    return found
+    return findings
 
 
 def _tensor(values: np.ndarray, mass: float, place: str, carried: bool) -> list[Finding]:
@@ -340,13 +340,13 @@ def _origin(element: Any, place: str) -> list[Finding]:
 
 
 def _drawings(link: Any) -> list[Finding]:
-    found = []
+    findings = []
     for drawing in [*link.findall("visual"), *link.findall("collision")]:
         place = f"{drawing.tag} of {_place(link)}"
-        found += _origin(drawing, place)
+        findings += _origin(drawing, place)
         geometry = drawing.find("geometry")
         if geometry is None or len(geometry) != 1:
-            found.append(
+            findings.append(
                 Finding(
                     "error",
                     place,
@@ -359,7 +359,7 @@ def _drawings(link: Any) -> list[Finding]:
         for key in attributes.split():
             size = numbers(geometry[0].get(key), count)
             if size is None or np.any(size <= 0):
-                found.append(
+                findings.append(
                     Finding(
                         "error",
                         place,
@@ -367,18 +367,18 @@ def _drawings(link: Any) -> list[Finding]:
                         "expects positive lengths in m",
                     )
                 )
-    return found
+    return findings
 
 
 def _meshes(link: Any, source: str | Path) -> list[Finding]:
     """Mesh files of a link that are not where the URDF says; `package://` names are left to ROS."""
-    found = []
+    findings = []
     for mesh in link.iter("mesh"):
         name = (mesh.get("filename") or "").removeprefix("file://")
         if "://" in name or (isinstance(source, str) and source.lstrip().startswith("<")):
             continue
         if not name or not (Path(source).parent / name).is_file():
-            found.append(
+            findings.append(
                 Finding(
                     "error",
                     _place(link),
@@ -386,26 +386,26 @@ def _meshes(link: Any, source: str | Path) -> list[Finding]:
                     "correct the path, which starts at the URDF's folder, or add the file",
                 )
             )
-    return found
+    return findings
 
 
 def _joint(joint: Any, names: set[str | None]) -> list[Finding]:
     place, kind = _place(joint), joint.get("type")
-    found = _origin(joint, place)
+    findings = _origin(joint, place)
     if kind not in JOINT_TYPES:
         return [
-            *found,
+            *findings,
             Finding(
                 "error", place, f"type is {kind!r}", f"expects one of {', '.join(JOINT_TYPES)}"
             ),
         ]
     if kind in ("revolute", "continuous", "prismatic", "planar"):
-        found += _axis(joint, place)
+        findings += _axis(joint, place)
     if kind in ("revolute", "prismatic"):
-        found += _limit(joint, place, kind)
+        findings += _limit(joint, place, kind)
     mimic = joint.find("mimic")
     if mimic is not None and mimic.get("joint") not in names:
-        found.append(
+        findings.append(
             Finding(
                 "error",
                 place,
@@ -418,10 +418,10 @@ def _joint(joint: Any, names: set[str | None]) -> list[Finding]:
         value = None if dynamics is None else dynamics.get(key)
         number = numbers(value, 1)
         if value is not None and (number is None or number[0] < 0):
-            found.append(
+            findings.append(
                 Finding("error", place, f"{key} is {value!r}", "expects a number, zero or more")
             )
-    return found
+    return findings
 
 
 def _axis(joint: Any, place: str) -> list[Finding]:
@@ -456,19 +456,19 @@ def _limit(joint: Any, place: str, kind: str) -> list[Finding]:
                 f"a {kind} joint needs lower, upper, effort and velocity",
             )
         ]
-    found: list[Finding] = []
+    findings: list[Finding] = []
     ends = {key: numbers(limit.get(key, "0"), 1) for key in ("lower", "upper")}
-    found += [
+    findings += [
         Finding("error", place, f"{key} is {limit.get(key)!r}", "expects a number")
         for key, value in ends.items()
         if value is None
     ]
     if ends["lower"] is not None and ends["upper"] is not None:
-        found += _range(float(ends["lower"][0]), float(ends["upper"][0]), place, kind)
+        findings += _range(float(ends["lower"][0]), float(ends["upper"][0]), place, kind)
     for key, unit in (("effort", "Nm or N"), ("velocity", "rad/s or m/s")):
         value = numbers(limit.get(key), 1)
         if value is None or value[0] <= 0:
-            found.append(
+            findings.append(
                 Finding(
                     "error",
                     place,
@@ -476,7 +476,7 @@ def _limit(joint: Any, place: str, kind: str) -> list[Finding]:
                     f"expects a positive number in {unit}; at zero the joint cannot move",
                 )
             )
-    return found
+    return findings
 
 
 def _range(lower: float, upper: float, place: str, kind: str) -> list[Finding]:

@@ -228,8 +228,8 @@ def _mjcf(path: Path, where: str) -> FileRobot:
     names = {b: fit_name(model.body(b).name or f"body_{b}") for b in range(model.nbody)}
     shift = {root: np.zeros(3)}
     links, joints = {}, {}
-    kept = [b for b in range(model.nbody) if b == root or _under(model, b, root)]
-    for body in kept:
+    bodies = [b for b in range(model.nbody) if b == root or _under(model, b, root)]
+    for body in bodies:
         if body != root:
             name, joint = _mjcf_joint(model, body, names, shift, where)
             joints[name] = joint

@@ -63,9 +63,9 @@ class Design(HyperLeg):
         origins.update(
             {p: Origin("derived", f"lapsed: a mass was replaced by {where}") for p in unprinted}
         )
-        made = self._replaced({**values, **unprinted}, where, origins)
-        check_printed(made, where)
-        return made
+        replaced = self._replaced({**values, **unprinted}, where, origins)
+        check_printed(replaced, where)
+        return replaced
 
 
 def load_design(
@@ -101,20 +101,21 @@ def load_design(
             variant,
             f"{design.name} is already the variant {own_variant}; start from its base",
         )
-    made = ablate(design, variant or own_variant or design.variant)
+    ablated = ablate(design, variant or own_variant or design.variant)
     for path, value in chosen.items():
-        if not np.array_equal(made[path], design[path]):
+        if not np.array_equal(ablated[path], design[path]):
             raise InputError(
                 "--set",
                 path,
                 value,
-                f"the variant {made.variant} sets this itself; use another variant or leave it out",
+                f"the variant {ablated.variant} sets this itself; use another variant or leave it "
+                "out",
             )
-        if path in SPRING and made.toe.joint != "passive":
+        if path in SPRING and ablated.toe.joint != "passive":
             raise InputError(
                 "--set", path, value, f"only {PASSIVE} has a spring at the toe; start from it"
             )
-    return made
+    return ablated
 
 
 def changed(
@@ -188,16 +189,16 @@ def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, A
     """
     if isinstance(overrides, Mapping):
         return dict(overrides)
-    found: dict[str, Any] = {}
+    parsed: dict[str, Any] = {}
     for item in overrides:
         path, equals, raw = item.partition("=")
         if not equals or not path.strip():
             raise InputError("--set", "", item, "expects path=value, such as toe.mass=0.3")
         try:
-            found[path.strip()] = parse_yaml(raw)
+            parsed[path.strip()] = parse_yaml(raw)
         except yaml.YAMLError:
             raise InputError("--set", path, raw, "is not a value; quote it, or see YAML") from None
-    return found
+    return parsed
 
 
 def _build(
@@ -238,8 +239,8 @@ def _overlaid(design: Design, data: Mapping[str, Any], where: str) -> Design:
     values, origins = leaf_values(data, Design, where)
     if not values:
         return design
-    made = design.with_values(values, where)
-    return dataclasses.replace(made, origins={**made.origins, **origins})
+    changed = design.with_values(values, where)
+    return dataclasses.replace(changed, origins={**changed.origins, **origins})
 
 
 def leaf_values(

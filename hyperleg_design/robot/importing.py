@@ -183,11 +183,11 @@ def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]
 
 
 def _matching(pattern: str, names: list[str], where: str, place: str) -> list[str]:
-    found = [name for name in names if fnmatchcase(name, pattern)]
-    if not found:
+    matching = [name for name in names if fnmatchcase(name, pattern)]
+    if not matching:
         remedy = parameters.unknown(pattern, names).replace("such field", "such moving joint")
         raise InputError(where, f"{place}.{pattern}", None, remedy)
-    return found
+    return matching
 
 
 def _real(inertia: np.ndarray) -> np.ndarray:
@@ -205,7 +205,7 @@ def _leaf(value: Any, source: str) -> dict[str, Any]:
 
 def _joint(joint: FileJoint, source: str, locked: bool) -> dict[str, Any]:
     fixed = locked or joint.kind == "fixed"
-    made = {
+    section = {
         "parent": joint.parent,
         "child": joint.child,
         "type": "fixed" if fixed else "revolute",
@@ -213,9 +213,9 @@ def _joint(joint: FileJoint, source: str, locked: bool) -> dict[str, Any]:
         "turn_deg": _leaf(np.rad2deg(joint.turn).tolist(), source),
     }
     if fixed:
-        return made
+        return section
     lower, upper = float(np.rad2deg(joint.lower)), float(np.rad2deg(joint.upper))
-    return made | {
+    return section | {
         "axis": _leaf(joint.axis.tolist(), source),
         "lower_deg": _leaf(lower, source),
         "upper_deg": _leaf(upper, source),
@@ -244,7 +244,7 @@ def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
     speed = transmission.single_joint_speed(design)
     rotors = np.diag(leg_reflected_inertia(design))
     motors = list(design.actuator_sections)
-    found = []
+    findings = []
     for row, name in enumerate(design.joint_sections):
         joint = robot.joints[name]
         parts = []
@@ -259,7 +259,7 @@ def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
             if not np.isfinite(stated) or abs(stated / own - 1) <= AGREES:
                 continue
             more = stated > own
-            found.append(
+            findings.append(
                 Finding(
                     "error" if more else "warning",
                     f"joint {name}",
@@ -271,7 +271,7 @@ def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
                 )
             )
         if np.isfinite(joint.armature) and abs(joint.armature / rotors[row] - 1) > AGREES:
-            found.append(
+            findings.append(
                 Finding(
                     "warning",
                     f"joint {name}",
@@ -280,4 +280,4 @@ def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
                     f"set it to {rotors[row]:.4g}",
                 )
             )
-    return sorted(found, key=lambda f: f.severity != "error")
+    return sorted(findings, key=lambda f: f.severity != "error")

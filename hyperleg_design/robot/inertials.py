@@ -42,7 +42,7 @@ def inertials(design: HyperLeg, side: float = 1.0) -> dict[str, Inertial]:
     carrier = np.asarray(design.hip.carrier_gyration, float)[..., None] * np.ones(3)
     foot_link = table.foot - design.foot.cross_mass
     zero = np.zeros(3)
-    found = {
+    links = {
         "pelvis": _with_housed(
             design,
             "pelvis",
@@ -58,21 +58,23 @@ def inertials(design: HyperLeg, side: float = 1.0) -> dict[str, Inertial]:
         "hip_roll_carrier": _declared(design.hip.roll_carrier_mass, zero, carrier),
     }
     carriers = design.hip.yaw_carrier_mass + design.hip.roll_carrier_mass
-    for name, kept in (("thigh", carriers), ("shank", 0.0)):
+    for name, carrier_mass in (("thigh", carriers), ("shank", 0.0)):
         part = getattr(design, name)
         com = _vector(part.com_forward, side * part.com_outward, -part.com_fraction * part.length)
         gyration = np.asarray(part.gyration_fraction) * np.asarray(part.length, float)[..., None]
-        body = _declared(getattr(table, name) - _change(table, name, 1) - kept, com, gyration)
-        found[name] = _with_housed(design, name, table, body, side)
+        body = _declared(
+            getattr(table, name) - _change(table, name, 1) - carrier_mass, com, gyration
+        )
+        links[name] = _with_housed(design, name, table, body, side)
     mirror = np.array([1.0, side, 1.0])
-    found["ankle_cross"] = _declared(
+    links["ankle_cross"] = _declared(
         design.foot.cross_mass,
         zero,
         np.asarray(design.foot.cross_gyration, float)[..., None] * np.ones(3),
     )
-    found["foot"] = _declared(foot_link, design.foot.com * mirror, design.foot.gyration)
-    found["toe_plate"] = _declared(table.toe, design.toe.com * mirror, design.toe.gyration)
-    return found
+    links["foot"] = _declared(foot_link, design.foot.com * mirror, design.foot.gyration)
+    links["toe_plate"] = _declared(table.toe, design.toe.com * mirror, design.toe.gyration)
+    return links
 
 
 def _vector(*parts: Any) -> np.ndarray:

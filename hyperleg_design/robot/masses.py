@@ -247,18 +247,21 @@ def check_printed(design: HyperLeg, where: str) -> None:
         InputError: they do not.
     """
     leg = design.thigh.mass + design.shank.mass + design.foot.mass + design.toe.mass
-    for field, found in (("expected_leg", leg), ("expected_total", design.pelvis.mass + 2 * leg)):
+    for field, computed in (
+        ("expected_leg", leg),
+        ("expected_total", design.pelvis.mass + 2 * leg),
+    ):
         printed = getattr(design.masses, field)
-        wrong = np.asarray((printed != 0) & (np.abs(found - printed) > 1e-6))
+        wrong = np.asarray((printed != 0) & (np.abs(computed - printed) > 1e-6))
         if np.any(wrong):
-            printed, found = (
-                np.broadcast_to(v, wrong.shape)[wrong].flat[0] for v in (printed, found)
+            printed, computed = (
+                np.broadcast_to(v, wrong.shape)[wrong].flat[0] for v in (printed, computed)
             )
             raise InputError(
                 where,
                 f"masses.{field}",
                 float(printed),
-                f"the declared segments add up to {found:.6g} kg; correct one or the other",
+                f"the declared segments add up to {computed:.6g} kg; correct one or the other",
             )
 
 

@@ -68,17 +68,17 @@ def mujoco_spec(design: RobotDesign, *, friction: bool = True, floor: bool = Tru
     base.pos = [0.0, 0.0, float(standing_height(design))]
     _dress_geoms(spec, design, tree)
     for joint in tree.moving:
-        made = spec.joint(joint.name)
-        made.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE
-        made.damping = (
+        hinge = spec.joint(joint.name)
+        hinge.actfrclimited = mujoco.mjtLimited.mjLIMITED_FALSE
+        hinge.damping = (
             [joint.viscous if friction else 0.0, 0.0, 0.0]
-            if np.ndim(made.damping)
+            if np.ndim(hinge.damping)
             else (joint.viscous if friction else 0.0)
         )
-        made.frictionloss = joint.coulomb if friction else 0.0
-        made.armature = 0.0
-        made.solref_limit = [design.stop_section.time_constant, design.stop_section.damping_ratio]
-        made.solimp_limit = [
+        hinge.frictionloss = joint.coulomb if friction else 0.0
+        hinge.armature = 0.0
+        hinge.solref_limit = [design.stop_section.time_constant, design.stop_section.damping_ratio]
+        hinge.solimp_limit = [
             min(0.9, design.stop_section.impedance),
             design.stop_section.impedance,
             *STOP_IMPEDANCE_SHAPE,
@@ -289,8 +289,8 @@ def _full_precision() -> Iterator[None]:
     """
     import mujoco
 
-    found = sorted(Path(mujoco.__file__).parent.glob("libmujoco*"))
-    library: Any = ctypes.CDLL(str(found[0])) if found else None
+    libraries = sorted(Path(mujoco.__file__).parent.glob("libmujoco*"))
+    library: Any = ctypes.CDLL(str(libraries[0])) if libraries else None
     setter = getattr(library, "_mjPRIVATE__set_xml_precision", None)
     if setter is None:
         raise RuntimeError("this MuJoCo cannot write full precision; install the pinned version")

@@ -293,7 +293,7 @@ def _constants(
         raise InputError(where, path, data, f"expects a mapping with {', '.join(required)}")
     rules = {**required, **optional}
     _known(data, rules, where, f"{path}.")
-    found = {}
+    constants = {}
     for key, rule in rules.items():
         if key not in data:
             if key in required:
@@ -308,10 +308,10 @@ def _constants(
         _one_of(entry.get("label"), LABELS, where, f"{path}.{key}.label")
         _one_of(entry.get("confidence"), CONFIDENCES, where, f"{path}.{key}.confidence")
         value = parameters.checked(entry["value"], rule, where, f"{path}.{key}")
-        found[key] = Constant(
+        constants[key] = Constant(
             value, entry["label"], str(entry.get("source", "")), entry["confidence"]
         )
-    return found
+    return constants
 
 
 @cache

@@ -322,29 +322,29 @@ def some(names: Iterable[str]) -> str:
 
 def leaves(instance: Any, path: str = "") -> dict[str, Any]:
     """All leaves of a dataclass by dotted path, in order of declaration."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for field in dataclasses.fields(instance):
         name = f"{path}.{field.name}" if path else field.name
         value = getattr(instance, field.name)
         if is_leaf(field):
-            found[name] = value
+            values[name] = value
         elif dataclasses.is_dataclass(value):
-            found.update(leaves(value, name))
-    return found
+            values.update(leaves(value, name))
+    return values
 
 
 @cache
 def rules(cls: type, path: str = "") -> Mapping[str, Rule]:
     """Rules of all leaves of a dataclass by dotted path."""
-    found: dict[str, Rule] = {}
+    rules_by_path: dict[str, Rule] = {}
     sections = section_types(cls)
     for field in dataclasses.fields(cls):
         name = f"{path}.{field.name}" if path else field.name
         if field.name in sections:
-            found.update(rules(sections[field.name], name))
+            rules_by_path.update(rules(sections[field.name], name))
         elif is_leaf(field):
-            found[name] = rule_of(field)
-    return MappingProxyType(found)
+            rules_by_path[name] = rule_of(field)
+    return MappingProxyType(rules_by_path)
 
 
 def with_values(

@@ -47,14 +47,14 @@ def _hyperleg(design: Design) -> Tree:
     joints: list[TreeJoint] = []
     for side in SIDES:
         sign = SIGN[side]
-        found = inertials(design, sign)
+        links_of_leg = inertials(design, sign)
         if side == "left":
-            body = found["pelvis"]
+            body = links_of_leg["pelvis"]
             links.append(
                 Link("pelvis", float(body.mass), body.com, body.inertia, _visuals(design, "pelvis"))
             )
         for name in LEG_LINKS:
-            body = found[name]
+            body = links_of_leg[name]
             links.append(
                 Link(
                     f"{side}_{name}",
@@ -85,13 +85,13 @@ def _leg_joints(design: Design, side: str, sign: float) -> list[TreeJoint]:
         "hip_roll": (sign, 0.0, 0.0),
         "ankle_roll": (sign, 0.0, 0.0),
     }
-    made = []
+    joints = []
     parent = "pelvis"
     for index, (name, child) in enumerate(zip(JOINTS, LEG_LINKS, strict=True)):
         joint: Any = getattr(design.joints, name)
         fixed = name not in moving
         still = fixed or not np.isfinite(speed[index])  # no motor moves a passive toe
-        made.append(
+        joints.append(
             TreeJoint(
                 name=f"{side}_{name}",
                 parent=parent,
@@ -109,7 +109,7 @@ def _leg_joints(design: Design, side: str, sign: float) -> list[TreeJoint]:
             )
         )
         parent = f"{side}_{child}"
-    return made
+    return joints
 
 
 def _visuals(design: Design, link: str) -> tuple[Shape, ...]:

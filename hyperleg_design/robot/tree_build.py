@@ -77,13 +77,13 @@ def _joints(design: TreeDesign, copy: str, place: np.ndarray, mirror: bool) -> l
     moving = list(design.joint_sections)
     effort = transmission.max_joint_torque(design)
     speed = transmission.single_joint_speed(design)
-    made = []
+    joints = []
     for name, joint in design.all_joints.items():
         at = np.asarray(joint.position, float) * signs
         if joint.parent == root:
             at = at + place
         index = moving.index(name) if name in moving else None
-        made.append(
+        joints.append(
             TreeJoint(
                 name=prefixed(copy, name),
                 parent=root if joint.parent == root else prefixed(copy, joint.parent),
@@ -101,7 +101,7 @@ def _joints(design: TreeDesign, copy: str, place: np.ndarray, mirror: bool) -> l
                 turn=_three(np.deg2rad(joint.turn_deg) * signs * np.prod(signs)),
             )
         )
-    return made
+    return joints
 
 
 def _three(values: Any) -> tuple[float, float, float]:

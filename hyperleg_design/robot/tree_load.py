@@ -68,8 +68,8 @@ class CheckedTreeDesign(TreeDesign):
     def __reduce__(self) -> Any:
         plain = {p: v for p, v in parameters.leaves(self).items() if isinstance(v, np.ndarray)}
         batched = {p: plain[p] for p in self.batch_sizes()}
-        one = self.take(0) if batched else self
-        return _restored, (one.to_mapping(), self.name, self.source, dict(self.origins), batched)
+        single = self.take(0) if batched else self
+        return _restored, (single.to_mapping(), self.name, self.source, dict(self.origins), batched)
 
 
 def _restored(
@@ -80,8 +80,8 @@ def _restored(
     batched: Mapping[str, np.ndarray],
 ) -> TreeDesign:
     design = tree_design_from_mapping(data, name, source or name)
-    made = design.with_values(batched, name) if batched else design
-    return dataclasses.replace(made, source=source, origins=origins)
+    restored = design.with_values(batched, name) if batched else design
+    return dataclasses.replace(restored, source=source, origins=origins)
 
 
 @cache
@@ -207,7 +207,7 @@ def _transmission(
         if motor not in motors:
             remedy = parameters.unknown(str(motor), motors).replace("such field", "such motor")
             raise InputError(where, f"transmission.{motor}", None, remedy)
-    found: dict[str, dict[str, Any]] = {}
+    entries: dict[str, dict[str, Any]] = {}
     for motor in motors:
         if motor in sections["rods"]:
             if given.get(motor):
@@ -231,8 +231,8 @@ def _transmission(
             if joint not in joints:
                 remedy = parameters.unknown(str(joint), joints).replace("field", "moving joint")
                 raise InputError(where, f"transmission.{motor}.{joint}", None, remedy)
-        found[motor] = dict(entry)
-    return found
+        entries[motor] = dict(entry)
+    return entries
 
 
 def _from_matrix(
@@ -266,10 +266,10 @@ def _from_matrix(
             f"{', '.join(rows)}, a column for each of {', '.join(columns)}"
         )
         raise InputError(where, place, size, remedy)
-    found: dict[str, dict[str, Any]] = {}
+    entries: dict[str, dict[str, Any]] = {}
     for column, motor in enumerate(columns):
         gear = float(_plain(sections["actuators"][motor].get("gear", 1.0)))
-        found[motor] = {
+        entries[motor] = {
             joint: {
                 "value": matrix[row, column] / gear,
                 "label": origin.label,
@@ -278,4 +278,4 @@ def _from_matrix(
             for row, joint in enumerate(rows)
             if matrix[row, column]
         }
-    return found
+    return entries

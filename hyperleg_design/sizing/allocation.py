@@ -243,7 +243,7 @@ def _residual(
     gap: np.ndarray,
     matrix: np.ndarray,
 ) -> float:
-    found = np.einsum("npiv,npi->nv", jacobian, forces)
-    found[:, :6] += gap
-    found[:, 6:] += np.einsum("jm,nlm->nlj", matrix, motor_torque).reshape(len(required), -1)
-    return float(np.max(np.abs(found - required)))
+    wrench = np.einsum("npiv,npi->nv", jacobian, forces)
+    wrench[:, :6] += gap
+    wrench[:, 6:] += np.einsum("jm,nlm->nlj", matrix, motor_torque).reshape(len(required), -1)
+    return float(np.max(np.abs(wrench - required)))

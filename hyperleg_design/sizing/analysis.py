@@ -116,10 +116,10 @@ def _named(joints: tuple[str, ...], values: np.ndarray) -> dict[str, float]:
 
 def _motors(design: Design) -> dict[str, Any]:
     kind = str(design.electrical.constants)
-    found = {}
+    motors = {}
     for name, actuator in zip(transmission.motor_names(design), ACTUATOR_OF_MOTOR, strict=False):
         motor = find_motor(str(getattr(design.actuators, actuator).motor))
-        found[name] = {
+        motors[name] = {
             "motor": motor.name,
             "gear": float(getattr(design.actuators, actuator).gear),
             "no_load_speed": motor.no_load_speed(kind) * design.electrical.voltage_ratio,
@@ -132,4 +132,4 @@ def _motors(design: Design) -> dict[str, Any]:
             "rotor_inertia": motor.rotor_inertia,
             "mass": motor.mass,
         }
-    return found
+    return motors

@@ -252,8 +252,8 @@ def largest_force(
             f"{design.name}: no contact force of the {side} foot lets its motors hold this posture "
             f"({problem.status})"
         )
-    found = force.value * weight
-    if found[:, 2].sum() > 0.999 * LARGEST * weight:
+    solution = force.value * weight
+    if solution[:, 2].sum() > 0.999 * LARGEST * weight:
         raise InfeasibleError(
             f"{design.name}: the {side} leg is straight in this posture: its bones carry any "
             f"force; bend the knee"
@@ -266,7 +266,7 @@ def largest_force(
         side,
         touching,
         points,
-        found,
+        solution,
         torque.value * peak,
         lower,
         upper,
@@ -282,7 +282,7 @@ def _result(
     side: str,
     touching: np.ndarray,
     points: np.ndarray,
-    found: np.ndarray,
+    solution: np.ndarray,
     torque: np.ndarray,
     lower: np.ndarray,
     upper: np.ndarray,
@@ -290,16 +290,16 @@ def _result(
 ) -> ContactForce:
     pads, envelope = sole_pads(model.tree), motor_envelope(design)
     pad_force = np.zeros((len(pads), 3))
-    pad_force[touching] = found
-    total = found.sum(0)
+    pad_force[touching] = solution
+    total = solution.sum(0)
     link = pads[touching[0]].link if isinstance(design, TreeDesign) else f"{side}_foot"
     ankle = model.frame_position(q, link)
-    center = (points[touching] * found[:, 2:]).sum(0) / max(total[2], 1e-12) - ankle
+    center = (points[touching] * solution[:, 2:]).sum(0) / max(total[2], 1e-12) - ankle
     near = np.minimum(upper - torque, torque - lower) / envelope.peak_torque
-    slack = float(design.contact_section.friction) * found[:, 2] - np.linalg.norm(
-        found[:, :2], axis=1
+    slack = float(design.contact_section.friction) * solution[:, 2] - np.linalg.norm(
+        solution[:, :2], axis=1
     )
-    loaded = found[:, 2] > 1e-3 * weight
+    loaded = solution[:, 2] > 1e-3 * weight
     return ContactForce(
         design=design.name,
         variant=design.variant,
@@ -340,19 +340,19 @@ def capability_table(
             for direction in DIRECTIONS:
                 row: dict[str, Any] = {"design": key, "posture": name, "direction": direction}
                 try:
-                    found = largest_force(design, name, direction, model=model, upright=upright)
+                    largest = largest_force(design, name, direction, model=model, upright=upright)
                 except InfeasibleError as error:
                     rows.append({**row, "force": None, "reason": str(error)})
                     continue
                 row |= {
-                    "force": float(found.force @ DIRECTIONS[direction]),
-                    "body_weights": found.body_weights,
+                    "force": float(largest.force @ DIRECTIONS[direction]),
+                    "body_weights": largest.body_weights,
                 }
                 rows.append(
                     {
                         **row,
-                        "center_of_pressure": float(found.center_of_pressure[0]),
-                        "binding": found.binding,
+                        "center_of_pressure": float(largest.center_of_pressure[0]),
+                        "binding": largest.binding,
                     }
                 )
     return rows

@@ -34,28 +34,28 @@ class Pad:
 
 def sole_pads(tree: Tree) -> tuple[Pad, ...]:
     """Pads of both feet: left heel, ball, tip, then the right's; two in each row."""
-    found = []
+    pads = []
     if not tree.hyperleg:
         return _limb_pads(tree)
     for link in tree.links:
         side = link.name.split("_")[0]
         for index, shape in enumerate(link.pads):
             row = TIP if link.name.endswith("toe_plate") else (HEEL, BALL)[index // 2]
-            found.append(
+            pads.append(
                 Pad(
                     f"{side}_{row}_{index % 2}", side, row, link.name, shape.position, shape.size[0]
                 )
             )
-    return tuple(found)
+    return tuple(pads)
 
 
 def _limb_pads(tree: Tree) -> tuple[Pad, ...]:
     """Pads of a tree that is written out, limb by limb; those of the root link belong to none."""
-    found = []
+    pads = []
     for link in tree.links:
         limb = next((n for n in tree.limbs if n and link.name.startswith(f"{n}_")), tree.limbs[0])
         for index, shape in enumerate(link.pads):
-            found.append(
+            pads.append(
                 Pad(
                     f"{link.name}_{index}",
                     "" if link.name == tree.base else limb,
@@ -65,7 +65,7 @@ def _limb_pads(tree: Tree) -> tuple[Pad, ...]:
                     shape.size[0],
                 )
             )
-    return tuple(found)
+    return tuple(pads)
 
 
 def contact_points(model: RigidBodyModel, q: np.ndarray) -> np.ndarray:

@@ -136,7 +136,7 @@ class Demand:
         share beyond, worst margin, table.
         """
         power = self.power
-        found = {
+        values = {
             "design": self.design.name,
             "variant": self.design.variant,
             "motion": self.motion.name,
@@ -153,9 +153,9 @@ class Demand:
             "motors": self.table(),
         }
         if self.motion.distance > 0:
-            found["cost_of_transport"] = self.cost_of_transport("motor")
-            found["cost_of_transport_battery"] = self.cost_of_transport("battery")
-        return found
+            values["cost_of_transport"] = self.cost_of_transport("motor")
+            values["cost_of_transport_battery"] = self.cost_of_transport("battery")
+        return values
 
 
 def joint_friction(design: Design, velocity: np.ndarray) -> np.ndarray:
@@ -170,11 +170,13 @@ def joint_friction(design: Design, velocity: np.ndarray) -> np.ndarray:
 def required_forces(motion: Motion) -> np.ndarray:
     """Generalised forces that contacts and motors must give, joint friction included, `(n, nv)`."""
     model = motion.model
-    found = np.stack(
+    required = np.stack(
         [model.inverse_dynamics(*state) for state in zip(motion.q, motion.v, motion.a, strict=True)]
     )
-    found[:, 6:] += joint_friction(model.design, motion.joint_velocity).reshape(len(found), -1)
-    return found
+    required[:, 6:] += joint_friction(model.design, motion.joint_velocity).reshape(
+        len(required), -1
+    )
+    return required
 
 
 def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -> Demand:
@@ -208,7 +210,7 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
     lower, upper = torque_limits(envelope, speed)
     jacobian = np.stack([contact_kinematics(motion.model, q)[1] for q in motion.q])
     weight = GRAVITY * float(sum(link.mass for link in motion.model.tree.links))
-    found = least_heat(
+    allocation = least_heat(
         required_forces(motion),
         jacobian,
         motion.contact,
@@ -223,13 +225,13 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
     return Demand(
         design=design,
         motion=motion,
-        joint_torque=np.einsum("jm,nlm->nlj", matrix, found.motor_torque),
-        motor_torque=found.motor_torque,
+        joint_torque=np.einsum("jm,nlm->nlj", matrix, allocation.motor_torque),
+        motor_torque=allocation.motor_torque,
         motor_velocity=speed,
         lower=lower,
         upper=upper,
-        allocation=found,
-        ledger=_ledger(found.motor_torque, speed, motion.time_step, envelope),
+        allocation=allocation,
+        ledger=_ledger(allocation.motor_torque, speed, motion.time_step, envelope),
     )
 
 

@@ -139,7 +139,7 @@ def has_toe_joint(design: Design) -> bool:
 def about_x(angle: np.ndarray) -> np.ndarray:
     """Rotation about x, `(...)` [rad] -> `(..., 3, 3)`; positive lifts the left side."""
     angle = np.asarray(angle, float)
-    cosine, sine, zero, one = (
+    cosine, sine, zero, unity = (
         np.cos(angle),
         np.sin(angle),
         np.zeros_like(angle),
@@ -147,7 +147,7 @@ def about_x(angle: np.ndarray) -> np.ndarray:
     )
     return np.stack(
         [
-            np.stack([one, zero, zero], -1),
+            np.stack([unity, zero, zero], -1),
             np.stack([zero, cosine, -sine], -1),
             np.stack([zero, sine, cosine], -1),
         ],
@@ -158,7 +158,7 @@ def about_x(angle: np.ndarray) -> np.ndarray:
 def about_y(angle: np.ndarray) -> np.ndarray:
     """Rotation about y, `(...)` [rad] -> `(..., 3, 3)`; positive pitches the nose down."""
     angle = np.asarray(angle, float)
-    cosine, sine, zero, one = (
+    cosine, sine, zero, unity = (
         np.cos(angle),
         np.sin(angle),
         np.zeros_like(angle),
@@ -167,7 +167,7 @@ def about_y(angle: np.ndarray) -> np.ndarray:
     return np.stack(
         [
             np.stack([cosine, zero, sine], -1),
-            np.stack([zero, one, zero], -1),
+            np.stack([zero, unity, zero], -1),
             np.stack([-sine, zero, cosine], -1),
         ],
         -2,

@@ -68,14 +68,14 @@ class Description:
 
     def behind(self, joint: str) -> list[Body]:
         """Bodies that move with a joint."""
-        found = [self.bodies[joint]]
-        for body in found:
-            found += [
+        bodies = [self.bodies[joint]]
+        for body in bodies:
+            bodies += [
                 child
                 for child in self.bodies.values()
                 if child.parent == body.joint and child.joint
             ]
-        return found
+        return bodies
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,10 +102,10 @@ def robots_folder() -> Path:
         files = []
     # .../example-robot-data/robots/ROBOT/FILE of a wheel; the prefix of an environment that is not
     # pip's
-    found = [
+    folders = [
         Path(str(f.locate())).parents[1] for f in files if f.parts[-4:-2] == (PACKAGE, "robots")
     ][:1]
-    for folder in (*found, Path(sys.prefix) / "share" / PACKAGE / "robots"):
+    for folder in (*folders, Path(sys.prefix) / "share" / PACKAGE / "robots"):
         if folder.is_dir():
             return folder.resolve()
     raise InputError(

@@ -165,12 +165,12 @@ def _vertices(
     points = np.linalg.solve(normal[chosen], offset[chosen][..., None])[..., 0]
     inside = np.all(points @ normal.T <= offset + tolerance, -1)
     # one corner may be the meeting of more facets than it needs: keep it once
-    kept: list[np.ndarray] = []
+    vertices: list[np.ndarray] = []
     spread = _TOUCHES * max(1e-12, float(np.abs(points[inside]).max(initial=0.0))) * 10
     for point in points[inside]:
-        if not any(np.abs(point - other).max() <= spread for other in kept):
-            kept.append(point)
-    corners = np.array(kept).reshape(-1, size)
+        if not any(np.abs(point - other).max() <= spread for other in vertices):
+            vertices.append(point)
+    corners = np.array(vertices).reshape(-1, size)
     on = np.abs(corners @ normal.T - offset) <= 10 * tolerance
     return corners, on & bounding
 

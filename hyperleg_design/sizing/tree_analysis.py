@@ -78,30 +78,30 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
 
 def _forces(design: TreeDesign) -> dict[str, Any]:
     """Largest contact forces of the first limb in the default posture, by direction."""
-    found: dict[str, Any] = {}
+    forces: dict[str, Any] = {}
     for direction in DIRECTIONS:
         if not design.pad_sections:
-            found[direction] = {"force": None, "reason": NO_PADS}
+            forces[direction] = {"force": None, "reason": NO_PADS}
             continue
         try:
             force = largest_force(design, "default", direction, side=design.copies[0])
         except InfeasibleError as error:
-            found[direction] = {"force": None, "reason": str(error)}
+            forces[direction] = {"force": None, "reason": str(error)}
             continue
-        found[direction] = {
+        forces[direction] = {
             "force": float(force.force @ DIRECTIONS[direction]),
             "body_weights": force.body_weights,
             "binding": list(force.binding),
         }
-    return found
+    return forces
 
 
 def _motors(design: TreeDesign) -> dict[str, Any]:
     kind, ratio = str(design.electrical.constants), design.electrical.voltage_ratio
-    found = {}
+    motors = {}
     for name, actuator in design.actuator_sections.items():
         motor = find_motor(str(actuator.motor))
-        found[name] = {
+        motors[name] = {
             "motor": motor.name,
             "gear": float(actuator.gear),
             "no_load_speed": motor.no_load_speed(kind) * ratio,
@@ -112,4 +112,4 @@ def _motors(design: TreeDesign) -> dict[str, Any]:
             "rotor_inertia": motor.rotor_inertia,
             "mass": motor.mass,
         }
-    return found
+    return motors

@@ -69,11 +69,11 @@ class Axis:
         """What each leaf becomes, by path, for a batch of values of this axis."""
         if not self.scaled:
             return dict.fromkeys(self.paths, values)
-        found = {}
+        leaves = {}
         for path in self.paths:
             start = np.asarray(base[path], float)
-            found[path] = values.reshape((-1, *(1,) * start.ndim)) * start
-        return found
+            leaves[path] = values.reshape((-1, *(1,) * start.ndim)) * start
+        return leaves
 
     def to_mapping(self) -> dict[str, Any]:
         """The axis as plain values, as JSON and YAML take them."""
@@ -262,8 +262,8 @@ def _range(
 
 
 def _number(value: Any, where: str, place: str) -> float:
-    found: float = parameters.checked(value, parameters.Rule("number"), where, place)
-    return found
+    number: float = parameters.checked(value, parameters.Rule("number"), where, place)
+    return number
 
 
 def _checked(axis: Axis, base: RobotDesign, where: str, place: str) -> Axis:

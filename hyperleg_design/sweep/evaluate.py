@@ -39,13 +39,13 @@ def evaluate_range(
     reasons = np.full((count, variants), "", dtype=object)
     for column, variant in enumerate(sweep.variants):
         values[:, :, column], reasons[:, column] = evaluate_samples(sweep, part, variant)
-    found: Columns = {
+    columns: Columns = {
         "sample": np.repeat(np.arange(start, stop), variants),
         "variant": np.tile(np.asarray(sweep.variants, dtype=object), count),
     }
-    found |= {name: np.repeat(axis, variants) for name, axis in part.items()}
-    found["rejected"] = reasons.ravel()
-    return found | {name: values[i].ravel() for i, name in enumerate(names)}
+    columns |= {name: np.repeat(axis, variants) for name, axis in part.items()}
+    columns["rejected"] = reasons.ravel()
+    return columns | {name: values[i].ravel() for i, name in enumerate(names)}
 
 
 def evaluate_samples(
@@ -69,7 +69,7 @@ def evaluate_samples(
         rows = waiting.pop()
         try:
             design = sweep.design({name: v[rows] for name, v in samples.items()}, variant)
-            found = measures.evaluate(design, sweep.measures)
+            measured = measures.evaluate(design, sweep.measures)
         except InputError as error:
             bad = np.ones(1, bool) if len(rows) == 1 else _refused(error, len(rows))
             if bad is None:
@@ -79,7 +79,7 @@ def evaluate_samples(
                 if not bad.all():
                     waiting.append(rows[~bad])
             continue
-        values[:, rows] = [found[name] for name in names]
+        values[:, rows] = [measured[name] for name in names]
     return values, reasons
 
 

@@ -159,9 +159,9 @@ def measure_of(column: str) -> Measure:
 
 def label(column: str) -> str:
     """A column's name with unit, for figures and tables."""
-    found = measure_of(column)
+    measure = measure_of(column)
     name = column.replace("_", " ").replace(".", ", ")
-    return f"{name} [{found.unit.replace('^2', '²')}]" if found.unit else name
+    return f"{name} [{measure.unit.replace('^2', '²')}]" if measure.unit else name
 
 
 def evaluate(design: RobotDesign, names: Iterable[str] | None = None) -> dict[str, np.ndarray]:
@@ -178,19 +178,19 @@ def evaluate(design: RobotDesign, names: Iterable[str] | None = None) -> dict[st
         InputError: an inertia that no body has (see `inertials`).
     """
     batch = Batch(design)
-    found: dict[str, np.ndarray] = {}
+    columns: dict[str, np.ndarray] = {}
     for name in measures_of(design) if names is None else names:
         entry = MEASURES[name]
         values = np.asarray(entry.compute(batch), float)
         if not entry.parts:
-            found[name] = np.array(np.broadcast_to(values, (batch.size,)))
+            columns[name] = np.array(np.broadcast_to(values, (batch.size,)))
             continue
         # joints or motors that this variant lacks come last in their order
         own = entry.columns_of(design)
         padded = np.full((batch.size, len(own)), np.nan)
         padded[:, : values.shape[-1]] = values
-        found |= {column: padded[:, i].copy() for i, column in enumerate(own)}
-    return found
+        columns |= {column: padded[:, i].copy() for i, column in enumerate(own)}
+    return columns
 
 
 @measure("kg", "low", trees=True)

@@ -46,8 +46,8 @@ def nondominated(values: np.ndarray, better: Sequence[str]) -> np.ndarray:
     unique, inverse = np.unique(
         cost, axis=0, return_inverse=True
     )  # sorted lexicographically, ties joined
-    kept = _staircase(unique) if unique.shape[1] <= 2 else _blockwise(unique)
-    front[real] = kept[inverse.reshape(-1)]
+    on_front = _staircase(unique) if unique.shape[1] <= 2 else _blockwise(unique)
+    front[real] = on_front[inverse.reshape(-1)]
     return front
 
 
@@ -62,7 +62,7 @@ def _staircase(cost: np.ndarray) -> np.ndarray:
 
 def _blockwise(cost: np.ndarray) -> np.ndarray:
     """The front of sorted, different points, one block at a time."""
-    kept = np.zeros(len(cost), dtype=bool)
+    on_front = np.zeros(len(cost), dtype=bool)
     front = np.empty((0, cost.shape[1]))
     for start in range(0, len(cost), _BLOCK):
         block = cost[start : start + _BLOCK]
@@ -72,9 +72,9 @@ def _blockwise(cost: np.ndarray) -> np.ndarray:
         no_worse = np.all(rest[None, :, :] <= rest[:, None, :], -1)
         np.fill_diagonal(no_worse, False)
         alive = alive[~no_worse.any(1)]
-        kept[start + alive] = True
+        on_front[start + alive] = True
         front = np.concatenate([front, block[alive]])
-    return kept
+    return on_front
 
 
 def _beaten(points: np.ndarray, front: np.ndarray) -> np.ndarray:

@@ -43,16 +43,16 @@ class Entry:
 @cache
 def entries() -> dict[str, Entry]:
     """All measures by name, those of designs first."""
-    found = {
+    known = {
         column: Entry(column, m.unit, m.better, m.doc)
         for m in sizing.MEASURES.values()
         for column in m.columns
     }
     for protocol, table in PROTOCOLS.items():
-        for name, one in table.items():
+        for name, entry in table.items():
             full = f"{protocol}.{name}"
-            found[full] = Entry(full, one.unit, _BETTER[one.better], one.meaning, protocol)
-    return found
+            known[full] = Entry(full, entry.unit, _BETTER[entry.better], entry.meaning, protocol)
+    return known
 
 
 def resolve(name: str, protocols: Sequence[str] = (), where: str = "measures") -> Entry:

@@ -114,10 +114,10 @@ def run_sweep(
         write_json(chunks / STATE, {**state, "chunk": chunk})
     _evaluate(sweep, chunks, chunk, progress, executor)
     parts = [_chunk_path(chunks, a, b) for a, b in _ranges(sweep.count, chunk)]
-    with _written(folder), output_folder(folder) as made:
-        table.join(sweep, parts, made / TABLE, {**state, "sweep": sweep.to_mapping()})
-        summary = {**state, **summarise(sweep, made / TABLE)}
-        write_json(made / SUMMARY, summary)
+    with _written(folder), output_folder(folder) as place:
+        table.join(sweep, parts, place / TABLE, {**state, "sweep": sweep.to_mapping()})
+        summary = {**state, **summarise(sweep, place / TABLE)}
+        write_json(place / SUMMARY, summary)
     return SweepResult(sweep, folder, summary)
 
 
@@ -161,10 +161,10 @@ def _earlier(
 
 def _read_state(path: Path) -> dict[str, Any] | None:
     try:
-        found = json.loads(path.read_text())
+        state = json.loads(path.read_text())
     except (OSError, ValueError):
         return None
-    return found if isinstance(found, dict) and "digest" in found else None
+    return state if isinstance(state, dict) and "digest" in state else None
 
 
 @contextmanager

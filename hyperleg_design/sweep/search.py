@@ -69,17 +69,17 @@ def read_constraint(text: str, protocols: Sequence[str]) -> Constraint:
     Raises:
         InputError: no such form, measure, or number.
     """
-    found = _BOUND.fullmatch(text)
+    match = _BOUND.fullmatch(text)
     try:
-        if found is None:
+        if match is None:
             raise ValueError
-        bound = float(found[3])
+        bound = float(match[3])
     except ValueError:
         raise InputError(
             "--constraint", "", text, "expects MEASURE<=NUMBER or MEASURE>=NUMBER"
         ) from None
-    entry = registry.resolve(found[1], protocols, "--constraint")
-    return Constraint(entry.name, bound, found[2] == "<=")
+    entry = registry.resolve(match[1], protocols, "--constraint")
+    return Constraint(entry.name, bound, match[2] == "<=")
 
 
 def usual_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
@@ -322,10 +322,18 @@ def _evaluate(
                 reasons[i] = str(refused[k])
         good = [k for k in range(len(own)) if not refused[k]]
         samples = np.array([asked[own[k]].number for k in good])
-        kept = {name: column[good] for name, column in values.items()}
+        accepted = {name: column[good] for name, column in values.items()}
         for protocol in search.plan.protocols if good else ():
-            for one in search.plan.policies[kind_of(protocol), variant]:
-                job = (sweep, variant, kept, samples, protocol_mapping(protocol), one.path, threads)
+            for policy in search.plan.policies[kind_of(protocol), variant]:
+                job = (
+                    sweep,
+                    variant,
+                    accepted,
+                    samples,
+                    protocol_mapping(protocol),
+                    policy.path,
+                    threads,
+                )
                 jobs.append((len(jobs), job))
     parts = dict(completed(evaluate_values, jobs, executor))
     measured: dict[int, dict[str, Any]] = {}

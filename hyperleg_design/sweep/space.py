@@ -291,18 +291,18 @@ def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> 
     return base.with_values(overrides, "--set") if overrides else base
 
 
-def _variants(found: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
+def _variants(value: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
     if not isinstance(base, Design):
-        if found is not None:
+        if value is not None:
             remedy = f"{base.name} has none; leave it out"
-            raise InputError(where, "variants", found, remedy)
+            raise InputError(where, "variants", value, remedy)
         return (AS_DESCRIBED,)
-    found = ["toe"] if found is None else found
-    if not isinstance(found, list) or not found or len(set(map(str, found))) < len(found):
+    value = ["toe"] if value is None else value
+    if not isinstance(value, list) or not value or len(set(map(str, value))) < len(value):
         raise InputError(
-            where, "variants", found, f"expects a list of different ones of {', '.join(LAYOUTS)}"
+            where, "variants", value, f"expects a list of different ones of {', '.join(LAYOUTS)}"
         )
-    for variant in found:
+    for variant in value:
         if variant not in LAYOUTS:
             raise InputError(
                 where,
@@ -312,7 +312,7 @@ def _variants(found: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
                     "such field", "such variant"
                 ),
             )
-    return tuple(found)
+    return tuple(value)
 
 
 def _axes(data: Any, base: RobotDesign, where: str, *, grid: bool) -> tuple[Axis, ...]:
@@ -381,9 +381,9 @@ def _whole(value: Any, low: int, high: int, where: str, field: str) -> int:
     return value
 
 
-def _measures(found: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
+def _measures(value: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
     known = list(measures.measures_of(base))
-    chosen = known if found is None else found
+    chosen = known if value is None else value
     if not isinstance(chosen, list) or not chosen:
         raise InputError(where, "measures", chosen, f"expects a list of some of {', '.join(known)}")
     for name in chosen:
@@ -397,11 +397,11 @@ def _measures(found: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
     return tuple(name for name in known if name in chosen)
 
 
-def _evaluated(found: Any, where: str) -> tuple[str, ...]:
+def _evaluated(value: Any, where: str) -> tuple[str, ...]:
     known = list(registry.PROTOCOLS)
-    if not isinstance(found, list) or any(name not in known for name in found):
-        raise InputError(where, "evaluate", found, f"expects a list of {', '.join(known)}")
-    return tuple(dict.fromkeys(found))
+    if not isinstance(value, list) or any(name not in known for name in value):
+        raise InputError(where, "evaluate", value, f"expects a list of {', '.join(known)}")
+    return tuple(dict.fromkeys(value))
 
 
 def _of_trials(name: str) -> bool:
@@ -409,13 +409,13 @@ def _of_trials(name: str) -> bool:
 
 
 def _columns(
-    found: Any, chosen: tuple[str, ...], evaluated: tuple[str, ...], where: str, field: str
+    value: Any, chosen: tuple[str, ...], evaluated: tuple[str, ...], where: str, field: str
 ) -> tuple[str, ...]:
     """Full names of measures that the sweep computes, or that its trials give."""
-    if not isinstance(found, list):
-        raise InputError(where, field, found, "expects a list of measures")
+    if not isinstance(value, list):
+        raise InputError(where, field, value, "expects a list of measures")
     names, columns = [], measures.columns(chosen)
-    for name in found:
+    for name in value:
         entry = registry.resolve(str(name), evaluated, f"{where}: {field}")
         if not entry.protocol and entry.name not in columns:
             raise InputError(where, field, name, "is not among the sweep's measures; add it there")
@@ -424,19 +424,19 @@ def _columns(
 
 
 def _maps(
-    found: Any,
+    value: Any,
     axes: tuple[Axis, ...],
     chosen: tuple[str, ...],
     evaluated: tuple[str, ...],
     where: str,
 ) -> tuple[Map, ...]:
-    if not isinstance(found, list):
+    if not isinstance(value, list):
         raise InputError(
-            where, "maps", found, "expects a list of {x: axis, y: axis, measure: name}"
+            where, "maps", value, "expects a list of {x: axis, y: axis, measure: name}"
         )
     known = [axis.name for axis in axes if axis.numeric]
-    made = []
-    for entry in found:
+    maps = []
+    for entry in value:
         if not isinstance(entry, Mapping) or set(entry) | {"y"} != {"x", "y", "measure"}:
             raise InputError(
                 where, "maps", entry, "expects {x: axis, y: axis, measure: name}; y may be left out"
@@ -450,5 +450,5 @@ def _maps(
                     f"expects different ones of the numeric axes {', '.join(known)}",
                 )
         (measure,) = _columns([entry["measure"]], chosen, evaluated, where, "maps.measure")
-        made.append(Map(entry["x"], entry.get("y", ""), measure))
-    return tuple(made)
+        maps.append(Map(entry["x"], entry.get("y", ""), measure))
+    return tuple(maps)

@@ -30,7 +30,7 @@ def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
     head = table.read(path, ["sample", "variant", "rejected"])
     variant, rejected = head["variant"], head["rejected"] != ""
     reasons = Counter(map(str, head["rejected"][rejected]))
-    found: dict[str, Any] = {
+    summary: dict[str, Any] = {
         "description": sweep.description,
         "seed": sweep.seed,
         "sampling": sweep.sampling,
@@ -49,11 +49,11 @@ def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
         for name in sweep.variants:
             real = values[(variant == name) & ~np.isnan(values)]
             if real.size:
-                found["range"][name][column] = [
+                summary["range"][name][column] = [
                     float(v) for v in (real.min(), np.median(real), real.max())
                 ]
     if sweep.objectives:
-        found["front"] = {}
+        summary["front"] = {}
         columns = table.read(path, list(sweep.objectives))
         values = np.stack([columns[c] for c in sweep.objectives], -1)
         for name in sweep.variants:
@@ -63,11 +63,11 @@ def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
                     values[rows], [measures.measure_of(c).better for c in sweep.objectives]
                 )
             ]
-            found["front"][name] = {
+            summary["front"][name] = {
                 "designs": int(front.size),
                 "samples": head["sample"][front[:_SHOWN_FRONT]].tolist(),
             }
-    return found
+    return summary
 
 
 def base_values(sweep: Sweep, variant: str) -> dict[str, float]:

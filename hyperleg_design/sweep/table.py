@@ -44,8 +44,8 @@ def schema(sweep: Sweep) -> pa.Schema:
         )
     fields.append(field("rejected", pa.string(), "why this makes no design; empty where it does"))
     for column in measures.columns(sweep.measures, sweep.base):
-        found = measures.measure_of(column)
-        fields.append(field(column, pa.float64(), found.doc, found.unit))
+        measure = measures.measure_of(column)
+        fields.append(field(column, pa.float64(), measure.doc, measure.unit))
     return pa.schema(fields)
 
 
@@ -80,15 +80,15 @@ def join(sweep: Sweep, parts: Iterable[Path], path: Path, metadata: Mapping[str,
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    made = schema(sweep).with_metadata(
+    target = schema(sweep).with_metadata(
         {METADATA_KEY: json.dumps(metadata, sort_keys=True).encode()}
     )
-    texts = [field.name for field in made if field.type == pa.string()]
-    with pq.ParquetWriter(path, made, compression="zstd", use_dictionary=texts) as writer:
+    texts = [field.name for field in target if field.type == pa.string()]
+    with pq.ParquetWriter(path, target, compression="zstd", use_dictionary=texts) as writer:
         held: list[pa.Table] = []
         rows = 0
         for part in parts:
-            held.append(pq.read_table(part, schema=made))
+            held.append(pq.read_table(part, schema=target))
             rows += held[-1].num_rows
             while rows >= ROW_GROUP:
                 whole = pa.concat_tables(held).combine_chunks()
@@ -111,10 +111,10 @@ def read(path: Path, columns: list[str] | None = None) -> Columns:
     import pyarrow.parquet as pq
 
     try:
-        found = pq.read_table(path, columns=columns)
+        table = pq.read_table(path, columns=columns)
     except (OSError, pa.ArrowException) as error:
         raise InputError(str(path), "", None, f"is no table of a sweep ({error})") from None
-    return {name: _plain(found[name]) for name in found.column_names}
+    return {name: _plain(table[name]) for name in table.column_names}
 
 
 def _plain(column: pa.ChunkedArray) -> np.ndarray:
@@ -137,5 +137,5 @@ def read_metadata(path: Path) -> dict[str, Any]:
         raise InputError(str(path), "", None, f"is no table of a sweep ({error})") from None
     if METADATA_KEY not in metadata:
         raise InputError(str(path), "", None, "is a Parquet file, but not the table of a sweep")
-    found: dict[str, Any] = json.loads(metadata[METADATA_KEY])
-    return found
+    metadata_read: dict[str, Any] = json.loads(metadata[METADATA_KEY])
+    return metadata_read

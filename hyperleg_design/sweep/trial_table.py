@@ -90,7 +90,7 @@ def design_table(sweep: Sweep, trials: pd.DataFrame, columns: Mapping[str, Any])
 def _of_protocol(protocol: str, part: pd.DataFrame) -> dict[str, Any]:
     if (part["outcome"] == REJECTED).any():
         return {"reason": str(part["reason"].iloc[0]), "trials": 0}
-    found: dict[str, Any] = {"trials": len(part), "reason": ""}
+    row: dict[str, Any] = {"trials": len(part), "reason": ""}
     known = registry.PROTOCOLS[protocol]
     for name in known:
         if name not in part:
@@ -98,15 +98,15 @@ def _of_protocol(protocol: str, part: pd.DataFrame) -> dict[str, Any]:
         groups = [own[name].to_numpy(float) for _, own in part.groupby("seed")]
         if name in SHOWN[protocol]:
             function = share if name in OUTCOMES else estimate
-            one = function(groups, resamples=_RESAMPLES)
-            found |= {name: one.mean, f"{name}.low": one.low, f"{name}.high": one.high}
+            interval = function(groups, resamples=_RESAMPLES)
+            row |= {name: interval.mean, f"{name}.low": interval.low, f"{name}.high": interval.high}
         else:
             real = [g[np.isfinite(g)] for g in groups if np.isfinite(g).any()]
-            found[name] = float(np.mean([g.mean() for g in real])) if real else np.nan
-    found["policy"] = str(part["trained"].iloc[0])
-    found["outside"] = str(part["outside"].iloc[0])
-    found["limits"] = acting_limits(part)
-    return found
+            row[name] = float(np.mean([g.mean() for g in real])) if real else np.nan
+    row["policy"] = str(part["trained"].iloc[0])
+    row["outside"] = str(part["outside"].iloc[0])
+    row["limits"] = acting_limits(part)
+    return row
 
 
 def acting_limits(part: pd.DataFrame) -> str:

@@ -160,14 +160,14 @@ def compare(designs: Sequence[RobotDesign], *, demand: bool = False) -> dict[str
     from hyperleg_design.sizing.demand import demand as demand_of
     from hyperleg_design.sizing.inertia import leg_inertia
 
-    found: dict[str, Any] = {}
+    measures: dict[str, Any] = {}
     for design in designs:
         whole = analyze(design)
         if isinstance(design, TreeDesign):
-            found[_free(design.name, found)] = _tree_entry(design, whole, demand)
+            measures[_free(design.name, measures)] = _tree_entry(design, whole, demand)
             continue
         design = cast("Design", design)
-        kept = (
+        copied = (
             "variant",
             "total_mass",
             "leg_mass",
@@ -177,7 +177,7 @@ def compare(designs: Sequence[RobotDesign], *, demand: bool = False) -> dict[str
             "single_joint_speed",
             "torque_alone",
         )
-        entry = {k: whole[k] for k in (*kept, "zonotope_to_box_volume")}
+        entry = {k: whole[k] for k in (*copied, "zonotope_to_box_volume")}
         inertia = leg_inertia(design)
         entry |= {
             k: float(getattr(inertia, k))
@@ -186,13 +186,13 @@ def compare(designs: Sequence[RobotDesign], *, demand: bool = False) -> dict[str
         if demand:
             walk = demand_of(design, "walk").summary()
             entry["walk"] = {k: walk[k] for k in WALK_MEASURES}
-        found[_free(design.name, found)] = entry
-    return found
+        measures[_free(design.name, measures)] = entry
+    return measures
 
 
-def _free(name: str, found: Mapping[str, Any]) -> str:
+def _free(name: str, taken: Mapping[str, Any]) -> str:
     """A name that no earlier design of the comparison has."""
-    return name if name not in found else f"{name} ({len(found) + 1})"
+    return name if name not in taken else f"{name} ({len(taken) + 1})"
 
 
 def _tree_entry(design: TreeDesign, whole: Mapping[str, Any], demand: bool) -> dict[str, Any]:
@@ -266,12 +266,12 @@ def compare_walks(
     from hyperleg_design.report.evaluation_text import evaluation_rows
     from hyperleg_design.simulation.toe_swap import Swap
 
-    found: dict[str, Any] = {}
+    by_protocol: dict[str, Any] = {}
     for protocol in protocols:
         jobs = [
-            (i, design, one.path)
+            (i, design, policy.path)
             for i, design in enumerate(designs)
-            for one in policies_for(protocol, design.variant, seeds)
+            for policy in policies_for(protocol, design.variant, seeds)
         ]
         done = evaluate_many(
             [path for _, _, path in jobs],
@@ -281,30 +281,30 @@ def compare_walks(
             kept=0,
             alterations=Swap(swap) if swap else None,
         )
-        done = [swapped(one, swap) for one in done] if swap else done
-        found[protocol] = []
+        done = [swapped(policy, swap) for policy in done] if swap else done
+        by_protocol[protocol] = []
         for i in range(len(designs)):
             own = [e for e, (j, _, _) in zip(done, jobs, strict=True) if j == i]
             rows = {row["measure"]: row for row in evaluation_rows(own)}
-            found[protocol].append(
+            by_protocol[protocol].append(
                 {"policy": own[0].trained.text()}
                 | {
                     name: {k: rows[name][k] for k in ("mean", "low", "high")}
                     for name in MEASURED[protocol]
                 }
             )
-    return found
+    return by_protocol
 
 
-def compare_text(found: dict[str, Any]) -> str:
+def compare_text(measures: dict[str, Any]) -> str:
     """Lay out a comparison for a terminal, with a row for each measure and a column for each
     design.
     """
     rows: dict[str, list[object]] = {}
-    for name in found:
-        for key, value in _flat(found[name]).items():
-            rows.setdefault(key, [""] * len(found))[list(found).index(name)] = value
-    return table(["measure", *found], [[key, *values] for key, values in rows.items()])
+    for name in measures:
+        for key, value in _flat(measures[name]).items():
+            rows.setdefault(key, [""] * len(measures))[list(measures).index(name)] = value
+    return table(["measure", *measures], [[key, *values] for key, values in rows.items()])
 
 
 def _flat(entry: dict[str, Any], prefix: str = "") -> dict[str, object]:

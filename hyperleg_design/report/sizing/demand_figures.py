@@ -377,7 +377,7 @@ def capability_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
         )
         for axes, direction in zip(grid[0], directions, strict=True):
             for number, design in enumerate(designs):
-                found = {
+                by_posture = {
                     r["posture"]: r.get("body_weights")
                     for r in rows
                     if r["design"] == design and r["direction"] == direction
@@ -385,9 +385,9 @@ def capability_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
                 at = [
                     i - 0.4 + width * (number + 0.5)
                     for i, p in enumerate(postures)
-                    if found.get(p) is not None
+                    if by_posture.get(p) is not None
                 ]
-                tall = [found[p] for p in postures if found.get(p) is not None]
+                tall = [by_posture[p] for p in postures if by_posture.get(p) is not None]
                 label = _VARIANT_LABEL.get(design, design)
                 bars = axes.bar(
                     at, tall, 0.92 * width, color=VARIANT_COLOUR.get(design), label=label
@@ -405,12 +405,15 @@ def capability_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
 def _first(demands: Mapping[str, Demand]) -> Demand:
     if not demands:
         raise InputError("demand figure", "demands", 0, "expects at least one")
-    found = list(demands.values())
-    if len({d.motion.name for d in found}) > 1:
+    first_demands = list(demands.values())
+    if len({d.motion.name for d in first_demands}) > 1:
         raise InputError(
-            "demand figure", "demands", [d.motion.name for d in found], "must be of one motion"
+            "demand figure",
+            "demands",
+            [d.motion.name for d in first_demands],
+            "must be of one motion",
         )
-    return found[0]
+    return first_demands[0]
 
 
 def _curve(key: str, demand: Demand) -> dict[str, Any]:

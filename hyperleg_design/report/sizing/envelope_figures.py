@@ -79,9 +79,9 @@ def torque_speed_figure(
         import matplotlib.pyplot as plt
 
         figure, axes = plt.subplots(2, 2, figsize=(9.2, 6.9), constrained_layout=True)
-        one = envelope.select(pair[:1])
+        single = envelope.select(pair[:1])
         for axis, motor, side in zip(axes[0], pair, ("left", "right"), strict=True):
-            _envelope(axis, one, 1.0, 1.0, rated)
+            _envelope(axis, single, 1.0, 1.0, rated)
             _operating(axis, points, np.eye(matrix.shape[1])[motor], np.eye(matrix.shape[1])[motor])
             axis.set(
                 title=f"{side} ankle motor",
@@ -93,7 +93,7 @@ def torque_speed_figure(
             (axes[1, 1], transmission.ANKLE_ROLL, -1.0, "ankle roll (L − R)"),
         ):
             ratio = abs(float(matrix[row, pair[0]]))
-            _envelope(axis, one, 2 * ratio, 1 / ratio, rated)
+            _envelope(axis, single, 2 * ratio, 1 / ratio, rated)
             mixed = np.zeros(matrix.shape[1])
             mixed[pair] = 1.0, sign
             _operating(axis, points, mixed * ratio, mixed / (2 * ratio))
@@ -108,18 +108,18 @@ def _motor_points(
     """Motor torques and speeds `(t, motors)` of joint-space points."""
     if torque is None and velocity is None:
         return None
-    found = [None if values is None else np.shape(values) for values in (torque, velocity)]
+    shapes = [None if values is None else np.shape(values) for values in (torque, velocity)]
     if (
         torque is None
         or velocity is None
-        or found[0] != found[1]
+        or shapes[0] != shapes[1]
         or np.ndim(torque) != 2
         or np.shape(torque)[1] != len(matrix)
     ):
         raise InputError(
             "torque_speed_figure",
             "torque, velocity",
-            found,
+            shapes,
             f"expects both, of shape (t, {len(matrix)})",
         )
     heat = motor_envelope(design).power_constant
@@ -129,16 +129,16 @@ def _motor_points(
 
 
 def _envelope(
-    axis: Axes, one: MotorEnvelope, torque_scale: float, speed_scale: float, rated: float
+    axis: Axes, single: MotorEnvelope, torque_scale: float, speed_scale: float, rated: float
 ) -> None:
     """Regions of one motor's envelope, with torque and speed stretched to the panel's."""
-    free, peak = float(one.no_load_speed[0]), float(one.peak_torque[0])
-    end = min(1.25 * free, float(one.top_speed[0]))
-    corner = float(one.corner_speed[0])
+    free, peak = float(single.no_load_speed[0]), float(single.peak_torque[0])
+    end = min(1.25 * free, float(single.top_speed[0]))
+    corner = float(single.corner_speed[0])
     speed = np.unique(
         np.concatenate([np.linspace(-end, end, 401), [-corner, corner, -free, 0, free]])
     )
-    lower, upper = (limit[:, 0] * torque_scale for limit in torque_limits(one, speed[:, None]))
+    lower, upper = (limit[:, 0] * torque_scale for limit in torque_limits(single, speed[:, None]))
     x = speed * speed_scale
     for part in (speed >= 0, speed <= 0):
         driving = np.sign(speed[part].sum())

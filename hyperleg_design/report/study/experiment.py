@@ -19,25 +19,25 @@ TITLE = "Walking and the T-test, with trained policies"
 
 def experiment(context: Context) -> Made:
     """Ten walks or ten T-tests of every shipped policy, and what they say."""
-    found = evaluate_with_bar(context.policies, progress=context.progress)
-    if not found.policies:
+    evaluated = evaluate_with_bar(context.policies, progress=context.progress)
+    if not evaluated.policies:
         return Made(Section(TITLE, [NO_POLICY]))
     content: list[Any] = [
         "Trained policies in simulation, with cooperative actuation, motor envelopes and friction, deterministic and without assist; hyperleg paper makes the same on a page of its own."
     ]
-    for part in policy_parts(found, context.folder, "policy_"):
+    for part in policy_parts(evaluated, context.folder, "policy_"):
         content += [Heading(part.title), *part.content]
-    return Made(Section(TITLE, content), _facts(found))
+    return Made(Section(TITLE, content), _facts(evaluated))
 
 
-def _facts(found: Evaluated) -> tuple[tuple[str, str], ...]:
+def _facts(evaluated: Evaluated) -> tuple[tuple[str, str], ...]:
     facts = []
     for kind, word in ((WALK, "walks"), (T_TEST, "T-tests")):
         trials = [
             e
-            for group in found.groups(kind)
-            for design in found.designs(group)
-            for e in found.of(group, design)
+            for group in evaluated.groups(kind)
+            for design in evaluated.designs(group)
+            for e in evaluated.of(group, design)
         ]
         if trials:
             fell, arrived = (

@@ -28,10 +28,10 @@ def capability(context: Context) -> Made:
         if row["direction"] == "vertical"
     ]
     free = capability_table(context.variants)
-    found = free + upright
-    write_json(context.folder / "capability.json", found)
+    forces = free + upright
+    write_json(context.folder / "capability.json", forces)
     by_place: dict[tuple[str, str], dict[str, dict[str, Any]]] = {}
-    for row in found:
+    for row in forces:
         by_place.setdefault((row["posture"], row["direction"]), {})[row["design"]] = row
     rows = []
     for (posture, direction), entries in by_place.items():
@@ -85,15 +85,15 @@ def demand(context: Context) -> Made:
     """What planned motions ask of every motor."""
     from hyperleg_design.sizing.demand import demand as demand_of
 
-    found: dict[str, dict[str, Demand]] = {}
+    demands: dict[str, dict[str, Demand]] = {}
     reasons: list[str] = []
     for motion in MOTIONS:
         for name, design in context.variants.items():
             try:
-                found.setdefault(motion, {})[name] = demand_of(design, motion)
+                demands.setdefault(motion, {})[name] = demand_of(design, motion)
             except InfeasibleError as error:
                 reasons.append(f"{name}, {motion}: {error}")
-    summaries = {m: {n: d.summary() for n, d in by.items()} for m, by in found.items()}
+    summaries = {m: {n: d.summary() for n, d in by.items()} for m, by in demands.items()}
     write_json(context.folder / "demand.json", summaries)
     rows = []
     for motion, entries in summaries.items():
@@ -133,7 +133,7 @@ def demand(context: Context) -> Made:
         ),
         f"On the planned walk at 1.33 m/s the active toe changes motor-side power by {100 * ratio:+.1f} % against no toe at equal mass; the locked toe, whose motor still helps, by {100 * (walk['toe_locked']['motor_side'] / walk['toe_removed_matched']['motor_side'] - 1):+.1f} %.",
     ]
-    content += _figures(context, found)
+    content += _figures(context, demands)
     details = []
     for motion, entries in summaries.items():
         for name, s in entries.items():
@@ -185,7 +185,7 @@ def demand(context: Context) -> Made:
     return Made(Section("What motions ask of the motors", content), facts)
 
 
-def _figures(context: Context, found: dict[str, dict[str, Demand]]) -> list[Any]:
+def _figures(context: Context, demands: dict[str, dict[str, Demand]]) -> list[Any]:
     from hyperleg_design.report.sizing.demand_figures import (
         cycle_figure,
         margin_figure,
@@ -193,7 +193,7 @@ def _figures(context: Context, found: dict[str, dict[str, Demand]]) -> list[Any]
         stick_figure_strip,
     )
 
-    walk = found["walk"]
+    walk = demands["walk"]
     pair: dict[str, Demand] = {n: walk[n] for n in ("toe", "toe_removed_matched") if n in walk}
     drawn: list[Any] = [
         context.picture(
@@ -217,12 +217,12 @@ def _figures(context: Context, found: dict[str, dict[str, Demand]]) -> list[Any]
             lambda p: save(margin_figure(walk), p),
         ),
     ]
-    others = [m for m in MOTIONS[1:] if "toe" in found.get(m, {})]
+    others = [m for m in MOTIONS[1:] if "toe" in demands.get(m, {})]
     strips = [
         context.picture(
             m,
             f"The planned {m}, active toe.",
-            lambda p, m=m: save(stick_figure_strip(found[m]["toe"]), p),  # type: ignore[misc]
+            lambda p, m=m: save(stick_figure_strip(demands[m]["toe"]), p),  # type: ignore[misc]
         )
         for m in others
     ]

@@ -32,8 +32,8 @@ LEAD = (
 
 def robot(context: Context) -> Made:
     """Section with pictures of the robot and its variants."""
-    found = analyze(context.design)
-    write_json(context.folder / "analysis.json", found)
+    analysis = analyze(context.design)
+    write_json(context.folder / "analysis.json", analysis)
     design = context.design
     drawn = [
         context.picture(
@@ -87,10 +87,10 @@ def robot(context: Context) -> Made:
         "a comparison of “toe” and “no toe” is also one of a strong and a weak knee. The locked toe, whose motor still helps, and the removal at equal mass separate the two.",
     ]
     facts = (
-        (f"{found['total_mass']:.2f} kg", "total mass, as printed"),
-        (f"{found['leg_mass']:.2f} kg", "one leg, as printed"),
+        (f"{analysis['total_mass']:.2f} kg", "total mass, as printed"),
+        (f"{analysis['leg_mass']:.2f} kg", "one leg, as printed"),
         (
-            f"{100 * found['zonotope_to_box_volume']:.1f} %",
+            f"{100 * analysis['zonotope_to_box_volume']:.1f} %",
             "of the box of maximum torques below the hip can be reached",
         ),
         (

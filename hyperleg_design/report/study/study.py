@@ -65,19 +65,19 @@ def run_study(
             design, variants(design), folder, None if policies is None else Path(policies), progress
         )
         (folder / FIGURES).mkdir()
-        found: list[Section] = []
+        finished: list[Section] = []
         facts: list[tuple[str, str]] = []
         with tqdm(total=len(STEPS), disable=not progress, desc="study", unit="part") as bar:
             for name, step in STEPS.items():
                 bar.set_postfix_str(name)
-                made = step(context)
-                found.append(made.section)
-                facts += made.facts
+                section = step(context)
+                finished.append(section.section)
+                facts += section.facts
                 bar.update()
         page = Page(
             title=f"{design.name}: a biped with active toes, described and sized",
             lead=sections.LEAD,
-            sections=found,
+            sections=finished,
             facts=facts,
             provenance=_provenance(),
         )

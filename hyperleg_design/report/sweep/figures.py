@@ -45,27 +45,27 @@ def draw_sweep(result: SweepResult, folder: str | Path) -> dict[str, str]:
     """
     folder = Path(folder)
     sweep = result.sweep
-    made: dict[str, str] = {}
+    captions: dict[str, str] = {}
     for index, chosen in enumerate(sweep.maps):
         name = f"{sweep.name}-map-{index + 1}.png"
         save(
             map_figure(result, chosen) if chosen.y else curve_figure(result, chosen), folder / name
         )
-        made[name] = (
+        captions[name] = (
             f"{measures.measure_of(chosen.measure).doc} {_fixed_text(sweep, chosen)}".strip()
         )
     if len(sweep.objectives) > 1:
         save(pareto_figure(result), folder / f"{sweep.name}-pareto.png")
-        made[f"{sweep.name}-pareto.png"] = (
+        captions[f"{sweep.name}-pareto.png"] = (
             "Designs that no other beats in every objective, of each variant; a star marks the "
             "unchanged design."
         )
         save(parallel_figure(result), folder / f"{sweep.name}-parallel.png")
-        made[f"{sweep.name}-parallel.png"] = (
+        captions[f"{sweep.name}-parallel.png"] = (
             "Designs of the Pareto fronts over all axes and objectives, before a sample of all "
             "(grey); black is the unchanged design."
         )
-    return made
+    return captions
 
 
 def map_figure(result: SweepResult, chosen: Map) -> Figure:

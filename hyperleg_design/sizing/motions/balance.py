@@ -86,9 +86,9 @@ class Series:
 
     def _over(self, values: np.ndarray, times: int) -> np.ndarray:
         spectrum, frequency = self._spectrum(values)
-        found = np.zeros_like(spectrum)
-        found[1:] = spectrum[1:] / (1j * frequency[1:]) ** times
-        return self._back(found, values)
+        integral = np.zeros_like(spectrum)
+        integral[1:] = spectrum[1:] / (1j * frequency[1:]) ** times
+        return self._back(integral, values)
 
     def _back(self, spectrum: np.ndarray, values: np.ndarray) -> np.ndarray:
         count = 2 * (len(values) - 1) if self.mirrored else len(values)

@@ -125,7 +125,7 @@ def load_pulse(plan: HopPlan, time: np.ndarray) -> np.ndarray:
 
 def _feet(design: Design, plan: HopPlan, time: np.ndarray) -> tuple[FootPath, FootPath]:
     flying = time >= plan.stance
-    found = []
+    feet = []
     for side in SIDES:
         position = np.zeros((3, len(time), 3))
         position[0] = [0.0, SIGN[side] * design.hip.spacing / 2, design.foot.ankle_height]
@@ -133,8 +133,8 @@ def _feet(design: Design, plan: HopPlan, time: np.ndarray) -> tuple[FootPath, Fo
             time[flying], plan.stance, plan.stance + plan.flight, plan.rise
         )
         still = np.zeros((3, len(time)))
-        found.append(FootPath(position, still, still, np.where(flying, SWING, FLAT)))
-    return found[0], found[1]
+        feet.append(FootPath(position, still, still, np.where(flying, SWING, FLAT)))
+    return feet[0], feet[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,19 +219,19 @@ class _Hop:
         target = np.array(
             [sole_middle(self.model.design), touchdown + load_pulse(self.plan, moment)[0, 0]]
         )
-        found = place.copy()
+        placed = place.copy()
         for _ in range(NEWTON_STEPS):
-            q, v, _ = self._row(moment, found, np.eye(3)[:2], np.zeros((2, 3)))
+            q, v, _ = self._row(moment, placed, np.eye(3)[:2], np.zeros((2, 3)))
             miss = target - self.model.center_of_mass(q[0])[[0, 2]]
             if np.max(np.abs(miss)) < CLOSE:
-                return found
+                return placed
             slope = (
                 self._momenta(q, v)[:, :2].T
-                - self._momenta(*self._row(moment, found, np.zeros((1, 3)), np.zeros((1, 3)))[:2])[
+                - self._momenta(*self._row(moment, placed, np.zeros((1, 3)), np.zeros((1, 3)))[:2])[
                     :, :2
                 ].T
             )
-            found[:2] += np.linalg.solve(slope / self._mass, miss)
+            placed[:2] += np.linalg.solve(slope / self._mass, miss)
         raise InfeasibleError(
             f"{self.model.design.name}: no posture puts the centre of mass where the hop needs it"
         )
@@ -261,9 +261,9 @@ class _Hop:
             np.concatenate([np.zeros((1, 3)), np.eye(3)]),
             np.zeros((4, 3)),
         )
-        found = self._momenta(q, v)
+        momenta = self._momenta(q, v)
         target = np.array([0.0, self._mass * load_pulse(self.plan, np.array([moment]))[1, 0], 0.0])
-        return np.linalg.solve((found[1:] - found[0]).T, target - found[0])
+        return np.linalg.solve((momenta[1:] - momenta[0]).T, target - momenta[0])
 
     def _thrust(
         self, moment: float, place: np.ndarray, speed: np.ndarray
@@ -284,11 +284,11 @@ class _Hop:
         """Momentum along x and z, and about y through the centre of mass, `(rows, 3)`."""
         import pinocchio as pin
 
-        found = np.zeros((len(q), 3))
+        momenta = np.zeros((len(q), 3))
         for n in range(len(q)):
             momentum = pin.computeCentroidalMomentum(self.model.model, self.model.data, q[n], v[n])
-            found[n] = momentum.linear[0], momentum.linear[2], momentum.angular[1]
-        return found
+            momenta[n] = momentum.linear[0], momentum.linear[2], momentum.angular[1]
+        return momenta
 
     @property
     def _mass(self) -> float:

@@ -44,12 +44,12 @@ def reference_motion(
         raise InputError("motion", "", name, f"expects one of {', '.join(MOTIONS)}")
     if design.batch_shape:
         raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
-    planner, made = _PLANNERS[name]
-    known = made.__dataclass_fields__  # type: ignore[attr-defined]
+    planner, plan_type = _PLANNERS[name]
+    known = plan_type.__dataclass_fields__  # type: ignore[attr-defined]
     for field, value in plan.items():
         if field not in known:
             raise InputError(
                 name, field, value, f"is no part of the plan; it has {', '.join(known)}"
             )
     counted = {} if samples is None else {"samples": samples}
-    return planner(design, made(**plan), **counted)
+    return planner(design, plan_type(**plan), **counted)

@@ -36,14 +36,14 @@ class SquatPlan:
 
 def standing_feet(design: Design, count: int) -> tuple[FootPath, FootPath]:
     """Both feet flat under the hips, `count` samples; the ankles stand at x = 0."""
-    found = []
+    feet = []
     for side in SIDES:
         position = np.zeros((3, count, 3))
         position[0] = [0.0, SIGN[side] * design.hip.spacing / 2, design.foot.ankle_height]
-        found.append(
+        feet.append(
             FootPath(position, np.zeros((3, count)), np.zeros((3, count)), np.full(count, FLAT))
         )
-    return found[0], found[1]
+    return feet[0], feet[1]
 
 
 def sole_middle(design: Design) -> float:
@@ -89,7 +89,7 @@ def squat(design: Design, plan: SquatPlan | None = None, samples: int = 81) -> M
             ]
         )
 
-    found = balanced_states(
+    states = balanced_states(
         model, feet, pressure, height, Series(plan.period / samples, mirrored=False)
     )
     assumed = {
@@ -100,9 +100,9 @@ def squat(design: Design, plan: SquatPlan | None = None, samples: int = 81) -> M
         "squat",
         model,
         time,
-        found.q,
-        found.v,
-        found.a,
+        states.q,
+        states.v,
+        states.a,
         contact_mask(model, feet),
         feet,
         pressure,

@@ -153,7 +153,7 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
             )[:, None]
         )
 
-    found = balanced_states(
+    states = balanced_states(
         model, feet, pressure, height, Series(end / (samples - 1), mirrored=True), roll=lean
     )
     assumed = {
@@ -168,9 +168,9 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
         "stair",
         model,
         time,
-        found.q,
-        found.v,
-        found.a,
+        states.q,
+        states.v,
+        states.a,
         contact_mask(model, feet),
         feet,
         pressure,

@@ -118,16 +118,16 @@ def walk(design: Design, plan: WalkPlan | None = None, samples: int = 101) -> Mo
             ]
         )
 
-    found = balanced_states(
+    states = balanced_states(
         model, feet, pressure, height, Series(stride_time / samples, mirrored=False), drift, load
     )
     return Motion(
         "walk",
         model,
         time,
-        found.q,
-        found.v,
-        found.a,
+        states.q,
+        states.v,
+        states.a,
         contact_mask(model, feet),
         feet,
         pressure,
@@ -187,7 +187,7 @@ def _pressure(design: Design, plan: WalkPlan, time: np.ndarray) -> np.ndarray:
     both, step = plan.double_support * plan.step_time, plan.step_time
     y = plan.step_width * design.hip.spacing / 2
     rate = (front - back) / (step - both)
-    found = np.zeros((len(time), 3))
+    pressure = np.zeros((len(time), 3))
     for index in range(2):  # the foot that lands at index * step takes over from the other
         sign = 1.0 if index == 0 else -1.0
         x = plan.speed * index * step
@@ -197,6 +197,6 @@ def _pressure(design: Design, plan: WalkPlan, time: np.ndarray) -> np.ndarray:
             local, 0, both, (x - plan.speed * step + front, rate, 0.0), (x + back, rate, 0.0)
         )[0]
         across = quintic(local, 0, both, (-sign * y, 0.0, 0.0), (sign * y, 0.0, 0.0))[0]
-        found[inside, 0] = np.where(local < both, shift, x + back + rate * (local - both))
-        found[inside, 1] = np.where(local < both, across, sign * y)
-    return found
+        pressure[inside, 0] = np.where(local < both, shift, x + back + rate * (local - both))
+        pressure[inside, 1] = np.where(local < both, across, sign * y)
+    return pressure
