@@ -26,6 +26,7 @@ from hyperleg_design.report.walks.evaluated import T_TEST, WALK, Evaluated, miss
 from hyperleg_design.report.walks.learning_figures import learning_figure
 from hyperleg_design.report.walks.planned_part import planned, planned_rows
 from hyperleg_design.report.walks.t_test_figures import t_test_figure
+from hyperleg_design.report.walks.time_table import time_table
 from hyperleg_design.report.walks.versus_figures import change_figure
 from hyperleg_design.report.walks.walk_figures import operating_points_figure
 
@@ -179,6 +180,7 @@ def _table_four(found: Evaluated, draw: Drawer) -> Part:
                     )
                 )
         content.append(draw.together(jobs))
+        content.append(time_table(runs, group, step))
         if set(VARIANTS) <= set(runs):
             content.append(differences(found, group, T_TEST))
     return Part("Table IV: the T-test, beside the paper", content)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from hyperleg_design.evaluation.analysis_plan import load_plan
@@ -86,6 +87,20 @@ def test_a_table_that_lacks_a_robot_is_not_reproduced_and_says_so(parts):
         for item in parts[1]["Table IV: the T-test, beside the paper"]
         if isinstance(item, str)
     )
+
+
+def test_the_time_of_a_t_test_is_broken_down(parts, found):
+    tables = [
+        item
+        for item in flat(parts[1]["Table IV: the T-test, beside the paper"])
+        if isinstance(item, Table) and item.headers[0] == "stretch"
+    ]
+    (table,) = tables
+    assert [row[0] for row in table.rows][:2] == ["A to B", "turn at B (1)"]
+    (run,) = found.of("t_test", "toe")
+    total = sum(float(row[1]) for row in table.rows)
+    assert total == pytest.approx(np.mean(run.end_times), abs=0.2)
+    assert "16.06 s" in table.caption
 
 
 def test_the_pad_behind_the_contact_is_stated(parts):

@@ -1,0 +1,75 @@
+"""Where the time of T-tests goes, as a table of a page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.evaluation import paper
+from hyperleg_design.evaluation.result import Evaluation
+from hyperleg_design.evaluation.rollout import ARRIVED
+from hyperleg_design.evaluation.stretches import NEAR, Stretch, stretches
+from hyperleg_design.report.page import Table
+
+
+def stretch_means(
+    runs: Sequence[Evaluation], step: float
+) -> dict[str, tuple[float, float, float, float]]:
+    """Means over all runs that arrived.
+
+    Args:
+        runs: evaluations under one T-test protocol.
+        step: between two points of their paths [s].
+
+    Returns:
+        Of each straight and turn, in order: time [s], mean speed, least and largest speed [m/s].
+        Empty where no run arrived.
+    """
+    found: dict[str, list[Stretch]] = {}
+    for one in runs:
+        for path, outcome in zip(one.paths, one.outcomes, strict=True):
+            if outcome == ARRIVED:
+                for stretch in stretches(path, one.protocol, step):
+                    found.setdefault(stretch.name, []).append(stretch)
+    keys = ("time", "mean_speed", "slowest", "fastest")
+    return {
+        name: tuple(float(np.mean([getattr(s, key) for s in some])) for key in keys)  # type: ignore[misc]
+        for name, some in found.items()
+    }
+
+
+def time_table(runs: Mapping[str, Sequence[Evaluation]], group: str, step: float) -> Any:
+    """A row a straight or turn: time and speeds of each design, and the paper's mean speed below.
+
+    Args:
+        runs: evaluations by design.
+        group: of trainings, for the caption.
+        step: between two points of their paths [s].
+    """
+    means = {design: stretch_means(some, step) for design, some in runs.items()}
+    means = {design: some for design, some in means.items() if some}
+    if not means:
+        return f"No T-test of {group.replace('_', ' ')} arrived, so its time is not broken down."
+    names = list(next(iter(means.values())))
+    head, rows = ["stretch"], [[name] for name in names]
+    for design, some in means.items():
+        head += [f"{design}: time [s]", "mean speed [m/s]", "slowest", "fastest"]
+        for row in rows:
+            row += [f"{value:.2f}" for value in some[row[0]]]
+    turning = [
+        f"{design}: {sum(v[0] for n, v in some.items() if n.startswith('turn')):.1f} s of "
+        f"{sum(v[0] for v in some.values()):.1f} s"
+        for design, some in means.items()
+    ]
+    printed = {item.measure: item for item in paper.TABLE_FOUR}
+    time, speed = printed["time"], printed["mean_speed"]
+    return Table(
+        head,
+        rows,
+        f"Where the time goes, {group.replace('_', ' ')}: means over runs that arrived; a turn is "
+        f"the time within {NEAR:g} m of its waypoint; speeds are means over 0.2 s. Turning takes, "
+        f"{'; '.join(turning)}. The paper prints no times of legs: its runs took {time.toe:g} s "
+        f"with the toe at {speed.toe:g} m/s on average.",
+    )
