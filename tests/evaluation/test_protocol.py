@@ -117,5 +117,5 @@ def test_nonsense_names_file_field_and_remedy(write, text, field, remedy):
 
 
 def test_a_missing_protocol_lists_the_shipped():
-    with pytest.raises(InputError, match="t_test, walk"):
+    with pytest.raises(InputError, match="t_test, t_test_fast, walk"):
         load_protocol("wlk")

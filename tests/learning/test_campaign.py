@@ -11,6 +11,7 @@ import yaml
 
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.analysis_plan import load_plan
+from hyperleg_design.evaluation.protocol import load_protocol
 from hyperleg_design.learning import campaign as module
 from hyperleg_design.learning.campaign import (
     campaign_status,
@@ -18,6 +19,7 @@ from hyperleg_design.learning.campaign import (
     run_campaign,
     status_table,
 )
+from hyperleg_design.learning.preset import load_preset
 
 from .conftest import tiny_mapping
 
@@ -104,6 +106,17 @@ def test_status_of_each_training(write, tmp_path: Path) -> None:
     assert len(table) == 1 + 4 + 1
     assert table[-1].startswith("1 of 4 done; ")
     assert "1.30" in table[1]
+
+
+def test_the_t_tests_of_the_fair_study_are_those_of_the_plan() -> None:
+    runs, plan = load_campaign("campaign_t_test").runs, load_plan()
+    assert {run.design for run in runs} == set(plan.designs)
+    assert len(runs) == len(plan.designs) * plan.seeds["t_test"]
+    assert {(run.task, run.preset) for run in runs} == {("t_test_free", "t_test")}
+    fast = load_protocol("t_test_fast")
+    caps = [r.high for s in load_preset("t_test").stages("t_test_free") for r in s.ramps]
+    assert fast.speed_cap == 3.8
+    assert 3.8 in caps
 
 
 def test_foreign_folders_stay(write, tmp_path: Path) -> None:

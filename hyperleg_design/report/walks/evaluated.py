@@ -14,6 +14,7 @@ from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
 from hyperleg_design.evaluation.result import Evaluation, trial_table
+from hyperleg_design.evaluation.robustness import CONDITIONS, robustness
 from hyperleg_design.evaluation.shipped import Shipped, check_different, shipped_policies
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.learning.campaign import load_campaign
@@ -29,7 +30,9 @@ TIME_CONSTANTS = (0.01, 0.014, 0.02, 0.028, 0.04)
 """Time constants of the contact over which impacts are shown [s]; the first is the stiffest that
 steps of 5 ms allow."""
 BAND_SEEDS, BAND_TRIALS = 3, 4
-"""Trainings of each design, and walks of each, at every time constant."""
+"""Trainings of each design, and walks of each, at every time constant and speed."""
+SPEED = "speed"
+"""Condition of `robustness` that the cost of transport is shown over."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +46,9 @@ class Evaluated:
     """Trainings of the shipped campaign that are not there."""
     band: Mapping[str, Mapping[float, list[Evaluation]]] = field(default_factory=dict)
     """Walks over a band of contact time constants [s], by design."""
+    speeds: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+    """Trials over commanded speeds, as `robustness` gives them, by group; of groups that observe no
+    gait clock and were trained for all of these speeds."""
 
     def groups(self, kind: str) -> list[str]:
         """Groups of trainings that were run under a kind of protocol, in the order of their
@@ -165,11 +171,24 @@ def evaluate_shipped(
         if jobs
         else []
     )
+    speeds = {
+        group: robustness(
+            [p.path for p in some],
+            [SPEED],
+            protocol=few,
+            workers=processes,
+        )
+        for group, some in _free(policies, kinds).items()
+    }
     over: dict[str, dict[float, list[Evaluation]]] = {}
     for (policy, constant), one in zip(jobs, walks, strict=True):
         over.setdefault(policy.design, {}).setdefault(constant, []).append(one)
     return Evaluated(
-        policies, [found[i] for i in range(len(policies))], missing_trainings(policies), over
+        policies,
+        [found[i] for i in range(len(policies))],
+        missing_trainings(policies),
+        over,
+        speeds,
     )
 
 
@@ -236,6 +255,26 @@ def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:
         for design in VARIANTS
         for p in [q for q in last if (q.group, q.design) == (group, design)][:BAND_SEEDS]
     ]
+
+
+def _free(policies: Sequence[Shipped], kinds: Sequence[str]) -> dict[str, list[Shipped]]:
+    """Last policies of the first trainings of each group and design that choose their cadence by
+    themselves over all speeds of `SPEED`, by group.
+    """
+    fastest = max(CONDITIONS[SPEED].levels)
+    found: dict[str, list[Shipped]] = {}
+    counts: dict[tuple[str, str], int] = {}
+    for policy, kind in zip(policies, kinds, strict=True):
+        task = load_policy(policy.path).task if kind == WALK and not policy.late else None
+        if task is None or "clock" in task.observations["policy"]:
+            continue
+        if getattr(task.commands, "forward_high", 0.0) < fastest:
+            continue
+        key = (policy.group, policy.design)
+        counts[key] = counts.get(key, 0) + 1
+        if counts[key] <= BAND_SEEDS:
+            found.setdefault(policy.group, []).append(policy)
+    return found
 
 
 def _kind(evaluation: Evaluation) -> str:

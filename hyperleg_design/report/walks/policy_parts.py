@@ -45,6 +45,8 @@ def parts(found: Evaluated, draw: Drawer) -> list[Part]:
             walks.confound(found, draw),
             walks.cycle(found, draw),
         ]
+    if found.speeds:
+        made.append(walks.speeds(found, draw))
     if found.groups(T_TEST):
         made.append(_table_four(found, draw))
     if found.band:

@@ -14,6 +14,7 @@ from hyperleg_design.evaluation.believable import walk_findings
 from hyperleg_design.evaluation.foot_pad import heel_mass, pad_of_contact
 from hyperleg_design.evaluation.measures import measure_of
 from hyperleg_design.evaluation.result import by_checkpoint
+from hyperleg_design.evaluation.robustness import curves
 from hyperleg_design.evaluation.steps import measured_steps
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report.drawer import Drawer, Part
@@ -30,6 +31,7 @@ from hyperleg_design.report.walks.beside_paper import (
     verdict,
 )
 from hyperleg_design.report.walks.evaluated import WALK, Evaluated
+from hyperleg_design.report.walks.robustness_figure import robustness_figure
 from hyperleg_design.report.walks.versus_figures import attribution_figure, change_figure
 from hyperleg_design.report.walks.walk_figures import cycle_power_figure, impact_band_figure
 from hyperleg_design.robot.load import walker
@@ -89,6 +91,22 @@ def walks(found: Evaluated, draw: Drawer) -> Part:
         Table(["demand", "range", *(f"{group}: {design}" for group, design in columns)], rows),
     ]
     return Part("Walks that a person would believe", content)
+
+
+def speeds(found: Evaluated, draw: Drawer) -> Part:
+    """Cost of transport over commanded speed, cadence chosen by the policies."""
+    content: list[Any] = [
+        "Walks at commanded speeds from 0.6 to 2.0 m/s by policies that observe no gait clock, so that they choose their cadence: share of trials that arrive, and cost of transport over the steady strides of those that do."
+    ]
+    for group, table in found.speeds.items():
+        content.append(
+            draw(
+                f"speeds_{group}",
+                f"Over commanded speed, {group.replace('_', ' ')}; bands are 95 % intervals.",
+                later(robustness_figure, curves(table)),
+            )
+        )
+    return Part("Cost of transport over speed", content)
 
 
 def table_three(found: Evaluated, draw: Drawer) -> Part:

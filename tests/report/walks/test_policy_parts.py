@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from hyperleg_design.evaluation.analysis_plan import load_plan
@@ -12,6 +13,8 @@ from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Cell, Details, Missing, Picture, Table
 from hyperleg_design.report.pictures import motion
 from hyperleg_design.report.walks import policy_parts as study_policies
+from hyperleg_design.report.walks import walk_parts
+from hyperleg_design.report.walks.evaluated import Evaluated
 from hyperleg_design.writing import write_bytes
 
 
@@ -101,6 +104,30 @@ def test_the_time_of_a_t_test_is_broken_down(parts, found):
     total = sum(float(row[1]) for row in table.rows)
     assert total == pytest.approx(np.mean(run.end_times), abs=0.2)
     assert "16.06 s" in table.caption
+
+
+def test_cost_of_transport_is_drawn_over_speed_where_cadence_is_free(tmp_path):
+    (tmp_path / FIGURES).mkdir()
+    rows = [
+        {
+            "condition": "speed",
+            "level": level,
+            "variant": design,
+            "policy": f"{design}-{seed}",
+            "seed": seed,
+            "outcome": "arrived",
+            "arrived": 1.0,
+            "steady_cost_of_transport": 0.3 + 0.1 * abs(level - 1.2) + 0.01 * seed,
+        }
+        for level in (0.6, 1.33, 2.0)
+        for design in ("toe", "toe_removed_matched")
+        for seed in range(3)
+    ]
+    found = Evaluated([], [], speeds={"walk_free": pd.DataFrame(rows)})
+    part = walk_parts.speeds(found, Drawer(tmp_path))
+    (picture,) = (item for item in part.content if isinstance(item, Picture))
+    assert (tmp_path / picture.file).stat().st_size > 10_000
+    assert "walk free" in picture.caption
 
 
 def test_the_pad_behind_the_contact_is_stated(parts):
