@@ -1,5 +1,5 @@
-"""ROS 2 bags: sqlite3 (`.db3`) and MCAP, with `sensor_msgs` JointState, Imu and BatteryState in
-CDR.
+"""ROS 2 bags: sqlite3 (`.db3`) and MCAP, with `sensor_msgs` JointState, Imu and BatteryState, whose
+bytes the library `rosbags` decodes.
 
 Positions, velocities and efforts (taken as joint torques) come from JointState topics; a JointState
 topic whose name speaks of commands gives position targets. The clock is that of the joint states'
@@ -12,20 +12,25 @@ from __future__ import annotations
 
 import contextlib
 import sqlite3
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.logs import log as logs
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.logs.readers import cdr, mcap
+from hyperleg_design.gap.logs.readers import mcap
 from hyperleg_design.gap.logs.readers.source import beside, made_log
 from hyperleg_design.gap.logs.readers.timebase import onto, sorted_stream
 
+JOINT_STATE = "sensor_msgs/msg/JointState"
+IMU = "sensor_msgs/msg/Imu"
+BATTERY = "sensor_msgs/msg/BatteryState"
+READ = (JOINT_STATE, IMU, BATTERY)
+"""Types that are decoded."""
 SQLITE = b"SQLite format 3\0"
 COMMANDS = ("command", "cmd", "target", "desired", "reference", "goal", "setpoint")
 """Words in the name of a topic whose joint states are targets."""
@@ -65,7 +70,7 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
     states = {
         topic: s
         for (topic, kind), s in streams.items()
-        if kind == cdr.JOINT_STATE and not _commands(topic)
+        if kind == JOINT_STATE and not _commands(topic)
     }
     if not states:
         there = sorted({topic for topic, _ in streams})
@@ -73,7 +78,7 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
             path.name,
             "topics",
             there,
-            f"holds no joint states: expects {cdr.JOINT_STATE} with positions",
+            f"holds no joint states: expects {JOINT_STATE} with positions",
         )
     main = max(states, key=lambda topic: len(states[topic].time))
     time, signals, disorder = states[main].arrays()
@@ -85,7 +90,7 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
         if topic == main or not stream.rows:
             continue
         own, values, _ = stream.arrays()
-        is_target = kind == cdr.JOINT_STATE and _commands(topic)
+        is_target = kind == JOINT_STATE and _commands(topic)
         if is_target:
             values = {
                 c.replace("position/", "position_target/", 1): v
@@ -119,6 +124,7 @@ def _streams(parts: list[Path], where: str) -> tuple[dict[tuple[str, str], _Stre
     streams: dict[tuple[str, str], _Stream] = {}
     remarks: list[str] = []
     held = 0
+    decode = _decoder(where)
     for part in parts:
         for message in _messages(part):
             if message.encoding != "cdr":
@@ -126,12 +132,7 @@ def _streams(parts: list[Path], where: str) -> tuple[dict[tuple[str, str], _Stre
                     where, message.topic, message.encoding, "is no known encoding: expects cdr"
                 )
             stream = streams.setdefault((message.topic, message.type), _Stream())
-            try:
-                stamp, columns, row = _decoded(message)
-            except cdr.CdrError as error:
-                raise InputError(
-                    where, message.topic, None, f"holds a damaged message: it {error}"
-                ) from None
+            stamp, columns, row = _decoded(decode(message))
             if not stream.columns:
                 stream.columns = columns
             elif stream.columns != columns:
@@ -152,36 +153,73 @@ def _reordered(wanted: tuple[str, ...], columns: tuple[str, ...], row: np.ndarra
     return np.array([have.get(column, np.nan) for column in wanted])
 
 
-def _decoded(message: mcap.Message) -> tuple[float, tuple[str, ...], np.ndarray]:
-    if message.type == cdr.IMU:
-        stamp, row = cdr.imu(message.data)
-        return stamp, IMU_COLUMNS, row
-    if message.type == cdr.BATTERY:
-        stamp, voltage = cdr.battery(message.data)
-        return stamp, (logs.BATTERY,), np.array([voltage])
-    state = cdr.joint_state(message.data)
+def _decoder(where: str) -> Callable[[mcap.Message], Any]:
+    """What decodes messages by their types; it raises an `InputError` on damaged ones.
+
+    Raises:
+        InputError: the library is not installed.
+    """
+    try:
+        from rosbags.serde import SerdeError
+        from rosbags.typesys import Stores, get_typestore
+    except ImportError:
+        raise InputError(where, "", None, mcap.INSTALL) from None
+    types = get_typestore(Stores.ROS2_HUMBLE)
+
+    def decode(message: mcap.Message) -> Any:
+        try:
+            return types.deserialize_cdr(message.data, message.type)
+        except SerdeError as error:
+            raise InputError(
+                where, message.topic, None, f"holds a damaged message ({in_short(error, 80)})"
+            ) from None
+
+    return decode
+
+
+def _decoded(message: Any) -> tuple[float, tuple[str, ...], np.ndarray]:
+    """Stamp [s], columns and values of a decoded message of one of the types `READ`."""
+    stamp = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
+    match message.__msgtype__:
+        case kind if kind == IMU:
+            o = message.orientation
+            parts = [
+                _measured([o.w, o.x, o.y, o.z], message.orientation_covariance),
+                _measured(_xyz(message.angular_velocity), message.angular_velocity_covariance),
+                _measured(
+                    _xyz(message.linear_acceleration), message.linear_acceleration_covariance
+                ),
+            ]
+            return stamp, IMU_COLUMNS, np.concatenate(parts)
+        case kind if kind == BATTERY:
+            return stamp, (logs.BATTERY,), np.array([float(message.voltage)])
     columns: list[str] = []
-    parts: list[np.ndarray] = []
+    rows: list[np.ndarray] = []
     for signal, values in (
-        ("position", state.position),
-        ("velocity", state.velocity),
-        ("joint_torque", state.effort),
+        ("position", message.position),
+        ("velocity", message.velocity),
+        ("joint_torque", message.effort),
     ):
-        if len(values) and len(values) == len(state.names):
-            columns += [f"{signal}/{name}" for name in state.names]
-            parts.append(values)
-    return (
-        state.stamp,
-        tuple(columns),
-        np.concatenate(parts).astype(float) if parts else np.empty(0),
-    )
+        if len(values) and len(values) == len(message.name):
+            columns += [f"{signal}/{name}" for name in message.name]
+            rows.append(np.asarray(values, float))
+    return stamp, tuple(columns), np.concatenate(rows) if rows else np.empty(0)
+
+
+def _xyz(vector: Any) -> list[float]:
+    return [vector.x, vector.y, vector.z]
+
+
+def _measured(values: list[float], covariance: np.ndarray) -> np.ndarray:
+    """Values, NaN where the first covariance is -1: by ROS's convention no such measurement."""
+    return np.full(len(values), np.nan) if covariance[0] == -1 else np.array(values, float)
 
 
 def _messages(part: Path) -> Iterator[mcap.Message]:
     with part.open("rb") as stream:
         magic = stream.read(16)
     if magic.startswith(mcap.MAGIC):
-        yield from mcap.messages(part, cdr.READ)
+        yield from mcap.messages(part, READ)
         return
     if magic != SQLITE:
         raise InputError(
@@ -194,14 +232,14 @@ def _messages(part: Path) -> Iterator[mcap.Message]:
         with contextlib.closing(
             sqlite3.connect(f"{part.resolve().as_uri()}?mode=ro", uri=True)
         ) as base:
-            marks = ", ".join("?" for _ in cdr.READ)
+            marks = ", ".join("?" for _ in READ)
             query = (
                 "SELECT topics.name, topics.type, topics.serialization_format, messages.timestamp, "
                 "messages.data FROM messages "
                 f"JOIN topics ON messages.topic_id = topics.id WHERE topics.type IN ({marks}) "
                 f"ORDER BY messages.timestamp, messages.id"
             )
-            for topic, kind, encoding, time, data in base.execute(query, cdr.READ):
+            for topic, kind, encoding, time, data in base.execute(query, READ):
                 yield mcap.Message(topic, kind, encoding, time * 1e-9, bytes(data))
     except sqlite3.Error as error:
         raise InputError(part.name, "", None, f"is damaged ({error})") from None
