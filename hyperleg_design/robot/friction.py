@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 FRICTION_SPEED = 0.1
 """Width v_m of the Coulomb friction's tanh [rad/s] (assumed; the paper does not print it)."""
 
-Law = Callable[["HyperLeg"], tuple[np.ndarray, np.ndarray]]
+Law = Callable[["HyperLeg | TreeDesign"], tuple[np.ndarray, np.ndarray]]
 _LAWS: dict[str, Law] = {}
 
 
@@ -49,8 +49,7 @@ def friction_law(name: str) -> Callable[[Law], Law]:
 
 
 def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
-    """Friction of the joints of one limb by the design's law; declared in a design that writes its
-    tree out.
+    """Friction of the joints of one limb by the design's law.
 
     Args:
         design: a robot or batch.
@@ -63,9 +62,7 @@ def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
     Raises:
         InputError: no such law.
     """
-    if isinstance(design, TreeDesign):
-        return tree_limb.of_joints(design, "coulomb"), tree_limb.of_joints(design, "viscous")
-    design = cast("HyperLeg", design)
+    design = cast("HyperLeg | TreeDesign", design)
     if design.friction.law not in _LAWS:
         raise InputError(
             design.source or design.name,
@@ -74,20 +71,20 @@ def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
             f"expects one of {', '.join(sorted(_LAWS))}",
         )
     coulomb, viscous = _LAWS[design.friction.law](design)
-    if design.toe.joint == "passive":
+    if not isinstance(design, TreeDesign) and design.toe.joint == "passive":
         place = np.arange(len(JOINTS)) == JOINTS.index("toe")
         viscous = viscous + np.expand_dims(design.toe.damping, -1) * place
     return coulomb, viscous
 
 
 @friction_law("declared")
-def declared(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
+def declared(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]:
     """The declared friction, whatever motors and reductions."""
     return _declared(design, "coulomb"), _declared(design, "viscous")
 
 
 @friction_law("reflected")
-def reflected(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
+def reflected(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]:
     """The motors' share reflected through the reductions; see the module."""
     share = np.expand_dims(design.friction.motor_share, -1)
     matrix, reference = gear.absolute_reductions(design)
@@ -103,6 +100,8 @@ def reflected(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
     return np.maximum(coulomb, 0.0), scaled("viscous", 2)
 
 
-def _declared(design: HyperLeg, field: str) -> np.ndarray:
+def _declared(design: HyperLeg | TreeDesign, field: str) -> np.ndarray:
+    if isinstance(design, TreeDesign):
+        return tree_limb.of_joints(design, field)
     values: list[Any] = [getattr(getattr(design.joints, joint), field) for joint in JOINTS]
     return np.stack(np.broadcast_arrays(*values), -1).astype(float)

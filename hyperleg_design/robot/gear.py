@@ -9,6 +9,10 @@ stage's output and r a total reduction, |M| of `transmission.joint_from_motor`:
     mass of a stage              m = k T                   similar stages: m ~ length^3
     loss under load              1 - eta = loss log2(r)    equal stages in series, small losses
 
+A design that writes its tree out has a reference build, too: the motor and gear under `reference`,
+those of its file by default, with the reductions behind the gears that it has now. Its stages behind
+the gears are part of the links' masses, whatever the gears.
+
 A rotor's declared inertia holds that of its gear. It never falls below the share that similar gears
 leave if all of it were the gear's, (T / T_reference)^(5/3), so it stays positive.
 
@@ -59,7 +63,7 @@ class GearChange:
     """Additional mass of the stage of each joint of `STAGE_PLACES` [kg], `(...)`."""
 
 
-Law = Callable[["HyperLeg"], GearChange]
+Law = Callable[["HyperLeg | TreeDesign"], GearChange]
 _LAWS: dict[str, Law] = {}
 
 
@@ -73,7 +77,7 @@ def gear_law(name: str) -> Callable[[Law], Law]:
     return register
 
 
-def gear_change(design: HyperLeg) -> GearChange:
+def gear_change(design: HyperLeg | TreeDesign) -> GearChange:
     """Changes against the reference build by the design's law.
 
     Raises:
@@ -90,21 +94,19 @@ def gear_change(design: HyperLeg) -> GearChange:
 
 
 @gear_law("declared")
-def declared(design: HyperLeg) -> GearChange:
+def declared(design: HyperLeg | TreeDesign) -> GearChange:
     """No change, whatever the reductions."""
     return GearChange()
 
 
 @gear_law("catalogue")
-def catalogue(design: HyperLeg) -> GearChange:
+def catalogue(design: HyperLeg | TreeDesign) -> GearChange:
     """Similar gears and stages for other torques, and equal stages in series; see the module."""
     gears = design.gears
     matrix, reference = absolute_reductions(design)
     peak, reference_peak = peak_torques(design)
-    at_gear = (
-        _of_motors([getattr(design.actuators, a).gear for a in ACTUATOR_OF_MOTOR]) * peak,
-        _of_motors([reference_part(design, a, "gear") for a in ACTUATOR_OF_MOTOR]) * reference_peak,
-    )
+    own, stated = actuator_parts(design, "gear"), reference_parts(design, "gear")
+    at_gear = (_of_motors(own) * peak, _of_motors(stated) * reference_peak)
     growth = (at_gear[0] / at_gear[1]) ** (5 / 3)
     inertia = np.maximum(
         np.expand_dims(gears.inertia_per_torque, -1) * at_gear[1] ** (5 / 3) * (growth - 1.0),
@@ -115,16 +117,13 @@ def catalogue(design: HyperLeg) -> GearChange:
     )
     stage = {
         name: gears.stage_mass_per_torque * at_joint[..., JOINTS.index(name)]
-        for name in STAGE_PLACES
+        for name in ({} if isinstance(design, TreeDesign) else STAGE_PLACES)
     }
     # A motor that a design decouples from a joint has no loss there, before or after.
     coupled = (matrix > 0) & (reference > 0)
     doublings = np.log2(np.where(coupled, matrix, 1.0) / np.where(coupled, reference, 1.0))
     rated = _of_motors(
-        [
-            motors.gather(getattr(design.actuators, a).motor, lambda m: m.rated_torque)
-            for a in ACTUATOR_OF_MOTOR
-        ]
+        [motors.gather(name, lambda m: m.rated_torque) for name in actuator_parts(design, "motor")]
     ) * installed(design)
     load = np.expand_dims(gears.loss_per_doubling, -1) * transmission.joint_torque(
         matrix * doublings, rated
@@ -134,44 +133,59 @@ def catalogue(design: HyperLeg) -> GearChange:
 
 def rotor_inertia(design: RobotDesign) -> np.ndarray:
     """Inertia that turns with each motor, the rotor and the change of its gear, `(..., motors)`
-    [kg m^2]; of HyperLeg's seven. A design that writes its tree out has the rotors alone.
+    [kg m^2]; of HyperLeg's seven.
     """
     rotors = motors.motor_arrays(design).rotor_inertia
-    if isinstance(design, TreeDesign):
-        return rotors
-    return np.asarray(rotors + gear_change(cast("HyperLeg", design)).rotor_inertia, float)
+    change = gear_change(cast("HyperLeg | TreeDesign", design))
+    return np.asarray(rotors + change.rotor_inertia, float)
 
 
-def absolute_reductions(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
-    """|M| of the design and of its reference build in the design's posture, each `(..., 7, 7)`
-    [-].
+def absolute_reductions(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]:
+    """|M| of the design and of its reference build in the design's posture, each `(..., joints,
+    motors)` [-], of HyperLeg `(..., 7, 7)`.
     """
+    if isinstance(design, TreeDesign):
+        matrix = np.abs(transmission.joint_from_motor(design))
+        gears = [_of_motors(part(design, "gear")) for part in (reference_parts, actuator_parts)]
+        return matrix, matrix * (gears[0] / gears[1])[..., None, :]
     return (
         np.abs(transmission.full_joint_from_motor(design)),
         np.abs(transmission.reference_joint_from_motor(design)),
     )
 
 
-def peak_torques(design: HyperLeg) -> tuple[np.ndarray, np.ndarray]:
-    """Peak torque of the seven motors of a leg, of the design and of its reference build [Nm], each
-    `(..., 7)`; a toe motor that is not installed counts.
+def peak_torques(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]:
+    """Peak torque of the motors of a limb, of the design and of its reference build [Nm], each
+    `(..., motors)`; HyperLeg's toe motor counts where it is not installed.
     """
 
     def peak(names: list[Any]) -> np.ndarray:
-        kind = design.electrical.constants
+        kind = design.electrical_section.constants
         return _of_motors([motors.gather(n, lambda m: m.peak_torque(kind)) for n in names])
 
     return (
-        peak([getattr(design.actuators, a).motor for a in ACTUATOR_OF_MOTOR]),
-        peak([reference_part(design, a, "motor") for a in ACTUATOR_OF_MOTOR]),
+        peak(actuator_parts(design, "motor")),
+        peak(reference_parts(design, "motor")),
     )
 
 
-def installed(design: HyperLeg) -> np.ndarray:
-    """1 for each motor that is there, 0 for a toe motor that is not, `(7,)`."""
-    there = np.ones(len(ACTUATOR_OF_MOTOR))
+def installed(design: HyperLeg | TreeDesign) -> np.ndarray:
+    """1 for each motor that is there, 0 for a toe motor that is not, `(motors,)`."""
+    there = np.ones(len(design.every_actuator))
     there[len(transmission.motor_names(design)) :] = 0.0
     return there
+
+
+def actuator_parts(design: HyperLeg | TreeDesign, part: str) -> list[Any]:
+    """`motor` or `gear` of each motor of a limb."""
+    return [getattr(actuator, part) for actuator in design.every_actuator]
+
+
+def reference_parts(design: HyperLeg | TreeDesign, part: str) -> list[Any]:
+    """`motor` or `gear` of the reference build for each motor of a limb."""
+    if isinstance(design, TreeDesign):
+        return [getattr(design.reference_sections[n], part) for n in design.actuator_sections]
+    return [reference_part(design, actuator, part) for actuator in ACTUATOR_OF_MOTOR]
 
 
 def reference_part(design: HyperLeg, actuator: str, part: str) -> Any:

@@ -7,7 +7,7 @@
       "leg_*": {motor: U10, gear: 25}    # their own where transmission says what they drive
     joints: {"leg_*": {stiffness: 80, damping: 3, default_deg: 0}}
     pads: {"*_foot": {}}                 # links whose colliding spheres are pads, or pads by name
-    transmission, rods, masses, electrical, contact, stops: as in a design of `family: tree`
+    transmission, rods, masses, electrical, contact, stops, friction, gears: as in a design of `family: tree`
 
 `lint` says where the effort, velocity and rotor inertia that the file states contradict those motors.
 """  # noqa: E501
@@ -48,6 +48,8 @@ KEYS = (
     "electrical",
     "contact",
     "stops",
+    "friction",
+    "gears",
 )
 """What an actuation file may hold."""
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from hyperleg_design.robot import transmission, tree_limb
 from hyperleg_design.robot.described import prefixed
+from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.kinematic_tree import Link, Shape, Tree, TreeJoint
 from hyperleg_design.robot.tree_design import TreeDesign
 
@@ -77,6 +78,7 @@ def _joints(design: TreeDesign, copy: str, place: np.ndarray, mirror: bool) -> l
     moving = list(design.joint_sections)
     effort = transmission.max_joint_torque(design)
     speed = transmission.single_joint_speed(design)
+    coulomb, viscous = joint_friction(design)
     joints = []
     for name, joint in design.all_joints.items():
         at = np.asarray(joint.position, float) * signs
@@ -95,8 +97,8 @@ def _joints(design: TreeDesign, copy: str, place: np.ndarray, mirror: bool) -> l
                 upper=float(np.deg2rad(joint.upper_deg)),
                 effort=0.0 if index is None else float(effort[index]),
                 velocity=0.0 if index is None else float(speed[index]),
-                coulomb=float(joint.coulomb),
-                viscous=float(joint.viscous),
+                coulomb=float(joint.coulomb if index is None else coulomb[index]),
+                viscous=float(joint.viscous if index is None else viscous[index]),
                 default=float(np.deg2rad(joint.default_deg)),
                 turn=_three(np.deg2rad(joint.turn_deg) * signs * np.prod(signs)),
             )

@@ -12,6 +12,8 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import motors, parameters, tree_limb
+from hyperleg_design.robot.friction import joint_friction
+from hyperleg_design.robot.gear import rotor_inertia
 from hyperleg_design.robot.tree_design import TreeDesign
 
 LARGEST_CONDITION = 1e6
@@ -121,6 +123,8 @@ def check_tree_design(design: TreeDesign) -> None:
     _check_bodies(design, where)
     _check_actuation(design, where)
     _check_printed(design, where)
+    joint_friction(design)  # an unknown law of friction or gears is an error here
+    rotor_inertia(design)
 
 
 def _refuse(where: str, field: str, good: Any, value: Any, remedy: str) -> None:

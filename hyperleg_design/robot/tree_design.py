@@ -20,7 +20,13 @@ from typing import Any
 
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.parameters import number
-from hyperleg_design.robot.sections import Contact, Electrical, StopModel
+from hyperleg_design.robot.sections import (
+    Contact,
+    Electrical,
+    FrictionModel,
+    GearModel,
+    StopModel,
+)
 from hyperleg_design.robot.tree_sections import (
     LimbCopy,
     LinkSection,
@@ -54,6 +60,8 @@ class TreeDesign(RobotDesign):
     electrical: Electrical
     contact: Contact
     stops: StopModel = field(default_factory=StopModel)
+    friction: FrictionModel = field(default_factory=FrictionModel)
+    gears: GearModel = field(default_factory=GearModel)
 
     def _head(self) -> dict[str, Any]:
         return {"family": "tree", "name": self.name}

@@ -28,6 +28,8 @@ OPTIONAL = (
     "electrical",
     "contact",
     "stops",
+    "friction",
+    "gears",
 )
 """Sections that a file may leave out."""
 DEFAULTS: Mapping[str, Mapping[str, Any]] = {
@@ -110,7 +112,7 @@ def tree_design_from_mapping(data: Mapping[str, Any], name: str, where: str) -> 
     """
     name, variant = str(data.get("name", name)), str(data.get("variant", ""))
     rest = {k: v for k, v in data.items() if k not in ("name", "variant", "family", "description")}
-    known = ("trunk", *NAMED, "transmission", "masses", "electrical", "contact", "stops")
+    known = ("trunk", *NAMED, *(key for key in OPTIONAL if key not in NAMED))
     for key in rest:
         if key not in known:
             raise InputError(where, str(key), rest[key], parameters.unknown(str(key), list(known)))
