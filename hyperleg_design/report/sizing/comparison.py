@@ -296,6 +296,23 @@ def compare_walks(
     return by_protocol
 
 
+UNITS = {
+    "total_mass": "kg",
+    "leg_mass": "kg",
+    "leg_length": "m",
+    "height": "m",
+    "max_joint_torque": "Nm",
+    "single_joint_speed": "rad/s",
+    "torque_alone": "Nm",
+    "swing_inertia": "kg m^2",
+    "contact_force": "N",
+    "walk.motor_side": "W",
+    "walk.joule": "W",
+    "walk.mechanical": "W",
+}
+"""Unit of each measure of `compare`, by the beginning of its name; the others have none."""
+
+
 def compare_text(measures: dict[str, Any]) -> str:
     """Lay out a comparison for a terminal, with a row for each measure and a column for each
     design.
@@ -304,7 +321,20 @@ def compare_text(measures: dict[str, Any]) -> str:
     for name in measures:
         for key, value in _flat(measures[name]).items():
             rows.setdefault(key, [""] * len(measures))[list(measures).index(name)] = value
-    return table(["measure", *measures], [[key, *values] for key, values in rows.items()])
+    cells = [[key, _unit(key), *values] for key, values in rows.items()]
+    return table(["measure", "unit", *measures], cells)
+
+
+def _unit(key: str) -> str:
+    """Unit of a row of the comparison; `-` for a number without unit, empty for a text."""
+    from hyperleg_design.report.evaluation_text import UNITS as OF_TRIALS
+
+    group, *path = key.split(".")
+    if group == "variant" or path[-1:] == ["policy"]:
+        return ""
+    if group.startswith("evaluated "):
+        return OF_TRIALS.get(path[0], "") or "-"
+    return UNITS.get(group) or UNITS.get(key) or "-"
 
 
 def _flat(entry: dict[str, Any], prefix: str = "") -> dict[str, object]:

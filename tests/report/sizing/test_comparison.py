@@ -42,6 +42,9 @@ def test_compare_puts_designs_beside_each_other(design):
     text = comparison.compare_text(found)
     assert "max_joint_torque.toe" in text
     assert "toe_removed" in text.splitlines()[0]
+    units = {line.split()[0]: line.split()[1] for line in text.splitlines()[2:]}
+    assert (units["total_mass"], units["torque_alone.knee"]) == ("kg", "Nm")
+    assert units["zonotope_to_box_volume"] == "-"
 
 
 def test_compare_keeps_two_designs_of_one_name_apart(design):
