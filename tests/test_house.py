@@ -41,7 +41,7 @@ GAP = (
     "pipeline",
 )
 """Rooms of `gap`, each of which imports only rooms before it."""
-REPORT = ("pictures", "sizing", "walks", "gap", "sweep", "study")
+REPORT = ("pictures", "viewer", "sizing", "walks", "gap", "sweep", "study")
 """Rooms of `report`, each of which imports only rooms before it and what lies in no room."""
 
 

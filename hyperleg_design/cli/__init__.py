@@ -13,7 +13,7 @@ from typing import Annotated, Any, Union
 import tyro
 
 from hyperleg_design import __version__
-from hyperleg_design.cli import design, gap, policies, search, validate
+from hyperleg_design.cli import design, gap, look, policies, search, validate
 from hyperleg_design.cli.arguments import check_bounds
 from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.robot.motors import use_folder
@@ -57,7 +57,8 @@ VERBS: dict[str, Any] = {
     "campaign": policies.Campaign,
     "evaluate": policies.Evaluate,
     "robustness": policies.Robustness,
-    "replay": policies.Replay,
+    "view": look.View,
+    "video": look.Video,
     "paper": policies.Paper,
     "gap": Gap,
     "validate": validate.Validate,

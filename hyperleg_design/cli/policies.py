@@ -1,4 +1,4 @@
-"""Verbs on policies: train, campaign, evaluate, paper, replay; no logic of their own."""
+"""Verbs on policies: train, campaign, evaluate, paper; no logic of their own."""
 
 from __future__ import annotations
 
@@ -296,47 +296,3 @@ class Paper(Printing):
         else:
             print(tables_text(tables))
             print(f"open {page}")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Replay(Printing):
-    """Show one trial of a policy: as a GIF file, or in the browser."""
-
-    policy: Annotated[str, tyro.conf.Positional]
-    """ONNX file, or name of a shipped training such as walk-toe-0."""
-    protocol: str = ""
-    """walk, t_test, or a YAML file; what suits the policy's task by default."""
-    seed: Annotated[int | None, AtLeast(0)] = None
-    """Seed of the starting state; that of the protocol by default."""
-    gif: Path | None = None
-    """File to write."""
-    viser: bool = False
-    """Show it in the browser; needs viser."""
-
-    def run(self) -> None:
-        """Simulate one trial, and draw or show it."""
-        from hyperleg_design.report.pictures import replay
-
-        if (self.gif is None) == (not self.viser):
-            raise InputError("replay", "", None, "expects --gif FILE or --viser")
-        if self.viser:
-            replay.check_browser()
-        found = replay.replay(self.policy, self.protocol or None, seed=self.seed)
-        if self.json:
-            summary = {
-                "policy": found.policy,
-                "outcome": found.outcomes[0],
-                "end_time": float(found.end_times[0]),
-                "gif": None if self.gif is None else str(replay.replay_gif(found, self.gif)),
-            }
-            emit(summary)
-        else:
-            print(
-                f"{found.policy}: {found.outcomes[0].replace('_', ' ')} after "
-                f"{found.end_times[0]:.2f} s"
-            )
-        if self.gif is not None and not self.json:
-            print(f"written to {replay.replay_gif(found, self.gif)}")
-        if self.viser:
-            print("open http://localhost:8080; Ctrl-C to stop", file=sys.stderr, flush=True)
-            replay.replay_in_browser(found)

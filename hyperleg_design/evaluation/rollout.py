@@ -100,6 +100,11 @@ class Trial:
     `simulation.told.Told`."""
 
     @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints, `(J,)`."""
+        return self.layout.joints
+
+    @property
     def samples(self) -> int:
         """Number of samples in each signal."""
         return len(self.base_position)

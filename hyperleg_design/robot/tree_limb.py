@@ -258,7 +258,7 @@ def limb_masses(design: TreeDesign) -> LimbMasses:
             places = [np.asarray(actuator.place, float)]
             if actuator.housed_in == root:
                 places = [
-                    _copied(copy, places[0], move=True) for copy in design.copy_sections.values()
+                    copied(copy, places[0], move=True) for copy in design.copy_sections.values()
                 ]
             for place in places:
                 links[actuator.housed_in] = with_point(links[actuator.housed_in], change, place)
@@ -296,7 +296,7 @@ def _declared(section: Any) -> Inertial:
     return Inertial(mass, np.asarray(section.com, float), diagonal[..., None] * np.eye(3) + stated)
 
 
-def _copied(copy: Any, place: np.ndarray, *, move: bool = False) -> np.ndarray:
+def copied(copy: Any, place: np.ndarray, *, move: bool = False) -> np.ndarray:
     """A place of the limb as a copy of it has it [m]; moved where it is given in the trunk."""
     mirror = np.array([1.0, -1.0 if copy.mirror else 1.0, 1.0])
     return np.asarray(place * mirror + (np.asarray(copy.position, float) if move else 0.0))

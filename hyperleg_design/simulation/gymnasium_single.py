@@ -46,7 +46,7 @@ class GymnasiumSingle(gymnasium.Env):  # type: ignore[misc]
             design: a shipped name, a YAML file, or one robot.
             seed: of starting states, commands and disturbances until `reset` is given another.
             group: observations that are returned: `policy`, or `critic` with what sensors lack.
-            render_mode: must be None; `hyperleg replay` draws.
+            render_mode: must be None; `hyperleg video` draws.
 
         Raises:
             InputError: a task, design or seed that cannot be used.

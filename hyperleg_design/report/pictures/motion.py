@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -35,6 +35,38 @@ FORCE_LENGTH = 0.3
 """Length of an arrow for a force of one body weight [m]."""
 _MARGIN = np.array([2.5, 0.7, 0.0])
 _FLOOR, _GRID, _COURSE, _FORCE = "#eceef2", "#bcc2cc", "#c8602a", "#2c7a4b"
+
+
+class Moving(Protocol):
+    """What is animated: an evaluation's trial, or a recording."""
+
+    @property
+    def design(self) -> Any:
+        """The robot."""
+
+    @property
+    def joints(self) -> Sequence[str]:
+        """Names of the joints."""
+
+    @property
+    def samples(self) -> int:
+        """In each signal."""
+
+    @property
+    def time_step(self) -> float:
+        """Between samples [s]."""
+
+    @property
+    def base_position(self) -> np.ndarray:
+        """[m], `(t, 3)`."""
+
+    @property
+    def base_orientation(self) -> np.ndarray:
+        """W x y z, `(t, 4)`."""
+
+    @property
+    def joint_position(self) -> np.ndarray:
+        """[rad], `(t, J)`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +98,19 @@ class Motion:
     """Time between two frames as shown [s]."""
 
 
+def drawn_frames(motion: Motion, path: str | os.PathLike[str]) -> np.ndarray:
+    """Frames of a motion, `(frames, height, width, 3)` of bytes.
+
+    Args:
+        motion: what to draw.
+        path: for messages.
+
+    Raises:
+        HyperlegError: this machine cannot draw.
+    """
+    return np.asarray(np.load(io.BytesIO(drawn(motion, path))))
+
+
 def render_gif(motion: Motion, path: str | os.PathLike[str]) -> Path:
     """Draw a motion into a GIF file of at most `MOST_BYTES`; colours, then frames are given up to
     fit.
@@ -74,9 +119,9 @@ def render_gif(motion: Motion, path: str | os.PathLike[str]) -> Path:
         HyperlegError: this machine cannot draw, or no file small enough can be made.
         OutputError: the file cannot be written.
     """
-    frames = np.load(io.BytesIO(drawn(motion, path)))
+    frames = drawn_frames(motion, path)
     for every, colours in ((1, 64), (1, 24), (2, 32), (2, 16), (3, 16), (4, 12)):
-        content = _gif(frames[::every], every * motion.frame_time, colours)
+        content = gif_of(frames[::every], every * motion.frame_time, colours)
         if len(content) <= MOST_BYTES:
             return write_bytes(path, content)
     raise HyperlegError(
@@ -84,7 +129,8 @@ def render_gif(motion: Motion, path: str | os.PathLike[str]) -> Path:
     )
 
 
-def _gif(frames: np.ndarray, frame_time: float, colours: int) -> bytes:
+def gif_of(frames: np.ndarray, frame_time: float, colours: int) -> bytes:
+    """A GIF file that repeats frames `(frames, height, width, 3)`, each shown for a time [s]."""
     from PIL import Image
 
     sample = frames[np.linspace(0, len(frames) - 1, 8).astype(int)]
@@ -109,7 +155,12 @@ def _gif(frames: np.ndarray, frame_time: float, colours: int) -> bytes:
 
 
 def walk_motion(
-    trial: Trial, *, begin: float = 5.0, duration: float = 3.0, frames_per_second: float = 20.0
+    trial: Moving,
+    *,
+    begin: float = 5.0,
+    duration: float = 3.0,
+    frames_per_second: float = 20.0,
+    size: tuple[int, int] = (480, 400),
 ) -> Motion:
     """A walk from the right side, the camera beside the robot.
 
@@ -118,6 +169,7 @@ def walk_motion(
         begin: first time shown, or as much earlier as the trial is short [s].
         duration: shown [s].
         frames_per_second: of the animation, at true speed.
+        size: of a frame [px].
 
     Raises:
         InputError: a trial without samples.
@@ -137,14 +189,19 @@ def walk_motion(
         lines,
         (),
         1.25,
-        (480, 400),
+        size,
         16,
         1 / frames_per_second,
     )
 
 
 def t_test_motion(
-    trial: Trial, protocol: TTestProtocol, *, frames_per_second: float = 8.0, most_frames: int = 150
+    trial: Moving,
+    protocol: TTestProtocol,
+    *,
+    frames_per_second: float = 8.0,
+    most_frames: int = 150,
+    size: tuple[int, int] = (480, 360),
 ) -> Motion:
     """A run over a course from above and aside, the camera following; faster than true if it is
     long.
@@ -197,7 +254,7 @@ def t_test_motion(
         (*grid, *legs),
         labels,
         2.5,
-        (480, 360),
+        size,
         18,
         1 / frames_per_second,
     )
@@ -271,7 +328,7 @@ def strip_scene(walks: Mapping[str, tuple[Trial, Any]], snapshots: int = SNAPSHO
     )
 
 
-def _samples(trial: Trial, begin: float, duration: float, rate: float) -> np.ndarray:
+def _samples(trial: Moving, begin: float, duration: float, rate: float) -> np.ndarray:
     """Samples of the frames."""
     if not trial.samples:
         raise InputError("animation", "", None, "the trial has no samples")
@@ -281,7 +338,7 @@ def _samples(trial: Trial, begin: float, duration: float, rate: float) -> np.nda
     return np.minimum((times / trial.time_step).round().astype(int), trial.samples - 1)
 
 
-def travel(trial: Trial, samples: np.ndarray) -> np.ndarray:
+def travel(trial: Moving, samples: np.ndarray) -> np.ndarray:
     """Cosine and sine of the direction of travel between the first and the last of some samples,
     `(2,)`; that of the start if it stands.
     """
@@ -291,7 +348,7 @@ def travel(trial: Trial, samples: np.ndarray) -> np.ndarray:
 
 
 def _level(
-    trial: Trial, samples: np.ndarray, ahead: np.ndarray | None = None
+    trial: Moving, samples: np.ndarray, ahead: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Pelvis places [m] and rotations from the start, x in a direction, by default the robot's at
     the start, `(f, 3)` and `(f, 3, 3)`.
@@ -312,19 +369,15 @@ def _matrices(orientation: np.ndarray) -> np.ndarray:
 
 
 def _posed(
-    trial: Trial, samples: np.ndarray, turn: np.ndarray, place: np.ndarray
+    trial: Moving, samples: np.ndarray, turn: np.ndarray, place: np.ndarray
 ) -> tuple[tuple[Solid, ...], np.ndarray, np.ndarray]:
     """The robot's solids, and where they are in each frame."""
     tree = build_tree(trial.design)
     frames = []
     for i, sample in enumerate(samples):
-        angles = dict(
-            zip(trial.layout.joints, map(float, trial.joint_position[sample]), strict=True)
-        )
+        angles = dict(zip(trial.joints, map(float, trial.joint_position[sample]), strict=True))
         frames.append(
-            robot_solids(
-                cast("Any", trial.design), angles=angles, tree=tree, pelvis=(turn[i], place[i])
-            )
+            robot_solids(trial.design, angles=angles, tree=tree, pelvis=(turn[i], place[i]))
         )
     rotations = np.array([[s.rotation for s in frame] for frame in frames])
     positions = np.array([[s.position for s in frame] for frame in frames])

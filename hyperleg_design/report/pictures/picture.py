@@ -11,22 +11,25 @@ import pickle
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from hyperleg_design.errors import HyperlegError
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.described import prefixed
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, MOTORS, SIDES
 from hyperleg_design.robot.posture import axis_rotation, default_angles, link_poses, lowest_point
 from hyperleg_design.robot.tree import SIGN, Tree, build_tree
 from hyperleg_design.writing import write_bytes
 
 if TYPE_CHECKING:
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.tree_design import TreeDesign
 
 FRAME, DARK, PAD = "#c9cdd4", "#8b93a1", "#2b2d33"
 TOE = {"active": "#e07b39", "locked": "#9aa0aa"}
@@ -133,7 +136,7 @@ def drawn(what: Any, path: str | os.PathLike[str]) -> bytes:
 
 
 def robot_solids(
-    design: Design,
+    design: RobotDesign,
     *,
     angles: Mapping[str, float] | None = None,
     offset: Sequence[float] = (0.0, 0.0, 0.0),
@@ -165,39 +168,16 @@ def robot_solids(
         else np.asarray(offset, float) - np.array([0.0, 0.0, lowest_point(tree, poses)])
     )
     solids = []
-    for link in tree.links:
-        rotation, position = poses[link.name]
-        for shape in link.visuals:
-            kind = "capsule" if shape.kind == "cylinder" else shape.kind
-            colour = FRAME
-            if link.name.endswith("toe_plate"):
-                colour = TOE[design.toe.joint]
-            elif shape.kind == "sphere":
-                colour = DARK
-            fade = 0.35 if kind == "capsule" and motors else opacity
-            solids.append(
-                Solid(
-                    kind,
-                    shape.size,
-                    rotation,
-                    base + position + rotation @ np.array(shape.position),
-                    colour,
-                    min(opacity, fade),
-                )
-            )
+    for link, own in link_solids(design, tree, opacity=opacity, motors=motors).items():
+        rotation, position = poses[link]
         solids += [
-            Solid(
-                "sphere",
-                pad.size,
-                rotation,
-                base + position + rotation @ np.array(pad.position),
-                PAD,
-                opacity,
+            replace(
+                s,
+                rotation=rotation @ s.rotation,
+                position=base + position + rotation @ s.position,
             )
-            for pad in link.pads
+            for s in own
         ]
-    if motors:
-        solids += _motor_solids(design, poses, base, opacity)
     if pelvis is not None:
         turn, place = pelvis
         return [
@@ -213,53 +193,119 @@ def robot_solids(
     ]
 
 
-def _motor_solids(
-    design: Design, poses: Mapping[str, Any], base: np.ndarray, opacity: float
-) -> list[Solid]:
-    """Motors as discs of their mass in steel-and-copper density, where the design houses them."""
+def link_solids(
+    design: RobotDesign, tree: Tree, *, opacity: float = 1.0, motors: bool = True
+) -> dict[str, list[Solid]]:
+    """Solids of each link in the link's own frame, by link.
+
+    Args:
+        design: one robot of any family.
+        tree: of the design.
+        opacity: 0 to 1.
+        motors: draw the motors where the design houses them.
+    """
+    toe = TOE.get(str(design["toe.joint"]), TOE["locked"]) if tree.hyperleg else FRAME
+    solids: dict[str, list[Solid]] = {}
+    for link in tree.links:
+        own = solids.setdefault(link.name, [])
+        for shape in link.visuals:
+            kind = "capsule" if shape.kind == "cylinder" and tree.hyperleg else shape.kind
+            colour = FRAME
+            if link.name.endswith("toe_plate"):
+                colour = toe
+            elif shape.kind == "sphere":
+                colour = DARK
+            fade = 0.35 if kind in ("capsule", "cylinder") and motors else opacity
+            own.append(
+                Solid(
+                    kind,
+                    shape.size,
+                    np.eye(3),
+                    np.array(shape.position),
+                    colour,
+                    min(opacity, fade),
+                )
+            )
+        own += [
+            Solid("sphere", pad.size, np.eye(3), np.array(pad.position), PAD, opacity)
+            for pad in link.pads
+        ]
+    if motors:
+        add = _motor_solids if tree.hyperleg else _tree_motor_solids
+        for name, solid in add(cast("Any", design), tree, opacity):
+            solids[name].append(solid)
+    return solids
+
+
+def _motor_radius(mass: float) -> float:
+    """Of a disc of 6500 kg/m^3, steel and copper, that is 0.8 of its radius thick [m]."""
+    return float(np.cbrt(mass / (6500 * np.pi * 0.8)))
+
+
+_ACROSS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""Turns a cylinder's z axis onto y."""
+
+
+def _motor_solids(design: Design, tree: Tree, opacity: float) -> Iterator[tuple[str, Solid]]:
+    """Motors of HyperLeg's legs as discs of their mass, each with the link that houses it."""
     from hyperleg_design.robot.motors import motor_arrays
 
     mass = motor_arrays(design).mass
-    across = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # cylinder's z onto y
-    solids = []
     for side in SIDES:
         for index, motor in enumerate(MOTORS):
             if motor not in transmission.motor_names(design):
                 continue
             name = ACTUATOR_OF_MOTOR[index]
             actuator = getattr(design.actuators, name)
-            radius = float(
-                np.cbrt(mass[index] / (6500 * np.pi * 0.8))
-            )  # thickness 0.8 radius, 6500 kg/m^3
+            radius = _motor_radius(mass[index])
             if actuator.housed_in == "pelvis":
-                rotation, position = poses["pelvis"]
+                link = "pelvis"
                 lift = {"hip_yaw": 0.05, "hip_roll": 0.0, "hip_pitch": 0.0}.get(name, 0.1)
                 turn = {
                     "hip_yaw": np.eye(3),
                     "hip_roll": np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]),
-                }.get(name, across)
+                }.get(name, _ACROSS)
                 place = np.array(
                     [0.07 if name == "hip_roll" else 0.0, SIGN[side] * design.hip.spacing / 2, lift]
                 )
             else:
-                rotation, position = poses[f"{side}_{actuator.housed_in}"]
-                turn = across
+                link, turn = f"{side}_{actuator.housed_in}", _ACROSS
                 shift = {"ankle_left": 0.016, "ankle_right": -0.016}.get(motor, 0.0)
                 outward = 0.06 if name == "hip_pitch" else 0.0
                 depth = actuator.position_fraction * getattr(design, actuator.housed_in).length
                 place = np.array([0.0, SIGN[side] * outward + shift * 1.4, -depth])
             thickness = radius * (0.8 if name != "ankle" else 0.7)
-            solids.append(
+            yield (
+                link,
+                Solid("cylinder", (radius, thickness), turn, place, MOTOR_COLOUR[name], opacity),
+            )
+
+
+def _tree_motor_solids(
+    design: TreeDesign, tree: Tree, opacity: float
+) -> Iterator[tuple[str, Solid]]:
+    """Motors of a robot that writes its tree out as discs of their mass, each with its link."""
+    from hyperleg_design.robot.motors import find_motor
+    from hyperleg_design.robot.tree_limb import copied
+
+    colours = tuple(dict.fromkeys(MOTOR_COLOUR.values()))
+    for copy, section in design.copy_sections.items():
+        for index, actuator in enumerate(design.actuator_sections.values()):
+            in_root = actuator.housed_in == design.trunk.link
+            link = tree.base if in_root else prefixed(copy, str(actuator.housed_in))
+            place = copied(section, np.asarray(actuator.place, float), move=in_root)
+            radius = _motor_radius(find_motor(str(actuator.motor)).mass)
+            yield (
+                link,
                 Solid(
                     "cylinder",
-                    (radius, thickness),
-                    rotation @ turn,
-                    base + position + rotation @ place,
-                    MOTOR_COLOUR[name],
+                    (radius, 0.8 * radius),
+                    _ACROSS,
+                    place,
+                    colours[index % len(colours)],
                     opacity,
-                )
+                ),
             )
-    return solids
 
 
 def dimensions_scene(design: Design) -> Scene:

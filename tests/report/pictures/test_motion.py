@@ -103,7 +103,7 @@ def test_frames_become_a_file_that_is_small_enough(monkeypatch, tmp_path):
 
     rng = np.random.default_rng(0)
     frames = rng.integers(0, 255, (40, 60, 80, 3)).astype(np.uint8)
-    content = motion._gif(frames, 0.05, 16)
+    content = motion.gif_of(frames, 0.05, 16)
     image = Image.open(io.BytesIO(content))
     assert (image.size, image.n_frames, image.info["duration"]) == ((80, 60), 40, 50)
 

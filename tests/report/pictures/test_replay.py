@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
-from hyperleg_design.cli import main
-from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import Steady, TTestProtocol, WalkProtocol
@@ -33,16 +30,3 @@ def test_the_task_chooses_what_is_replayed(trainings):
     found = replay.replay(trainings / "walk-toe-0" / "policy.onnx")
     assert isinstance(found.protocol, WalkProtocol)
     assert len(replay.motion_of(found, duration=0.5).focus) == 10
-
-
-def test_a_browser_needs_viser(monkeypatch):
-    monkeypatch.setattr(replay.importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(InputError, match="pip install viser"):
-        replay.check_browser()
-
-
-def test_a_replay_must_go_somewhere(trainings, capsys):
-    assert main(["replay", str(trainings / "walk-toe-0" / "policy.onnx")]) == 2
-    assert "--gif FILE or --viser" in capsys.readouterr().err
-    assert main(["replay", "walk-toe-99", "--gif", "x.gif"]) == 2
-    assert "walk-toe-99" in capsys.readouterr().err

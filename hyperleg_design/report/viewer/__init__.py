@@ -1,0 +1,1 @@
+"""The browser page of `hyperleg view`: robots in three dimensions, sliders, charts and walks."""

@@ -1,0 +1,85 @@
+"""Videos hold every frame, in the size and rate asked for."""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import HyperlegError, InputError
+from hyperleg_design.report.pictures import motion, video
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Frames of noise in place of drawn ones."""
+    rng = np.random.default_rng(0)
+
+    def frames(what, path):
+        stream = io.BytesIO()
+        np.save(stream, rng.integers(0, 255, (len(what.focus), 96, 128, 3)).astype(np.uint8))
+        return stream.getvalue()
+
+    monkeypatch.setattr(motion, "drawn", frames)
+
+
+def shown(count, size=(128, 96)):
+    return motion.Motion(
+        (),
+        np.empty((count, 0, 3, 3)),
+        np.empty((count, 0, 3)),
+        np.zeros((count, 3)),
+        np.ones(3),
+        size=size,
+    )
+
+
+def test_an_mp4_holds_every_frame(drawn, tmp_path):
+    imageio = pytest.importorskip("imageio.v3")
+    path = video.write_video(shown(60), tmp_path / "walk.mp4")
+    properties = imageio.improps(path)
+    assert properties.shape[1:] == (96, 128, 3)
+    assert len(imageio.imread(path)) == 60
+    assert imageio.immeta(path)["fps"] == pytest.approx(25.0)
+
+
+def test_a_gif_holds_every_frame(drawn, tmp_path):
+    from PIL import Image
+
+    image = Image.open(video.write_video(shown(60), tmp_path / "walk.gif"))
+    assert (image.n_frames, image.size, image.info["duration"]) == (60, (128, 96), 40)
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "text"),
+    [("a.webm", (128, 96), r"\.mp4 or \.gif"), ("a.mp4", (127, 96), "even"), ("a", (8, 8), "mp4")],
+)
+def test_what_cannot_be_written_is_refused(name, size, text, tmp_path):
+    with pytest.raises(InputError, match=text):
+        video.write_video(shown(2, size), tmp_path / name)
+
+
+def test_a_missing_encoder_is_told(monkeypatch, tmp_path):
+    monkeypatch.setattr(video.importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match=r"hyperleg-design\[video\]"):
+        video.write_video(shown(2), tmp_path / "a.mp4")
+
+
+def test_a_recording_becomes_a_video(walks, tmp_path):
+    from hyperleg_design.cli import main
+    from hyperleg_design.gap.logs.log import write_log
+    from hyperleg_design.gap.logs.recording import log_of_trial
+    from hyperleg_design.report.pictures.motion import walk_motion
+
+    log = log_of_trial(walks["toe"], metadata={"robot": "toe"})
+    write_log(tmp_path / "walk.parquet", log)
+    out = tmp_path / "walk.gif"
+    arguments = ["--duration", "0.2", "--fps", "10", "--size", "160", "128", "--out", str(out)]
+    try:
+        video.drawn_frames(walk_motion(walks["toe"], duration=0.1), "probe")
+    except HyperlegError as error:
+        pytest.skip(str(error))
+    assert main(["video", str(tmp_path / "walk.parquet"), *arguments]) == 0
+    assert out.read_bytes().startswith(b"GIF89a")
+    assert main(["video", "walk-toe-0", "--set", "toe.mass=1", "--out", str(out)]) == 2
