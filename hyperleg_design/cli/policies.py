@@ -34,6 +34,9 @@ class Train:
     """Training preset: a shipped name (`hyperleg list presets`), or a YAML file."""
     start: str = ""
     """ONNX policy of another task to start from; from scratch by default."""
+    designs: str = ""
+    """Designs to draw from, so that one policy learns them all and observes which it has: toe, or
+    a YAML file of ranges; the one design by default."""
     out: Path
     """Folder of the training."""
     iterations: Annotated[int | None, AtLeast(1)] = None
@@ -59,6 +62,7 @@ class Train:
         }
         given |= {"start": self.start} if self.start else {}
         given |= {} if self.iterations is None else {"iterations": self.iterations}
+        given |= {"designs": self.designs} if self.designs else {}
         arguments = [f"--{key}={value}" for key, value in given.items()]
         if not self.overlay:
             launch.run_here(arguments, self.threads)

@@ -44,6 +44,7 @@ def main(
             default={"task": "walk", "design": "toe", "preset": "laptop"}.get(name),
         )
     parser.add_argument("--start")
+    parser.add_argument("--designs")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--iterations", type=int)
     parser.add_argument("--threads", type=int, default=1)
@@ -60,6 +61,7 @@ def main(
             given.preset,
             given.out,
             start=given.start,
+            designs=given.designs,
             threads=given.threads,
             iterations=given.iterations,
             alterations=alterations,

@@ -12,6 +12,7 @@ from rsl_rl.models import MLPModel
 from rsl_rl.storage import RolloutStorage
 from tensordict import TensorDict
 
+from hyperleg_design.learning.modulation import ModulatedLayers
 from hyperleg_design.learning.rounding import multiplies_bfloat16, round_layers
 from hyperleg_design.learning.symmetry import HalfMirrored, Mirrors
 
@@ -25,6 +26,8 @@ QUIET = 0.01
 """Factor on the usual size of the actor's last layer at the start. It lets all robots begin near
 their default posture, and makes the first policy its own mirror image. Otherwise the probability
 ratios of mirrored samples are mostly clipped, and nothing is learnt from them."""
+DESIGN = "design."
+"""Beginning of the names of columns that tell the design."""
 GROUPS = {"actor": ["policy"], "critic": ["critic"]}
 """Observation groups of each network."""
 
@@ -68,6 +71,9 @@ def make_algorithm(preset: Preset, environment: Environment, observations: Tenso
     settings, network = preset.algorithm, preset.network
     actor = make_network(network, observations, "actor", environment.action_size)
     critic = make_network(network, observations, "critic", 1)
+    if network.modulated:
+        for kind, model in (("policy", actor), ("critic", critic)):
+            _modulate(model, environment.observation_columns[kind])
     if settings.mixed_precision and not multiplies_bfloat16():
         round_layers(actor)
         round_layers(critic)
@@ -132,6 +138,13 @@ def make_network(network: Network, observations: TensorDict, kind: str, outputs:
             made.mlp[-1].weight.mul_(QUIET)
             made.mlp[-1].bias.zero_()
     return made
+
+
+def _modulate(model: MLPModel, columns: list[str]) -> None:
+    """Let the design modulate a network's hidden features, in place, where it is observed."""
+    places = [i for i, name in enumerate(columns) if name.startswith(DESIGN)]
+    if places:
+        model.mlp = ModulatedLayers(model.mlp, places)
 
 
 def as_tensors(observations: dict[str, Any]) -> TensorDict:

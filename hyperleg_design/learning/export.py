@@ -10,6 +10,7 @@ Input `observation` `(n, size)`, output `action` `(n, J)`, both single precision
 | `columns` | names of the numbers of the observation |
 | `joints` | names of the numbers of the action |
 | `task`, `design`, `preset` | resolved, as their YAML readers take them |
+| `design_ranges` | ranges of the designs that it was trained on, where it observes its design |
 | `variant`, `seed`, `steps`, `command`, `commit`, `versions` | how it was made |
 """
 
@@ -25,6 +26,7 @@ import numpy as np
 import torch
 
 from hyperleg_design.errors import OutputError
+from hyperleg_design.learning.modulation import ModulatedLayers, plain_layers
 from hyperleg_design.writing import write_bytes
 
 if TYPE_CHECKING:
@@ -111,14 +113,28 @@ def _as_onnx(actor: MLPModel, metadata: dict[str, Any]) -> bytes:
         normaliser = actor.obs_normalizer
         name = add("Sub", [name, constant("mean", normaliser._mean)])
         name = add("Div", [name, constant("deviation", normaliser._std + normaliser.eps)])
-    for i, layer in enumerate(actor.mlp):
+
+    def linear(value: str, layer: torch.nn.Linear, label: str, ending: str) -> str:
+        parts = [
+            constant(f"{label}weight_{ending}", layer.weight),
+            constant(f"{label}bias_{ending}", layer.bias),
+        ]
+        return add("Gemm", [value, *parts], transB=1)
+
+    modulated = actor.mlp if isinstance(actor.mlp, ModulatedLayers) else None
+    design, hidden = "", 0
+    if modulated is not None:
+        weights.append(numpy_helper.from_array(modulated.columns.numpy(), "design_columns"))
+        design = add("Gather", [name, "design_columns"], axis=1)
+    for i, layer in enumerate(plain_layers(actor.mlp)):
         if isinstance(layer, torch.nn.Linear):
-            name = add(
-                "Gemm",
-                [name, constant(f"weight_{i}", layer.weight), constant(f"bias_{i}", layer.bias)],
-                transB=1,
-            )
+            name = linear(name, layer, "", str(i))
             outputs = layer.out_features
+            if modulated is not None and hidden < len(modulated.scales):
+                scale = linear(design, modulated.scales[hidden], "scale_", str(i))
+                shift = linear(design, modulated.shifts[hidden], "shift_", str(i))
+                name = add("Add", [add("Mul", [scale, name]), shift])
+                hidden += 1
         else:
             name = add({"ELU": "Elu", "ReLU": "Relu", "Tanh": "Tanh"}[type(layer).__name__], [name])
     nodes[-1].output[0] = "action"

@@ -73,7 +73,7 @@ class Meter:
             "speed": float(speed),
             "falls": 60.0 * self._falls / (self._count * duration),
             "power": float(power),
-            "cost_of_transport": float(power / (environment.layout.weight * speed))
+            "cost_of_transport": float(power / (np.mean(environment.layout.weight) * speed))
             if speed > 0.05
             else float("nan"),
             "episode": float(self.steps / max(self.ends, 1.0)),

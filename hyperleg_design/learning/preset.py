@@ -73,6 +73,9 @@ class Network(Checked):
     """Standard deviation of the actions at the start."""
     normalised: Any = flag(default=True)
     """Whether observations are normalised by their running mean and deviation."""
+    modulated: Any = flag(default=True)
+    """Whether the design, where it is observed, scales and shifts the hidden features of actor and
+    critic (`learning/modulation.py`); otherwise it is an input like others."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

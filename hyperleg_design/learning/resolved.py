@@ -34,6 +34,7 @@ def task_mapping(task: Task) -> dict[str, Any]:
         "rewards": {term: {"weight": r.weight, **r.parameters} for term, r in task.rewards.items()},
         **{section: _section(getattr(task, section)) for section in _SECTIONS},
         **({"posture_deg": dict(task.posture_deg)} if task.posture_deg else {}),
+        **({"designs": task.designs.to_mapping()} if task.designs else {}),
     }
 
 
@@ -52,6 +53,8 @@ def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:
             found[field.name] = getattr(preset, field.name)
     found["algorithm"] = parameters.leaves(preset.algorithm)
     found["network"] = {"hidden": list(preset.network.hidden), **parameters.leaves(preset.network)}
+    if preset.network.modulated:
+        del found["network"]["modulated"]  # the default; older trainings do not name it
     found["warm_start"] = parameters.leaves(preset.warm_start)
     found["tasks"] = {task: [_stage(stage) for stage in preset.stages(task)]}
     return found

@@ -27,11 +27,13 @@ from typing import Any
 
 import numpy as np
 import torch
+from tensordict import TensorDict
 
 from hyperleg_design import provenance
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.algorithm import IterationPPO, as_tensors, make_algorithm
 from hyperleg_design.learning.checkpoint import load_checkpoint, save_checkpoint
+from hyperleg_design.learning.design_sampler import DesignSampler
 from hyperleg_design.learning.export import CRITIC_FORMAT, export_policy
 from hyperleg_design.learning.meter import Meter
 from hyperleg_design.learning.preset import Preset, load_preset
@@ -56,6 +58,7 @@ from hyperleg_design.learning.warm_start import (
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.alteration import Alterations
+from hyperleg_design.simulation.design_spread import DesignSpread, load_design_spread
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
@@ -65,6 +68,8 @@ from hyperleg_design.writing import MARKER, check_output_folder, write_json, wri
 PACKAGES = (*provenance.PACKAGES, "torch", "rsl-rl-lib")
 SHOW_EVERY = 5.0
 """Seconds between two lines of progress."""
+TRIED = 32
+"""Robots in a trial; of many designs the pool's first."""
 TRIAL_SEED = 20_000
 """Seed of the starting states of trials, different from the seed of any training."""
 
@@ -77,6 +82,7 @@ def train(
     out: str | Path,
     *,
     start: str | Path | None = None,
+    designs: str | Path | DesignSpread | None = None,
     threads: int = 1,
     iterations: int | None = None,
     alterations: Alterations | None = None,
@@ -93,6 +99,9 @@ def train(
         out: folder of the training.
         start: ONNX policy of another task to start from, of the same robot; from scratch by
             default.
+        designs: what designs to draw from, with a shipped name or a file: the policy observes its
+            design and learns them all. They are `design` with other leaves. Without, the policy
+            learns the one design.
         threads: of physics and learning. One by default: trainings side by side use processors
             best. Resuming is bit for bit with the same number only.
         iterations: stop, with a checkpoint, after so many more; all by default.
@@ -115,7 +124,11 @@ def train(
     started = None if start is None else read_start(start)
     if started is not None:
         command += f" --start {Path(str(start)).parent.name}/{Path(str(start)).name}"
+    if designs is not None:
+        command += f" --designs {'designs' if isinstance(designs, DesignSpread) else designs}"
+    spread = load_design_spread(designs) if isinstance(designs, str | Path) else designs
     task = task if isinstance(task, Task) else load_task(task)
+    task = task.conditioned(spread.ranges) if spread else task
     design = design if isinstance(design, RobotDesign) else load_robot(design)
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
@@ -124,6 +137,7 @@ def train(
     origin = {
         "start": started and started.source,
         "overlay": overlay and dict(overlay),
+        "designs": spread and spread.to_mapping(),
         "command": command,
     }
     description = {**describe(task, design, seed, preset), **origin}
@@ -133,7 +147,7 @@ def train(
         if not (folder / RUN).exists():
             write_json(folder / RUN, description)
         training = Training(
-            task, design, seed, preset, folder, threads, description, started, alterations
+            task, design, seed, preset, folder, threads, description, started, alterations, spread
         )
         return training.run(iterations, show or (lambda line: None))
 
@@ -166,6 +180,7 @@ class Training:
         description: dict[str, Any],
         start: StartPolicy | None = None,
         alterations: Alterations | None = None,
+        spread: DesignSpread | None = None,
     ) -> None:
         self.task, self.design, self.preset, self.folder, self.description = (
             task,
@@ -175,21 +190,14 @@ class Training:
             description,
         )
         self.schedule, self.alterations = Schedule(preset, task.name), alterations
-        self.environment = Environment(
-            design,
-            task,
-            simulations=int(preset.simulations),
-            seed=seed,
-            threads=threads,
-            alterations=alterations,
+        self.sampler = (
+            DesignSampler(design, spread, int(preset.simulations), seed) if spread else None
         )
-        self.schedule.apply(self.environment)
+        """What designs the simulations have; None for one design."""
+        self.threads = threads
+        self.environment = self._new_environment()
         torch.manual_seed(seed)
-        self.observations = as_tensors(self.environment.reset())
-        self.environment.episode_step = np.random.default_rng(seed).integers(
-            round(task.limits.duration / task.physics.policy_step),
-            size=self.environment.simulations,
-        )  # so that not all episodes end together
+        self.observations = self._begin(seed)
         self.algorithm = make_algorithm(preset, self.environment, self.observations)
         self.algorithm.train_mode()
         self.meter = Meter(self.environment)
@@ -263,6 +271,48 @@ class Training:
         self.environment.close()
         return done
 
+    def _new_environment(self) -> Environment:
+        """An environment with the present designs."""
+        sampler = self.sampler
+        environment = Environment(
+            sampler.design if sampler else self.design,
+            self.task,
+            simulations=int(self.preset.simulations),
+            seed=sampler.environment_seed if sampler else self.description["seed"],
+            threads=self.threads,
+            alterations=self.alterations,
+        )
+        self.schedule.apply(environment)
+        return environment
+
+    def _begin(self, seed: int) -> TensorDict:
+        """Start all simulations, in the midst of their episodes so that not all end together."""
+        observations = as_tensors(self.environment.reset())
+        self.environment.episode_step = np.random.default_rng(seed).integers(
+            round(self.task.limits.duration / self.task.physics.policy_step),
+            size=self.environment.simulations,
+        )
+        return observations
+
+    def _redraw_designs(self) -> None:
+        """Give the simulations other designs where it is time, by how often the policy falls with
+        each.
+        """
+        sampler = self.sampler
+        if sampler is None or self.schedule.iteration % sampler.spread.redraw_every:
+            return
+        sampler.redraw()
+        self._replace_environment()
+        self.observations = self._begin(sampler.environment_seed)
+
+    def _replace_environment(self) -> None:
+        """Make the environment anew, with the present designs."""
+        count, divergences = self.environment.divergence_count, self.environment.divergences
+        self.environment.close()
+        self.environment = self._new_environment()
+        self.environment.divergence_count, self.environment.divergences = count, divergences
+        self.meter.environment = self.environment
+
     def policy(self, observation: np.ndarray) -> np.ndarray:
         """The deterministic policy so far, `(n, size)` to `(n, J)`."""
         actor = self.algorithm.get_policy()
@@ -280,6 +330,7 @@ class Training:
                     name: values.numpy() for name, values in self.observations.items()
                 },
                 "schedule": self.schedule.state(),
+                "sampler": self.sampler and self.sampler.state(),
                 "meter": self.meter.state(),
                 "trial": self.latest_trial,
                 "seconds": self.seconds,
@@ -322,6 +373,8 @@ class Training:
                 action = algorithm.act(self.observations)
                 step = environment.step(action.numpy())
                 self.meter.note(step)
+                if self.sampler is not None:
+                    self.sampler.note(step.terminated)
                 reward = torch.from_numpy(step.reward.astype(np.float32))
                 self._bootstrap(step, reward)
                 self.observations = as_tensors(step.observations)
@@ -332,6 +385,8 @@ class Training:
         losses = self._update()
         measures = self.meter.read()
         self.schedule.advance(measures["episode"], measures["share"])
+        diverged = environment.divergence_count
+        self._redraw_designs()
         steps = self.preset.steps_per_iteration
         return {
             "iteration": self.schedule.iteration,
@@ -349,7 +404,7 @@ class Training:
                 algorithm.get_policy().distribution.log_std_param.detach().exp().mean()
             ),
             "losses": losses,
-            "diverged": environment.divergence_count,
+            "diverged": diverged,
         }
 
     def _update(self) -> dict[str, float]:
@@ -405,10 +460,12 @@ class Training:
 
     def _try(self) -> None:
         commands = self.environment.chunks[0].commander.settings
+        pool = None if self.sampler is None else self.sampler.pool
         self.latest_trial = trial(
-            self.design,
+            self.design if pool is None else pool.rows(np.arange(TRIED) % pool.batch_shape[0]),
             self.task.changed(commands=commands),
             self.policy,
+            simulations=TRIED,
             seed=TRIAL_SEED,
             alterations=self.alterations,
         )
@@ -432,8 +489,7 @@ class Training:
             "commit",
             "versions",
         )
-        if self.description.get("overlay"):
-            chosen += ("overlay",)
+        chosen += tuple(key for key in ("overlay", "designs") if self.description.get(key))
         metadata = {key: self.description[key] for key in chosen}
         metadata |= {
             "seed": str(self.description["seed"]),
@@ -443,6 +499,8 @@ class Training:
             "columns": self.environment.observation_columns["policy"],
             "joints": list(self.environment.layout.joints),
         }
+        if self.task.designs is not None:
+            metadata["design_ranges"] = self.task.designs.to_mapping()
         export_policy(self.folder / name, self.algorithm.get_policy(), metadata)
 
     def _export_critic(self) -> None:
@@ -466,6 +524,9 @@ class Training:
                 f"do not fit this task, design and preset ({reason})",
             ) from None
         self.schedule.put(content["schedule"])
+        if self.sampler is not None:
+            self.sampler.put(content["sampler"])
+            self._replace_environment()
         self.schedule.apply(self.environment)
         put_snapshot(self.environment, content["environment"])
         self.observations = as_tensors(content["observations"])
@@ -530,7 +591,7 @@ def _check_same(folder: Path, description: dict[str, Any]) -> None:
             None,
             "cannot be read; choose another folder, or delete this one",
         ) from None
-    for key in ("variant", "seed", "task", "design", "preset", "start", "overlay"):
+    for key in ("variant", "seed", "task", "design", "preset", "start", "overlay", "designs"):
         if found.get(key) != json.loads(json.dumps(description[key])):
             remedy = "the folder holds another training; choose another, or delete it"
             raise InputError(

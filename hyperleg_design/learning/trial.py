@@ -43,7 +43,7 @@ def trial(
     """Try a policy from standing: on the test's speed, or on the task's courses.
 
     Args:
-        design: the robot.
+        design: the robot; or a batch of designs, each tried equally often.
         task: it was trained on.
         policy: deterministic.
         simulations: robots that try, once each.
@@ -100,14 +100,13 @@ def _walk(
             "flight",
         )
         return {"survival": 0.0, **dict.fromkeys(nothing, float("nan"))}
+    weight = np.broadcast_to(environment.layout.weight, (simulations,))
     touchdowns = (stand[1:] & ~stand[:-1]).sum((0, 2))
     return {
         "survival": float(alive.mean()),
         "speed": float(speed.mean()),
         "speed_error": float(np.sqrt(np.mean((speed - commands.test_speed) ** 2))),
-        "cost_of_transport": float(
-            power.mean() / (environment.layout.weight * max(speed.mean(), 1e-3))
-        ),
+        "cost_of_transport": float(power.mean() / (weight[alive].mean() * max(speed.mean(), 1e-3))),
         "cadence": float(touchdowns.mean() / (len(stand) * duration)),
         "double_support": float(stand.all(-1).mean()),
         "flight": float((~stand.any(-1)).mean()),

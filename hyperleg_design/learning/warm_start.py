@@ -24,6 +24,7 @@ import torch
 
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.export import CRITIC_FORMAT, FORMAT
+from hyperleg_design.learning.modulation import plain_layers
 from hyperleg_design.learning.status import CRITIC, POLICY
 
 if TYPE_CHECKING:
@@ -143,6 +144,13 @@ def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any]
     layers = sorted(
         int(name.removeprefix("weight_")) for name in arrays if name.startswith("weight_")
     )
+    if form == FORMAT and "design_columns" in arrays:
+        raise InputError(
+            where,
+            "design",
+            None,
+            "is conditioned on its design; start from a policy of one design",
+        )
     columns = tuple(json.loads(told["columns"]))
     network = {
         "columns": columns,
@@ -183,7 +191,7 @@ def start_actor(
         raise InputError(
             "start", "joints", ", ".join(start.joints), f"expects a policy for {', '.join(joints)}"
         )
-    linear = [layer for layer in actor.mlp if isinstance(layer, torch.nn.Linear)]
+    linear = [layer for layer in plain_layers(actor.mlp) if isinstance(layer, torch.nn.Linear)]
     shapes = [tuple(layer.weight.shape) for layer in linear]
     if [w.shape[0] for w in start.weights] != [s[0] for s in shapes]:
         found = [int(w.shape[0]) for w in start.weights]
@@ -241,7 +249,7 @@ def fits_critic(critic: MLPModel, start: StartPolicy, task: str, columns: list[s
     old = start.critic
     if old is None or start.source["task"] != task or list(old.columns) != columns:
         return False
-    linear = [layer for layer in critic.mlp if isinstance(layer, torch.nn.Linear)]
+    linear = [layer for layer in plain_layers(critic.mlp) if isinstance(layer, torch.nn.Linear)]
     return [w.shape for w in old.weights] == [tuple(layer.weight.shape) for layer in linear]
 
 
@@ -261,7 +269,7 @@ def _put(
     deviation: np.ndarray,
 ) -> None:
     """Set weights, biases and normaliser of a network."""
-    linear = [layer for layer in network.mlp if isinstance(layer, torch.nn.Linear)]
+    linear = [layer for layer in plain_layers(network.mlp) if isinstance(layer, torch.nn.Linear)]
     with torch.no_grad():
         for layer, (weight, offset) in zip(linear, layers, strict=True):
             layer.weight.copy_(torch.from_numpy(weight))

@@ -103,12 +103,25 @@ class Environment:
             else simulation_models(self.designs, task.physics)
         )
         """MuJoCo model of each design; shared, not to be written into."""
-        self.layouts: list[Layout] = [layout_of(one) for one in self.designs]
+        distinct = {id(model): one for model, one in zip(self.models, self.designs, strict=True)}
+        of_model = {
+            key: layout_of(one) for key, one in distinct.items()
+        }  # equal ones share a model
+        self.layouts: list[Layout] = [of_model[id(model)] for model in self.models]
         """Names, order and numbers of joints, motors and pads of each design."""
         if any(alteration.edits for alteration in self.alterations):
             self.layouts = [
                 dataclasses.replace(layout, weight=float(model.body_mass.sum()) * GRAVITY)
                 for layout, model in zip(self.layouts, self.models, strict=True)
+            ]
+        if task.designs is not None:
+            self.layouts = [
+                dataclasses.replace(
+                    layout,
+                    observed=task.designs.numbers(one),
+                    observed_names=tuple(task.designs.columns),
+                )
+                for layout, one in zip(self.layouts, self.designs, strict=True)
             ]
         self.design_index: np.ndarray = np.arange(simulations) // (simulations // number)
         """Design of each simulation, `(n,)`."""

@@ -70,6 +70,10 @@ class Layout:
     robot has none."""
     mirror_feet: tuple[int, ...] = (1, 0)
     """Place of each foot's mirror image, `(F,)`; empty where the robot has none."""
+    observed: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+    """Numbers of the design that are observed, scaled by their ranges, `(k,)`."""
+    observed_names: tuple[str, ...] = ()
+    """Their names, `(k,)`."""
 
     @property
     def batched(self) -> bool:
@@ -128,6 +132,7 @@ _NUMBERS = (
     "weight",
     "standing_height",
     "default_height",
+    "observed",
 )
 """Fields that differ within a batch."""
 

@@ -86,6 +86,14 @@ def height_scan(state: State, robot: Robot) -> list[np.ndarray]:
     return [np.broadcast_to(height, (len(height), SCAN[0] * SCAN[1]))]
 
 
+def design(state: State, robot: Robot) -> list[np.ndarray]:
+    """Numbers of the robot's design, scaled by the ranges over which the task's designs are drawn;
+    the same throughout an episode.
+    """
+    observed = robot.layout.observed
+    return [np.broadcast_to(observed, (len(state.command), observed.shape[-1]))]
+
+
 def _proprioception_columns(layout: Layout) -> list[Column]:
     joints = len(layout.joints)
     return [
@@ -126,6 +134,7 @@ PARTS: dict[str, Part] = {
     "height_scan": Part(
         "height_scan", height_scan, lambda layout: [("height_scan", SCAN[0] * SCAN[1], ())]
     ),
+    "design": Part("design", design, lambda layout: [(n, 1, (1,)) for n in layout.observed_names]),
 }
 """All parts by name. Columns without signs swap sides instead: joints and feet left and right, scan
 points across."""

@@ -18,6 +18,7 @@ from hyperleg_design.robot.mjcf import TIME_STEP
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.simulation import human_gait
 from hyperleg_design.simulation.commands import VelocityCommands, WaypointCommands
+from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
 from hyperleg_design.simulation.observations import PARTS
 from hyperleg_design.simulation.rewards import TERMS
 from hyperleg_design.simulation.settings import (
@@ -81,6 +82,8 @@ class Task:
     posture_deg: Mapping[str, float] = field(default_factory=dict)
     """Default posture by joint, both sides alike, in place of the design's [deg]: robots start in
     it and actions are added to it."""
+    designs: DesignRanges | None = None
+    """Ranges that designs are drawn from in training, for a task that observes the design."""
 
     def __post_init__(self) -> None:
         goal = isinstance(self.commands, WaypointCommands)
@@ -102,6 +105,10 @@ class Task:
         for group in GROUPS:
             if not self.observations.get(group):
                 raise InputError(self.name, f"observations.{group}", None, "is missing or empty")
+        if any("design" in parts for parts in self.observations.values()) != bool(self.designs):
+            raise InputError(
+                self.name, "designs", None, "must be there just where the part design is observed"
+            )
 
     @property
     def deviations(self) -> dict[str, str]:
@@ -161,6 +168,14 @@ class Task:
                     f"a task for any walker such as walk_any",
                 )
 
+    def conditioned(self, designs: DesignRanges) -> Task:
+        """The same task with the design, scaled by these ranges, in every observation group."""
+        parts = {
+            group: (*(part for part in parts if part != "design"), "design")
+            for group, parts in self.observations.items()
+        }
+        return self.changed(observations=parts, designs=designs)
+
     def changed(self, **sections: Any) -> Task:
         """A copy with other sections."""
         return dataclasses.replace(self, **sections)
@@ -200,6 +215,7 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
         "observations",
         "rewards",
         "posture_deg",
+        "designs",
         *_SECTIONS,
     }
     for key in data:
@@ -232,6 +248,7 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
     try:
         return Task(
             posture_deg=posture,
+            designs=design_ranges(data["designs"], "designs") if "designs" in data else None,
             name=str(data["name"]),
             commands=_commands(data["commands"], where),
             observations=observations,

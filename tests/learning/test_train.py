@@ -12,6 +12,8 @@ import pytest
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.learning.preset import Preset, preset_from_mapping
 from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, policies, read_status
+from hyperleg_design.simulation.design_observation import DesignRanges, Range
+from hyperleg_design.simulation.design_spread import DesignSpread
 
 torch = pytest.importorskip("torch")
 onnxruntime = pytest.importorskip("onnxruntime")
@@ -235,3 +237,51 @@ def test_a_quadruped_trains_and_its_policy_is_evaluated(tiny: Preset, tmp_path: 
     with pytest.raises(InputError, match=r"hip_deviation.*lacks joints hip_yaw"):
         train("walk", "mini_cheetah", 0, tiny, tmp_path / "other")
     assert not (tmp_path / "other").exists()
+
+
+SPREAD = DesignSpread(
+    ranges=DesignRanges(
+        {
+            "toe.mass": Range(0.05, 1.0, log=True),
+            "transmission.scale.knee": Range(0.8, 1.25, log=True),
+        }
+    ),
+    pool=4,
+    redraw_every=2,
+)
+
+
+def test_a_conditioned_training_resumes_bit_for_bit(tiny: Preset, tmp_path: Path) -> None:
+    assert train("walk", "toe", 7, tiny, tmp_path / "straight", designs=SPREAD)
+    assert not train("walk", "toe", 7, tiny, tmp_path / "parts", designs=SPREAD, iterations=3)
+    assert train("walk", "toe", 7, tiny, tmp_path / "parts", designs=SPREAD)
+    straight, parts = networks(tmp_path / "straight"), networks(tmp_path / "parts")
+    for name, value in straight.items():
+        np.testing.assert_array_equal(parts[name], value, err_msg=name)
+    assert (tmp_path / "straight" / POLICY).read_bytes() == (
+        tmp_path / "parts" / POLICY
+    ).read_bytes()
+    with pytest.raises(InputError, match="another training"):
+        train("walk", "toe", 7, tiny, tmp_path / "parts")
+
+
+def test_a_conditioned_policy_knows_its_ranges(tiny: Preset, tmp_path: Path) -> None:
+    from hyperleg_design.evaluation.policy import check_layout, load_policy
+    from hyperleg_design.evaluation.training_fit import training_fit
+    from hyperleg_design.robot.design import load_design
+    from hyperleg_design.simulation.environment import Environment
+
+    train("walk", "toe", 0, tiny, tmp_path / "run", designs=SPREAD)
+    policy = load_policy(tmp_path / "run" / POLICY)
+    assert policy.columns[-2:] == ("design.toe.mass", "design.transmission.scale.knee")
+    design = load_design("toe")
+    assert training_fit(policy, design.with_values({"toe.mass": 0.9})).kind == "conditioned"
+    assert training_fit(policy, design.with_values({"toe.mass": 1.1})).outside == ("toe.mass",)
+    heavy = design.with_values({"toe.mass": np.array([0.05, 1.0])})
+    environment = Environment(heavy, policy.task, simulations=4)
+    check_layout(policy, environment)
+    observation = environment.reset()["policy"]
+    np.testing.assert_allclose(observation[:, -2], [-1, -1, 1, 1], atol=1e-6)
+    np.testing.assert_allclose(observation[:, -1], 0, atol=1e-6)
+    stepped = environment.step(policy(observation)).observations["policy"]
+    np.testing.assert_array_equal(stepped[:, -2:], observation[:, -2:])

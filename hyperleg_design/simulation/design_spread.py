@@ -1,0 +1,136 @@
+"""Designs that a training draws from, and those that are kept apart for checks: ranges of leaves,
+and how many designs with which seed.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot import parameters
+from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.design import Design
+
+TRIES = 4
+"""Designs that are drawn for each that is needed before drawing is given up: some ranges have
+corners that are no robots."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DesignSpread:
+    """What designs a training draws from; read from `sim/designs_*.yaml` or a user's file."""
+
+    ranges: DesignRanges
+    pool: int = 128
+    """Designs in the pool."""
+    seed: int = 1
+    """Of the pool: two trainings with different seeds have the same designs."""
+    redraw_every: int = 50
+    """Iterations for which a simulation keeps its design."""
+    held_out: int = 12
+    """Designs for checks, drawn from the same ranges and never trained on."""
+    held_out_seed: int = 1000
+    """Of the designs for checks, other than `seed`."""
+
+    def to_mapping(self) -> dict[str, Any]:
+        """As JSON takes it."""
+        return {**dataclasses.asdict(self), "ranges": self.ranges.to_mapping()}
+
+    def designs(self, base: Design) -> Design:
+        """The pool, a batch of `pool` designs: `base` with the drawn leaves."""
+        return _drawn(base, self.ranges, self.pool, self.seed)
+
+    def held_out_designs(self, base: Design) -> Design:
+        """The designs for checks, a batch of `held_out`."""
+        return _drawn(base, self.ranges, self.held_out, self.held_out_seed)
+
+
+_WHOLE = {
+    "pool": (1, 1024),
+    "seed": (0, 2**31),
+    "redraw_every": (1, 1e6),
+    "held_out": (1, 1024),
+    "held_out_seed": (0, 2**31),
+}
+"""Least and largest value of the numbers in a file."""
+
+
+def load_design_spread(name: str | Path) -> DesignSpread:
+    """Read the designs that a training draws from.
+
+    Args:
+        name: a shipped name such as `toe`, or a YAML file with `ranges:` of leaves (`low`, `high`,
+            `log`), and the other fields of `DesignSpread` where they differ from its defaults.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    path = resources.find_sim("designs", name)
+    return design_spread(read_yaml(path), short_name(path))
+
+
+def design_spread(data: Mapping[str, Any], where: str) -> DesignSpread:
+    """The same from nested mappings.
+
+    Raises:
+        InputError: unknown or missing field, or a value that makes no sense.
+    """
+    values = {key: value for key, value in data.items() if key not in ("description", "ranges")}
+    for key, value in values.items():
+        if key not in _WHOLE:
+            raise InputError(
+                where, str(key), value, parameters.unknown(str(key), ["ranges", *_WHOLE])
+            )
+        low, high = _WHOLE[key]
+        whole = isinstance(value, int) and not isinstance(value, bool)
+        if not whole or not low <= value <= high:
+            raise InputError(where, key, value, f"expects a whole number, {low:g} .. {high:g}")
+    spread = DesignSpread(ranges=design_ranges(data.get("ranges"), f"{where}: ranges"), **values)
+    if spread.seed == spread.held_out_seed:
+        raise InputError(
+            where, "held_out_seed", spread.seed, "must differ from seed, or checks see the pool"
+        )
+    return spread
+
+
+def _drawn(base: Design, ranges: DesignRanges, count: int, seed: int) -> Design:
+    """Designs drawn evenly over ranges, without those that are no robots, a batch.
+
+    Raises:
+        InputError: too many of the drawn designs are no robots; names the last one's reason.
+    """
+    rng = np.random.default_rng(seed)
+    drawn: list[dict[str, Any]] = []
+    error: InputError | None = None
+    for _ in range(TRIES * count):
+        values = {path: value[0] for path, value in ranges.draw(1, rng).items()}
+        try:
+            base.with_values(values, "design ranges")
+        except InputError as reason:
+            error = reason
+            continue
+        drawn.append(values)
+        if len(drawn) == count:
+            break
+    else:
+        assert error is not None
+        raise InputError(
+            "design ranges",
+            error.field,
+            error.value,
+            f"{error.remedy}; only {len(drawn)} of {TRIES * count} drawn designs are robots: "
+            f"narrow the ranges",
+        )
+    return base.with_values(
+        {path: np.array([values[path] for values in drawn]) for path in ranges.ranges}
+    )
