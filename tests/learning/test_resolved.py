@@ -4,8 +4,10 @@ import json
 
 import pytest
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.learning.preset import load_preset, preset_from_mapping
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
+from hyperleg_design.simulation.design_spread import load_design_spread
 from hyperleg_design.simulation.tasks import load_task, task_from_mapping, task_names
 
 
@@ -27,3 +29,24 @@ def test_a_preset_comes_back_from_json(name: str, task: str) -> None:
     assert json.loads(json.dumps(preset_mapping(again, task))) == mapping
     assert again.stages(task) is not None
     assert again.total_iterations(task) == load_preset(name).total_iterations(task)
+
+
+def test_a_task_of_many_designs_comes_back_from_json() -> None:
+    ranges = load_design_spread("toe").ranges
+    task = load_task("walk_upright").conditioned(ranges)
+    mapping = json.loads(json.dumps(task_mapping(task)))
+    again = task_from_mapping(mapping, "json")
+    assert again.designs == ranges
+    assert all(parts[-1] == "design" for parts in again.observations.values())
+    assert json.loads(json.dumps(task_mapping(again))) == mapping
+
+
+@pytest.mark.parametrize("part", ["designs", "observations"])
+def test_design_part_and_ranges_need_each_other(part: str) -> None:
+    mapping = task_mapping(load_task("walk_upright").conditioned(load_design_spread("toe").ranges))
+    if part == "designs":
+        del mapping["designs"]
+    else:
+        mapping["observations"] = task_mapping(load_task("walk_upright"))["observations"]
+    with pytest.raises(InputError, match="designs"):
+        task_from_mapping(mapping, "json")
