@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.design_spread import DesignSpread
 
 EVEN = 0.5
@@ -32,7 +32,9 @@ class DesignSampler:
         seed: of the training.
     """
 
-    def __init__(self, base: Design, spread: DesignSpread, simulations: int, seed: int) -> None:
+    def __init__(
+        self, base: RobotDesign, spread: DesignSpread, simulations: int, seed: int
+    ) -> None:
         self.pool, self.spread, self.seed = spread.designs(base), spread, seed
         self.simulations, self.draws = simulations, 0
         self.fall_rate = np.zeros(spread.pool)
@@ -43,7 +45,7 @@ class DesignSampler:
         self._draw()
 
     @property
-    def design(self) -> Design:
+    def design(self) -> RobotDesign:
         """The simulations' designs, a batch."""
         return self.pool.rows(self.assigned)
 

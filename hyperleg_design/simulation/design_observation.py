@@ -17,7 +17,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot import parameters
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 WITHIN = 1e-9
 """Share of a range by which rounding may put a number outside of it."""
@@ -61,14 +61,14 @@ class DesignRanges:
         """A name for each number."""
         return [f"design.{path}" for path in self.ranges]
 
-    def numbers(self, design: Design) -> np.ndarray:
+    def numbers(self, design: RobotDesign) -> np.ndarray:
         """Observed numbers of a robot `(k,)` or a batch `(n, k)`, within -1 .. 1 inside the
         ranges.
         """
         values = [one.scaled(np.asarray(design[path], float)) for path, one in self.ranges.items()]
         return np.stack(np.broadcast_arrays(*values), -1)
 
-    def outside(self, design: Design) -> list[str]:
+    def outside(self, design: RobotDesign) -> list[str]:
         """Leaves of one robot that lie outside their range."""
         numbers = self.numbers(design)
         return [

@@ -19,7 +19,7 @@ from hyperleg_design.robot import parameters
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 TRIES = 4
 """Designs that are drawn for each that is needed before drawing is given up: some ranges have
@@ -46,11 +46,11 @@ class DesignSpread:
         """As JSON takes it."""
         return {**dataclasses.asdict(self), "ranges": self.ranges.to_mapping()}
 
-    def designs(self, base: Design) -> Design:
+    def designs(self, base: RobotDesign) -> RobotDesign:
         """The pool, a batch of `pool` designs: `base` with the drawn leaves."""
         return _drawn(base, self.ranges, self.pool, self.seed)
 
-    def held_out_designs(self, base: Design) -> Design:
+    def held_out_designs(self, base: RobotDesign) -> RobotDesign:
         """The designs for checks, a batch of `held_out`."""
         return _drawn(base, self.ranges, self.held_out, self.held_out_seed)
 
@@ -103,7 +103,7 @@ def design_spread(data: Mapping[str, Any], where: str) -> DesignSpread:
     return spread
 
 
-def _drawn(base: Design, ranges: DesignRanges, count: int, seed: int) -> Design:
+def _drawn(base: RobotDesign, ranges: DesignRanges, count: int, seed: int) -> RobotDesign:
     """Designs drawn evenly over ranges, without those that are no robots, a batch.
 
     Raises:

@@ -104,9 +104,8 @@ class Environment:
         )
         """MuJoCo model of each design; shared, not to be written into."""
         distinct = {id(model): one for model, one in zip(self.models, self.designs, strict=True)}
-        of_model = {
-            key: layout_of(one) for key, one in distinct.items()
-        }  # equal ones share a model
+        # Equal designs share a model, and so a layout.
+        of_model = {key: layout_of(one) for key, one in distinct.items()}
         self.layouts: list[Layout] = [of_model[id(model)] for model in self.models]
         """Names, order and numbers of joints, motors and pads of each design."""
         if any(alteration.edits for alteration in self.alterations):
