@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from hyperleg_design.errors import InputError
 
@@ -259,17 +260,15 @@ def moved_inertial(parameters: np.ndarray, rotation: np.ndarray, offset: np.ndar
 
 
 def quaternion_rotation(wxyz: np.ndarray) -> np.ndarray:
-    """Rotation matrices `(..., 3, 3)` of quaternions `(..., 4)`, w first, of any length but
-    zero.
+    """Rotation matrices `(..., 3, 3)` of quaternions `(..., 4)`, w first, of any length but zero;
+    NaN where a quaternion is unknown.
     """
     q = np.asarray(wxyz, float)
-    w, x, y, z = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.stack([np.stack(row, -1) for row in rows], -2)
+    rows = q.reshape(-1, 4)
+    known = np.isfinite(rows).all(1)
+    turned = np.full((len(rows), 3, 3), np.nan)
+    turned[known] = Rotation.from_quat(rows[known], scalar_first=True).as_matrix()
+    return turned.reshape(*q.shape[:-1], 3, 3)
 
 
 def pinocchio_model(tree: Mechanism, gravity: np.ndarray) -> pinocchio.Model:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model.base import BaseMotion
@@ -171,7 +172,7 @@ def _integrated(
             turn = turn + LEVELLING * steps[tick] * np.cross(
                 force[tick] / size[tick], rotation.T @ up
             )
-        rotation = rotation @ _rotation_vector(turn)
+        rotation = rotation @ Rotation.from_rotvec(turn).as_matrix()
     return out
 
 
@@ -181,15 +182,4 @@ def _turn_onto(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     sine = float(np.linalg.norm(axis))
     if sine < 1e-9:
         return np.eye(3) if cosine > 0 else np.diag([1.0, -1.0, -1.0])
-    return _rotation_vector(axis / sine * np.arctan2(sine, cosine))
-
-
-def _rotation_vector(turn: np.ndarray) -> np.ndarray:
-    angle = float(np.sqrt(turn @ turn))
-    x, y, z = turn
-    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    if angle < 1e-9:
-        return np.eye(3) + skew
-    return np.asarray(
-        np.eye(3) + np.sin(angle) / angle * skew + (1 - np.cos(angle)) / angle**2 * skew @ skew
-    )
+    return np.asarray(Rotation.from_rotvec(axis / sine * np.arctan2(sine, cosine)).as_matrix())

@@ -105,3 +105,16 @@ def test_several_joints_in_one_body_slides_and_references():
         data.qpos[:], data.qvel[:], data.qacc[:] = q[tick], v[tick], a[tick]
         mujoco.mj_inverse(model, data)
         np.testing.assert_allclose(torque[tick], data.qfrc_inverse, atol=1e-9)
+
+
+def test_rotations_of_quaternions_are_mujocos_and_unknown_where_they_are():
+    rng = np.random.default_rng(3)
+    quaternions = rng.normal(size=(2, 5, 4))
+    quaternions[1, 2, 0] = np.nan
+    turned = quaternion_rotation(quaternions)
+    assert turned.shape == (2, 5, 3, 3)
+    assert np.isnan(turned[1, 2]).all()
+    own = np.zeros(9)
+    unit = quaternions[0, 1] / np.linalg.norm(quaternions[0, 1])
+    mujoco.mju_quat2Mat(own, unit)
+    np.testing.assert_allclose(turned[0, 1].ravel(), own, atol=1e-12)
