@@ -15,7 +15,10 @@ import hyperleg_design
 from hyperleg_design import cli
 
 ROOT = Path(hyperleg_design.__file__).resolve().parent.parent
-TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
+TUTORIALS = [
+    *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
+    ROOT / "docs" / "how-to" / "add_a_robot.md",
+]
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
 AS_EXACT = 0.05
 """Share by which fitted numbers may differ between machines."""

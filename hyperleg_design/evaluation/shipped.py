@@ -66,6 +66,15 @@ class Shipped:
         """Folder and file without ending, as `OnnxPolicy.name` has it."""
         return f"{self.path.parent.name}/{self.path.stem}"
 
+    @property
+    def family(self) -> str:
+        """Family of the design that was trained, `hyperleg` where the training does not say."""
+        try:
+            design = json.loads((self.path.parent / RUN).read_text())["design"]
+            return str(design.get("family", "hyperleg"))
+        except (OSError, ValueError, KeyError, AttributeError, TypeError):
+            return "hyperleg"
+
 
 @dataclass(frozen=True)
 class Packed:

@@ -21,7 +21,7 @@ from hyperleg_design.learning.preset import load_preset
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.learning.status import CHECKPOINT, POLICY, RUN, read_status
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.parameters import Rule, checked, unknown
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.writing import MARKER, check_output_folder, write_text
@@ -119,7 +119,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
                 where, f"groups.{g}.designs", group["designs"], "expects a list of designs"
             )
         for d, design in enumerate(group["designs"]):
-            load_design(str(design))
+            load_robot(str(design))
             for seed in range(_whole(group["seeds"], where, f"groups.{g}.seeds")):
                 if start and (str(design), seed) not in before:
                     raise InputError(
@@ -271,7 +271,7 @@ def _is_shipped(run: Run) -> bool:
         found = json.loads((place / RUN).read_text())
     except (OSError, ValueError):
         return False
-    task, design = load_task(run.task), load_design(run.design)
+    task, design = load_task(run.task), load_robot(run.design)
     today = {
         "task": task_mapping(task),
         "design": design.to_mapping(),

@@ -228,6 +228,7 @@ class Training:
             return True
         writer = self._writer(first)
         shown, began = 0.0, time.monotonic()
+        measures: dict[str, Any] = {}
         with self._stoppable():
             while schedule.iteration < last and not self._stop:
                 started, worked = time.monotonic(), time.process_time()

@@ -18,7 +18,8 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.gymnasium_vector import ACTION_BOUND, GymnasiumVector
 from hyperleg_design.simulation.tasks import Task, load_task
@@ -33,7 +34,7 @@ class GymnasiumSingle(gymnasium.Env):  # type: ignore[misc]
     def __init__(
         self,
         task: str | Path | Task = "walk",
-        design: str | Path | Design = "toe",
+        design: str | Path | RobotDesign = "toe",
         *,
         seed: int = 0,
         group: str = "policy",
@@ -52,7 +53,7 @@ class GymnasiumSingle(gymnasium.Env):  # type: ignore[misc]
             InputError: a task, design or seed that cannot be used.
         """
         self.task = task if isinstance(task, Task) else load_task(task)
-        self.design = design if isinstance(design, Design) else load_design(design)
+        self.design = design if isinstance(design, RobotDesign) else load_robot(design)
         self.group, self.render_mode = group, render_mode
         self._begin(seed)
         size = self.environment.observation_sizes[group]
@@ -90,13 +91,13 @@ class GymnasiumSingle(gymnasium.Env):  # type: ignore[misc]
 def _vector(
     num_envs: int = 1,
     task: str | Path | Task = "walk",
-    design: str | Path | Design = "toe",
+    design: str | Path | RobotDesign = "toe",
     seed: int = 0,
     threads: int | None = None,
 ) -> GymnasiumVector:
     """Entry point of `gymnasium.make_vec`."""
     environment = Environment(
-        design if isinstance(design, Design) else load_design(design),
+        design if isinstance(design, RobotDesign) else load_robot(design),
         task if isinstance(task, Task) else load_task(task),
         simulations=num_envs,
         seed=seed,

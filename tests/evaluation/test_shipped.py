@@ -147,3 +147,11 @@ def test_nothing_foreign_is_packed_or_overwritten(campaign, tmp_path):
     with pytest.raises(OutputError):
         shipped.pack(campaign, tmp_path / "packed")
     assert [p.name for p in mine.iterdir()] == ["thesis.txt"]
+
+
+def test_trainings_of_other_robots_say_so(campaign):
+    (one,) = [p for p in shipped.shipped_policies(campaign, late=False) if p.group == "walk"]
+    assert one.family == "hyperleg"
+    found = json.loads((one.path.parent / "run.json").read_text())
+    (one.path.parent / "run.json").write_text(json.dumps({**found, "design": {"family": "tree"}}))
+    assert one.family == "tree"

@@ -51,3 +51,10 @@ def test_many_at_once():
     assert observations.shape[0] == 3
     assert env.single_action_space.shape == (12,)
     env.close()
+
+
+def test_a_quadruped_is_an_environment_too():
+    env = gymnasium.make("hyperleg/Walk-v0", design="mini_cheetah", task="walk_any")
+    assert env.action_space.shape == (12,)
+    observation, _ = env.reset(seed=0)
+    assert env.step(np.zeros(12, np.float32))[0].shape == observation.shape

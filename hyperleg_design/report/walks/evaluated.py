@@ -122,7 +122,7 @@ def evaluate_shipped(
     Raises:
         InputError: no such folder, a policy that cannot be used, or the same policy twice.
     """
-    policies = shipped_policies(folder)
+    policies = [one for one in shipped_policies(folder) if one.family == "hyperleg"]
     check_different(policy.path for policy in policies)
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
     kinds = [
@@ -219,7 +219,7 @@ def coverage(folder: str | Path | None = None) -> dict[str, list[str]]:
     Raises:
         InputError: no such folder.
     """
-    policies = shipped_policies(folder, late=False)
+    policies = [p for p in shipped_policies(folder, late=False) if p.family == "hyperleg"]
     return {
         "evaluated": [policy.training for policy in policies],
         "missing": missing_trainings(policies),
