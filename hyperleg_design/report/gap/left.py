@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.gap.playback.evidence import Evidence
+from hyperleg_design.gap.playback.evidence import Evidence, rms
 
 TURN = 0.05
 """Speed over which friction turns its direction in this fit [rad/s]."""
@@ -73,18 +73,40 @@ def hints(shapes: Sequence[Mapping[str, Any]], shown: Sequence[Evidence]) -> lis
         shown: evidence of its logs, all of one residual.
     """
     alike = [one for one in shown if one.residual_name == "motion"]
-    sentences, plainly = [], set()
+    rows = alike[0].rows if alike else ()
+    fits = [friction(alike, row) for row in range(len(rows))]
+    sentences: dict[str, None] = {}
     for shape in shapes:
         place = str(shape["location"])
-        if alike and place in alike[0].rows:
-            if place in plainly:
-                continue
-            fit = friction(alike, alike[0].rows.index(place))
-            if fit.share >= max(PLAIN, NEARLY * float(shape.get("closed_beyond", 0.0))):
-                sentences.append(fit.sentence(place))
-                plainly.add(place)
-                continue
+        enough = max(PLAIN, NEARLY * float(shape.get("closed_beyond", 0.0)))
+        if place in rows:
+            fit = fits[rows.index(place)]
+            plain = fit.sentence(place) if fit.share >= enough else ""
+        else:
+            plain = _everywhere(alike, fits, enough)
+        if plain:
+            sentences[plain] = None
+            continue
         says = str(shape["says"]).removeprefix(place).lstrip(": ")
         where = "" if place == "robot" else f" at {place}"
-        sentences.append(f"Left{where}: {says}.")
-    return sentences
+        sentences[f"Left{where}: {says}."] = None
+    return list(sentences)
+
+
+def _everywhere(shown: Sequence[Evidence], fits: Sequence[Friction], enough: float) -> str:
+    """A sentence on friction of all joints, where it explains enough of what is left of them."""
+    if not shown:
+        return ""
+    squares = np.nan_to_num(rms(np.concatenate([one.after for one in shown]))) ** 2
+    share = float(squares @ [fit.share for fit in fits]) / max(float(squares.sum()), 1e-300)
+    if share < enough:
+        return ""
+    sizes = ", ".join(
+        f"{joint} {fit.constant:.2g} Nm and {fit.viscous:.2g} Nms/rad"
+        for joint, fit in zip(shown[0].rows, fits, strict=True)
+        if fit.share >= PLAIN
+    )
+    return (
+        "Left: torques that go with the joints' speeds as plain friction does, "
+        f"{100 * share:.0f} % of what is left ({sizes})."
+    )

@@ -140,7 +140,7 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
         diagnosis: as `diagnosis.json` holds it.
         left: sentences on what is left.
     """
-    texts, gap = [], diagnosis["gap"]
+    texts, gap, remainder = [], diagnosis["gap"], diagnosis.get("remainder")
     if diagnosis["causes"]:
         closed = float(gap["closed"])
         if closed < LEAST_CLOSED and diagnosis.get("at_rest"):
@@ -149,11 +149,8 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
             low, high = (100 * float(v) for v in gap["closed_interval"])
             much = "All" if closed >= NOTHING_LEFT else f"{100 * closed:.0f} %"
             wide = f" (95 % interval {low:.0f} to {high:.0f} %)" if high - low >= 1 else ""
-            texts.append(
-                f"{much} of the gap beyond the noise floor is gone on data that the fit has not "
-                f"seen{wide}."
-            )
-    remainder = diagnosis.get("remainder")
+            what = "what effects can explain" if remainder else "the gap beyond the noise floor"
+            texts.append(f"{much} of {what} is gone on data that the fit has not seen{wide}.")
     if remainder:
         texts.append(f"{100 * float(remainder):.0f} % of the gap is left that no effect explains.")
     if diagnosis["verdict"] == "unknown":

@@ -41,3 +41,16 @@ def test_another_shape_is_said_where_friction_does_not_fit() -> None:
     assert hints([SHAPE], shown(rng.normal(size=3000), SPEED)) == [
         "Left at hinge: a torque that drifts with time."
     ]
+
+
+def test_friction_of_all_joints_is_said_before_a_shape_of_the_whole_robot() -> None:
+    other = 2 * np.cos(np.arange(3000) * 0.013)
+    left = np.column_stack([0.3 * np.sign(SPEED), 0.1 * np.sign(other)])
+    time, speed = np.arange(3000) * 0.01, np.column_stack([SPEED, other])
+    both = [Evidence("run", "motion", ("hip", "knee"), time, left, 0 * left, speed)]
+    tilt = {"location": "robot", "says": "gravity from elsewhere", "closed_beyond": 0.9}
+    (sentence,) = hints([tilt], both)
+    assert sentence.startswith("Left: torques that go with the joints' speeds as plain friction")
+    assert "hip 0.31 Nm" in sentence
+    assert "knee 0.1 Nm" in sentence
+    assert hints([tilt], []) == ["Left: gravity from elsewhere."]
