@@ -21,6 +21,7 @@ from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, WalkPro
 from hyperleg_design.evaluation.result import by_checkpoint, trial_table
 from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.shipped import check_different, find_policy
+from hyperleg_design.robot.load import walker
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.surroundings import Slope, TorqueConstants, UnevenFloor
 
@@ -189,7 +190,7 @@ def robustness(
         name: tuple((levels or {}).get(name, CONDITIONS[name].levels))
         for name in conditions_of(conditions, protocol)
     }
-    designs = [load_policy(policy).design for policy in policies]
+    designs = [walker(load_policy(policy).design, "robustness") for policy in policies]
     count, done, tables = sum(map(len, chosen.values())), 0, []
     for name, values in chosen.items():
         for level in values:
@@ -226,7 +227,11 @@ def curves(table: pd.DataFrame, kind: str = "walk") -> list[CurvePoint]:
             made = statistics.share if measure == "arrived" else statistics.estimate
             points.append(
                 CurvePoint(
-                    str(name), float(level), str(variant), measure, made(groups, resamples=1000)
+                    str(name),
+                    float(str(level)),
+                    str(variant),
+                    measure,
+                    made(groups, resamples=1000),
                 )
             )
     return points
