@@ -13,7 +13,7 @@ from typing import Annotated, Any, Union
 import tyro
 
 from hyperleg_design import __version__
-from hyperleg_design.cli import design, gap, look, policies, search, validate
+from hyperleg_design.cli import design, gap, look, policies, search, validate, variants
 from hyperleg_design.cli.arguments import check_bounds
 from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.robot.motors import use_folder
@@ -57,6 +57,7 @@ VERBS: dict[str, Any] = {
     "campaign": policies.Campaign,
     "evaluate": policies.Evaluate,
     "robustness": policies.Robustness,
+    "variants": variants.Variants,
     "view": look.View,
     "video": look.Video,
     "paper": policies.Paper,

@@ -1,0 +1,58 @@
+"""Verb on policies for many designs; no logic of its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from hyperleg_design.cli.arguments import AtLeast
+from hyperleg_design.cli.output import Printing, emit
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variants(Printing):
+    """Check a policy for many designs on held-out designs, beside other policies on the same."""
+
+    policies: Annotated[tuple[str, ...], tyro.conf.Positional]
+    """The policy to judge, then those to compare with: ONNX files or shipped names; a path with {}
+    is one policy for each design, by its number."""
+    designs: str = "toe"
+    """Designs, of which the held-out ones are evaluated: shipped name or YAML file."""
+    protocol: str = "walk"
+    """Walk protocol: shipped name or YAML file."""
+    out: Path
+    """Folder to write tables to."""
+    threads: Annotated[int, AtLeast(1)] = 1
+    """Of the simulation."""
+
+    def run(self) -> None:
+        """Evaluate, write and print."""
+        from hyperleg_design.evaluation.held_out import check_held_out
+        from hyperleg_design.writing import MARKER, check_output_folder, write_text
+
+        folder = check_output_folder(self.out)
+        check = check_held_out(self.policies, self.designs, self.protocol, threads=self.threads)
+        write_text(folder / MARKER, "made by hyperleg\n")
+        write_text(folder / "held_out.csv", check.rows.to_csv(index=False))
+        write_text(folder / "comparisons.csv", check.comparisons.to_csv(index=False))
+        if self.json:
+            rows = check.rows.astype(object).where(check.rows.notna(), None).to_dict("records")
+            others = check.comparisons.astype(object).where(check.comparisons.notna(), None)
+            emit({"folder": folder, "rows": rows, "comparisons": others.to_dict("records")})
+            return
+        shown = [
+            "policy",
+            "design",
+            "trained",
+            "arrived",
+            "fell",
+            "cost_of_transport",
+            "steady_speed",
+        ]
+        print(check.rows[shown].to_string(index=False, float_format="{:.3f}".format))
+        if len(check.comparisons):
+            print(check.comparisons.to_string(index=False, float_format="{:.3f}".format))
+        print(f"tables in {folder}")

@@ -1,0 +1,128 @@
+"""Check of a policy for many designs on designs that it was never trained on, beside other policies
+on the same designs: another one for all of them, or a specialist for each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.evaluate import evaluate, evaluate_designs
+from hyperleg_design.evaluation.policy import load_policy
+from hyperleg_design.evaluation.rollout import ARRIVED, FELL
+from hyperleg_design.simulation.design_spread import load_design_spread
+
+if TYPE_CHECKING:
+    from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.simulation.design_spread import DesignSpread
+
+EACH = "{}"
+"""In the path of a policy: it stands for the number of the design, one policy a design."""
+COST, SPEED = "cost_of_transport", "steady_speed"
+RATIO_AIM, RANK_AIM, FALLS_AIM = 1.05, 0.8, 0.02
+"""Aims, assumed: cost of transport at most 5 % over the specialist's in the median design, rank
+correlation over designs, and share of trials that fall beyond the specialist's."""
+
+
+@dataclass(frozen=True)
+class HeldOutCheck:
+    """What policies do on held-out designs."""
+
+    rows: pd.DataFrame
+    """A row for each policy and design: `policy`, `design` (its number), `trained`, `arrived`,
+    `fell`, `trials`, means of the trials that arrived (`cost_of_transport`, `steady_speed` [m/s]),
+    and the drawn leaves by path."""
+    comparisons: pd.DataFrame
+    """A row for each other policy against the first: `cost_ratio` (first over other, median over
+    the designs on which both arrive), `rank_correlation` (Spearman's, of their costs over these
+    designs), `designs` (how many those are), `more_falls` (share of trials, first less other)."""
+
+
+def check_held_out(
+    policies: Sequence[str | Path],
+    designs: str | Path | DesignSpread,
+    protocol: str | Path | Any = "walk",
+    *,
+    threads: int | None = None,
+) -> HeldOutCheck:
+    """Evaluate policies on the held-out designs of a spread.
+
+    Args:
+        policies: ONNX files or shipped names; the first is judged, the others are what it is
+            compared with. A path with `{}` names one policy for each design, by its number.
+        designs: a shipped name, a file, or a `DesignSpread`.
+        protocol: of walks, as `evaluate` takes it.
+        threads: of the simulation; the result does not depend on it.
+
+    Raises:
+        InputError: no policy, or as in `evaluate_designs`.
+    """
+    if not policies or EACH in str(policies[0]):
+        raise InputError("held-out check", "policies", None, "expects one policy for all designs")
+    spread = load_design_spread(designs) if isinstance(designs, str | Path) else designs
+    batch = spread.held_out_designs(load_policy(policies[0]).design)
+    robots = [batch.take(i) for i in range(spread.held_out)]
+    rows: list[dict[str, Any]] = []
+    for policy in policies:
+        if EACH in str(policy):
+            done = [
+                evaluate(str(policy).replace(EACH, str(i)), protocol, design=one, threads=threads)
+                for i, one in enumerate(robots)
+            ]
+        else:
+            done = evaluate_designs(policy, batch, protocol, threads=threads)
+        for i, (robot, result) in enumerate(zip(robots, done, strict=True)):
+            leaves = {path: float(robot[path]) for path in spread.ranges.ranges}
+            rows.append({"policy": str(policy), "design": i, **_row(result), **leaves})
+    table = pd.DataFrame(rows)
+    first = table[table["policy"] == str(policies[0])]
+    others = [
+        {"policy": str(name), **compared(first, table[table["policy"] == str(name)])}
+        for name in policies[1:]
+    ]
+    return HeldOutCheck(table, pd.DataFrame(others))
+
+
+def compared(first: pd.DataFrame, other: pd.DataFrame) -> dict[str, float]:
+    """Compare two policies' rows of the same designs in the same order.
+
+    Returns:
+        As the columns of `HeldOutCheck.comparisons`; NaN where fewer than two designs count.
+    """
+    own, theirs = first[COST].to_numpy(float), other[COST].to_numpy(float)
+    both = np.isfinite(own) & np.isfinite(theirs)
+    enough = int(both.sum()) > 1
+    ranks = (pd.Series(values[both]) for values in (own, theirs))
+    return {
+        "cost_ratio": float(np.median(own[both] / theirs[both])) if enough else float("nan"),
+        "rank_correlation": float(next(ranks).corr(next(ranks), method="spearman"))
+        if enough
+        else float("nan"),
+        "designs": int(both.sum()),
+        "more_falls": float(
+            first["fell"].sum() / first["trials"].sum()
+            - other["fell"].sum() / other["trials"].sum()
+        ),
+    }
+
+
+def _row(result: Evaluation) -> dict[str, Any]:
+    """Outcomes and means of one policy on one design."""
+    arrived = np.array([outcome == ARRIVED for outcome in result.outcomes])
+    row: dict[str, Any] = {
+        "trained": result.trained.kind,
+        "arrived": int(arrived.sum()),
+        "fell": result.outcomes.count(FELL),
+        "trials": len(arrived),
+    }
+    for name in (COST, SPEED):
+        values = result.values(name)[arrived]
+        values = values[np.isfinite(values)]
+        row[name] = float(values.mean()) if len(values) else float("nan")
+    return row

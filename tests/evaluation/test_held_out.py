@@ -1,0 +1,52 @@
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.held_out import check_held_out, compared
+from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
+from hyperleg_design.simulation.design_observation import DesignRanges, Range
+from hyperleg_design.simulation.design_spread import DesignSpread
+
+
+def rows(cost: list[float], fell: list[int]) -> pd.DataFrame:
+    return pd.DataFrame({"cost_of_transport": cost, "fell": fell, "trials": 10})
+
+
+def test_ratio_ranks_and_falls_by_hand() -> None:
+    nan = float("nan")
+    first = rows([0.4, 0.6, 0.5, nan, 0.9], [0, 1, 0, 10, 0])
+    other = rows([0.4, 0.5, 0.25, 0.3, nan], [0, 0, 0, 2, 10])
+    found = compared(first, other)
+    assert found["designs"] == 3
+    assert found["cost_ratio"] == pytest.approx(1.2)
+    # ranks 1 3 2 and 2 3 1: 1 - 6 (1 + 0 + 1) / (3 (9 - 1))
+    assert found["rank_correlation"] == pytest.approx(0.5)
+    assert found["more_falls"] == pytest.approx((11 - 12) / 50)
+
+
+def test_one_common_design_gives_no_numbers() -> None:
+    found = compared(rows([0.4, np.nan], [0, 0]), rows([0.4, 0.5], [0, 0]))
+    assert np.isnan(found["cost_ratio"])
+    assert np.isnan(found["rank_correlation"])
+
+
+def test_policies_are_compared_on_the_same_designs() -> None:
+    spread = DesignSpread(
+        ranges=DesignRanges({"toe.mass": Range(0.1, 0.4)}), pool=4, held_out=2, held_out_seed=9
+    )
+    short = WalkProtocol(trials=2, distance=0.5, time_limit=1.0, steady=Steady(begin=0.1, end=0.5))
+    check = check_held_out(["walk-toe-0", "walk-toe-0"], spread, short, threads=1)
+    assert set(check.rows["design"]) == {0, 1}
+    assert set(check.rows["trained"]) == {"zero-shot"}
+    assert set(check.rows["trials"]) == {2}
+    assert check.comparisons["more_falls"].tolist() == [0.0]
+    np.testing.assert_array_less(check.rows["toe.mass"], 0.4)
+
+
+@pytest.mark.parametrize("policies", [[], ["runs/{}/policy.onnx"]])
+def test_needs_a_policy_for_all_designs(policies: list[str]) -> None:
+    with pytest.raises(InputError, match="one policy for all"):
+        check_held_out(policies, "toe")
