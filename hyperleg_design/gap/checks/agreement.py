@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.results.finding import WARNING, Finding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
 
-APART = 30.0
-"""Ratio of a signal's size to its median over all logs from which the units may differ [-]
-(assumed: motions of one robot differ by less; degrees are 57 rad)."""
 DECLARED = ("robot", "base", "gains", "torque_constant", "gravity")
 """Metadata that belong to the robot and not to a recording."""
 COMPARED = ("velocity", "joint_torque", "motor_torque", "motor_torque_command", "motor_current")
@@ -67,7 +65,7 @@ def disagreements(logs: Sequence[Log]) -> dict[str, list[Finding]]:
         middle = float(np.median(known)) if len(known) > 2 else known[0]
         for log, size in zip(logs, sizes, strict=True):
             ratio = size.get(column, middle) / middle
-            if not 1 / APART < ratio < APART:
+            if not 1 / RULES.unit.apart < ratio < RULES.unit.apart:
                 note(
                     log,
                     column,

@@ -14,6 +14,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.excitation import excitation_of
 from hyperleg_design.gap.checks.gates import unusable
 from hyperleg_design.gap.checks.plausibility import implausible
+from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects.excitation import Excitation
 from hyperleg_design.gap.logs.sampling import Column, Sampling, columns_of, sampling_of
 from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
@@ -22,16 +23,6 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
 
-SHORT = 2.0
-"""Duration below which little can be held out [s]."""
-FEW = 200
-"""Ticks below which little can be held out."""
-JITTER, DROPOUTS, MISSING, SATURATED = 0.2, 0.01, 0.01, 0.005
-"""Shares from which they are worth a word [-]."""
-SLOWEST, FASTEST = 2.0, 50_000.0
-"""Rates beyond which the time is in another unit [Hz]."""
-SLOW = 40.0
-"""Rate below which friction and delay blur [Hz]."""
 BOUNDED = (
     "joint_torque",
     "motor_torque",
@@ -189,23 +180,26 @@ def _required(log: Log, subject: Subject | None) -> list[Finding]:
 
 def _clock(sampling: Sampling) -> list[Finding]:
     found = []
-    if not SLOWEST < sampling.rate < FASTEST:
+    if not RULES.clock.slowest < sampling.rate < RULES.clock.fastest:
         text = (
             f"rows come every {sampling.step:.3g} s: the time looks like "
             f"{'milliseconds' if sampling.rate < 1 else 'another unit'}"
         )
         return [Finding(ERROR, "t", text, "give it in seconds")]
-    if sampling.duration < SHORT or sampling.ticks < FEW:
+    if sampling.duration < RULES.clock.shortest or sampling.ticks < RULES.clock.few:
         text = f"is short: {sampling.duration:.2g} s, {sampling.ticks} ticks"
         found.append(
             Finding(
-                WARNING, "t", text, f"record {SHORT:.0f} s or more; 20 s leave enough to hold out"
+                WARNING,
+                "t",
+                text,
+                f"record {RULES.clock.shortest:.0f} s or more; 20 s leave enough to hold out",
             )
         )
-    if sampling.rate < SLOW:
+    if sampling.rate < RULES.clock.slow:
         text = f"{sampling.rate:.3g} Hz: friction at reversals and delays blur"
         found.append(Finding(WARNING, "t", text, "log at 100 Hz or more"))
-    if sampling.jitter > JITTER:
+    if sampling.jitter > RULES.clock.jitter:
         found.append(
             Finding(
                 NOTE,
@@ -214,7 +208,7 @@ def _clock(sampling: Sampling) -> list[Finding]:
                 "stamps are used as they are",
             )
         )
-    if sampling.dropouts > DROPOUTS or sampling.longest > 10 * sampling.step:
+    if sampling.dropouts > RULES.clock.dropouts or sampling.longest > 10 * sampling.step:
         text = (
             f"{100 * sampling.dropouts:.1f} % of the time is lost in dropouts, the longest "
             f"{sampling.longest:.3g} s"
@@ -232,7 +226,7 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
         if one.missing == 1.0:
             found.append(Finding(WARNING, one.column, "holds no values", "it counts as missing"))
             continue
-        if one.missing > MISSING:
+        if one.missing > RULES.clock.missing:
             found.append(
                 Finding(
                     WARNING,
@@ -256,7 +250,7 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
                 else WARNING
             )
             found.append(Finding(severity, one.column, text, "it counts at its own rate"))
-        if kind in BOUNDED and one.saturated > SATURATED:
+        if kind in BOUNDED and one.saturated > RULES.clock.saturated:
             text = (
                 f"sits at a bound, {one.low:.4g} or {one.high:.4g}, for "
                 f"{100 * one.saturated:.1f} % of the log"

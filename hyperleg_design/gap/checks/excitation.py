@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.logs.sampling import quantum
@@ -16,12 +17,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
 
-MOVING = 0.05
-"""Speed from which a joint counts as moving [rad/s]."""
 SEGMENT = 16384
 """Most rows of which one spectrum is made."""
-NOISE_MARGIN = 1.5
-"""Times the power of noise that does not count as motion."""
 
 
 def excitation_of(log: Log, subject: Subject | None = None) -> tuple[Excitation, ...]:
@@ -38,7 +35,7 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
     position = log.stack("position", joints)
     rate = 1 / log.step
     velocity = np.stack([_speed(log, joint) for joint in joints], -1)
-    moving = np.abs(velocity) > MOVING
+    moving = np.abs(velocity) > RULES.motion.moving
     reversals, spread, slow = np.zeros(len(joints)), np.zeros(len(joints)), np.zeros(len(joints))
     for i in range(len(joints)):
         signs = np.sign(velocity[moving[:, i], i])
@@ -134,6 +131,6 @@ def _content(values: np.ndarray, rate: float, *, noisy: bool = True) -> float:
     )  # median of an exponential
     above = np.cumsum(power[::-1])[::-1]
     enough = np.flatnonzero(
-        above >= max(0.02 * above[0], noisy * NOISE_MARGIN * variance * float(scale.sum()))
+        above >= max(0.02 * above[0], noisy * RULES.motion.noise * variance * float(scale.sum()))
     )
     return float(frequency[enough[-1]]) if len(enough) else 0.0

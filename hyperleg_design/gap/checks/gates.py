@@ -6,21 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
-
-FEWEST = 20
-"""Ticks that velocities and accelerations need at least, by the smoothing's window (derived)."""
-BEYOND, DOUBTFUL = 100.0, 5.0
-"""Torque over the drive's limit that is in another unit, and that is worth a warning [-] (assumed:
-a limit that a file declares may be the continuous one, a fifth of the peak)."""
-LARGEST_TORQUE = 1e5
-"""Torque that no joint of a legged robot or arm has [Nm] (assumed)."""
-PERCENTILE = 90.0
-"""Of a torque's size, so that a spike does not refuse a log."""
 
 
 def unusable(log: Log, subject: Subject | None = None) -> list[Finding]:
@@ -37,14 +28,14 @@ def unusable(log: Log, subject: Subject | None = None) -> list[Finding]:
 
 
 def _ticks(log: Log) -> list[Finding]:
-    if len(log.time) >= FEWEST:
+    if len(log.time) >= RULES.clock.fewest:
         return []
     return [
         Finding(
             ERROR,
             "t",
             f"has {len(log.time)} ticks, too few for velocities and accelerations",
-            f"record {FEWEST} at the very least; 20 s at 100 Hz are good",
+            f"record {RULES.clock.fewest} at the very least; 20 s at 100 Hz are good",
         )
     ]
 
@@ -71,13 +62,13 @@ def _sizes(log: Log, subject: Subject | None) -> list[Finding]:
         size = np.abs(values[np.isfinite(values)])
         if not len(size):
             continue
-        usual = float(np.percentile(size, PERCENTILE))
+        usual = float(np.percentile(size, RULES.unit.percentile))
         limit = _limit(kind, name, subject)
-        if usual > LARGEST_TORQUE or usual > BEYOND * limit:
+        if usual > RULES.unit.largest_torque or usual > RULES.unit.beyond * limit:
             than = f"{usual / limit:.3g} times the drive's {limit:.3g} Nm" if limit < np.inf else ""
             what = f"is {than or f'{usual:.3g} Nm'} for a tenth of the log: no such torque"
             found.append(Finding(ERROR, column, what, "convert to Nm"))
-        elif usual > DOUBTFUL * limit:
+        elif usual > RULES.unit.doubtful * limit:
             what = f"is {usual / limit:.3g} times the drive's {limit:.3g} Nm for a tenth of the log"
             found.append(
                 Finding(WARNING, column, what, "check its unit, and the limit in the robot's file")

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.logs.frozen import frozen
 from hyperleg_design.gap.results.finding import ERROR, NOTE, WARNING, Finding
 from hyperleg_design.gap.signals.channels import applied, of_motors
@@ -23,21 +24,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
 
-WINDOW = 0.1
-"""Over which motion is compared [s]."""
 DEGREES = 180 / math.pi
 RPM = 30 / math.pi
-TOLERANCE = 0.15
-"""Of a slope that stands for a unit."""
-FITS, STRANGE = 0.9, 0.6
-"""Correlations above which two signals are of one motion, and below which they are not."""
-HALF_TURN = 3.3
-"""Angle beyond which a target that is not followed is taken for degrees [rad]; assumed."""
-LARGEST_ANGLE = 4 * math.pi
-LARGEST_RATE = 40.0
-"""Beyond the full scale of usual gyroscopes, 2000 deg/s [rad/s]."""
-LARGEST_CURRENT, LARGEST_VOLTAGE, LARGEST_TEMPERATURE = 500.0, 1000.0, 200.0
-"""Of motors of legs and arms [A, V, degC]; beyond, another unit."""
 
 
 def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
@@ -86,9 +74,14 @@ def _motion(log: Log) -> list[Finding]:
         rivals[i] = -1
         best = int(np.nanargmax(rivals)) if np.isfinite(rivals).any() else i
         unit = next(
-            (text for value, text in units if abs(abs(slope[i]) / value - 1) < TOLERANCE), ""
+            (
+                text
+                for value, text in units
+                if abs(abs(slope[i]) / value - 1) < RULES.unit.tolerance
+            ),
+            "",
         )
-        if abs(fit[i]) < STRANGE and rivals[best] > FITS:
+        if abs(fit[i]) < RULES.unit.strange and rivals[best] > RULES.unit.fits:
             text = (
                 f"follows the motion of {joints[best]} (correlation {rivals[best]:.2f}), not "
                 f"its own ({fit[i]:.2f})"
@@ -96,7 +89,7 @@ def _motion(log: Log) -> list[Finding]:
             found.append(
                 Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
             )
-        elif fit[i] < -FITS:
+        elif fit[i] < -RULES.unit.fits:
             found.append(
                 Finding(
                     ERROR,
@@ -105,10 +98,10 @@ def _motion(log: Log) -> list[Finding]:
                     "flip the sign of one of the two",
                 )
             )
-        elif fit[i] > STRANGE and unit:
+        elif fit[i] > RULES.unit.strange and unit:
             text = f"is {slope[i]:.3g} times the rate of its position: {unit}"
             found.append(Finding(ERROR, column, text, "convert to rad and rad/s"))
-        elif fit[i] > FITS and abs(slope[i] - 1) > TOLERANCE:
+        elif fit[i] > RULES.unit.fits and abs(slope[i] - 1) > RULES.unit.tolerance:
             text = f"is {slope[i]:.3g} times the rate of its position"
             found.append(
                 Finding(
@@ -118,7 +111,7 @@ def _motion(log: Log) -> list[Finding]:
                     "is it the motor's, before a reduction? then call it motor_velocity",
                 )
             )
-        elif fit[i] < STRANGE:
+        elif fit[i] < RULES.unit.strange:
             text = f"hardly follows the rate of its position (correlation {fit[i]:.2f})"
             found.append(
                 Finding(
@@ -147,9 +140,9 @@ def _targets(log: Log, subject: Subject | None) -> list[Finding]:
         rivals[i] = -1
         best = int(np.nanargmax(rivals)) if np.isfinite(rivals).any() else i
         if (
-            abs(fit[i]) < STRANGE
-            and rivals[best] > FITS
-            and _correlations(target, position[:, i])[best] > FITS
+            abs(fit[i]) < RULES.unit.strange
+            and rivals[best] > RULES.unit.fits
+            and _correlations(target, position[:, i])[best] > RULES.unit.fits
         ):
             text = (
                 f"is followed by {joints[best]} (correlation {rivals[best]:.2f}), not by "
@@ -158,7 +151,7 @@ def _targets(log: Log, subject: Subject | None) -> list[Finding]:
             found.append(
                 Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
             )
-        elif fit[i] < -FITS and ratio < 10 and not _pushed(log, subject, joint):
+        elif fit[i] < -RULES.unit.fits and ratio < 10 and not _pushed(log, subject, joint):
             # what stands on the ground, and whose torques nobody logged, may be pushed against its
             # targets
             severity = WARNING if log.metadata.base == "floating" else ERROR
@@ -167,7 +160,7 @@ def _targets(log: Log, subject: Subject | None) -> list[Finding]:
                     severity, column, "runs against its position", "flip the sign of one of the two"
                 )
             )
-        elif fit[i] > STRANGE and (
+        elif fit[i] > RULES.unit.strange and (
             abs(ratio / DEGREES - 1) < 0.4 or abs(ratio * DEGREES - 1) < 0.4
         ):
             # a soft joint may follow its target as little; then neither turns as far as degrees
@@ -175,7 +168,7 @@ def _targets(log: Log, subject: Subject | None) -> list[Finding]:
             severity = (
                 ERROR
                 if max(np.nanmax(np.abs(target[:, i])), np.nanmax(np.abs(position[:, i])))
-                > HALF_TURN
+                > RULES.unit.half_turn
                 else WARNING
             )
             text = (
@@ -199,7 +192,10 @@ def _pushed(log: Log, subject: Subject | None, joint: str) -> bool:
         for column, asked, torque in _asked(log, subject)
         if column.partition("/")[2] in motors
     ]
-    return any(_slopes(asked[:, None], torque[:, None])[1][0] > STRANGE for asked, torque in held)
+    return any(
+        _slopes(asked[:, None], torque[:, None])[1][0] > RULES.unit.strange
+        for asked, torque in held
+    )
 
 
 def _magnitudes(log: Log) -> list[Finding]:
@@ -212,7 +208,7 @@ def _magnitudes(log: Log) -> list[Finding]:
         middle = float(np.nanpercentile(np.abs(values), 90))
         if (
             kind in ("position", "position_target")
-            and float(np.nanmax(values) - np.nanmin(values)) > LARGEST_ANGLE
+            and float(np.nanmax(values) - np.nanmin(values)) > RULES.unit.largest_angle
         ):
             text = (
                 f"spans {float(np.nanmax(values) - np.nanmin(values)):.3g} rad, two turns or more"
@@ -226,10 +222,13 @@ def _magnitudes(log: Log) -> list[Finding]:
                 )
             )
         limit, unit = {
-            "motor_current": (LARGEST_CURRENT, "mA: convert to A"),
-            "battery_voltage": (LARGEST_VOLTAGE, "mV: convert to V"),
-            "motor_temperature": (LARGEST_TEMPERATURE, "kelvin or fahrenheit: convert to degC"),
-            "gyro": (LARGEST_RATE, "deg/s: convert to rad/s"),
+            "motor_current": (RULES.unit.largest_current, "mA: convert to A"),
+            "battery_voltage": (RULES.unit.largest_voltage, "mV: convert to V"),
+            "motor_temperature": (
+                RULES.unit.largest_temperature,
+                "kelvin or fahrenheit: convert to degC",
+            ),
+            "gyro": (RULES.unit.largest_rate, "deg/s: convert to rad/s"),
         }.get(kind, (math.inf, ""))
         if middle > limit or (kind == "gyro" and largest > 2 * limit):
             found.append(
@@ -283,14 +282,14 @@ def _torques(log: Log, subject: Subject | None) -> list[Finding]:
             continue
         told.add(place)
         slope, fit = _slopes(asked[:, None], torque[:, None])
-        if fit[0] < -FITS:
+        if fit[0] < -RULES.unit.fits:
             found.append(
                 Finding(
                     WARNING, column, "runs against what target and gains ask for", "check its sign"
                 )
             )
-        elif fit[0] > STRANGE and any(
-            abs(slope[0] / v - 1) < TOLERANCE for v in (DEGREES, 1 / DEGREES)
+        elif fit[0] > RULES.unit.strange and any(
+            abs(slope[0] / v - 1) < RULES.unit.tolerance for v in (DEGREES, 1 / DEGREES)
         ):
             text = (
                 f"is {slope[0]:.3g} times what the declared gains ask for: the gains look like "
@@ -311,7 +310,7 @@ def _torques(log: Log, subject: Subject | None) -> list[Finding]:
                     log.column(f"{kind}/{motor}")[:, None],
                     constant * log.column(f"motor_current/{motor}")[:, None],
                 )
-                if fit[0] > STRANGE and abs(slope[0] / 1000 - 1) < 0.5:
+                if fit[0] > RULES.unit.strange and abs(slope[0] / 1000 - 1) < 0.5:
                     text = (
                         f"makes {slope[0]:.3g} times the torque with the declared torque "
                         f"constant: it is in mA"
@@ -471,7 +470,7 @@ def _robot(log: Log, subject: Subject) -> list[Finding]:
 
 def _windows(log: Log, joints: list[str]) -> tuple[np.ndarray, np.ndarray]:
     """Change of position, and integral of velocity, over windows `(k, n)` [rad]."""
-    width = max(1, round(WINDOW / log.step))
+    width = max(1, round(RULES.unit.window / log.step))
     position, velocity = log.stack("position", joints), log.stack("velocity", joints)
     steps = np.diff(log.time)[:, None]
     area = np.concatenate(

@@ -10,7 +10,7 @@ import robots
 from rig import rig_log, spoiled
 
 from hyperleg_design.gap.checks.check import check_log
-from hyperleg_design.gap.checks.gates import FEWEST
+from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.signals.loading import load_subject
 
 
@@ -26,7 +26,7 @@ def errors(log, subject=None):
 def test_three_ticks(log):
     found = errors(log.part(slice(0, 3)))
     assert ("t", "has 3 ticks, too few for velocities and accelerations") in found
-    assert not [e for e in errors(log.part(slice(0, FEWEST))) if "ticks" in e[1]]
+    assert not [e for e in errors(log.part(slice(0, RULES.clock.fewest))) if "ticks" in e[1]]
 
 
 def test_a_position_without_values(log):
