@@ -149,7 +149,9 @@ def conditions_of(names: Sequence[str], protocol: Protocol) -> list[str]:
         InputError: no such condition, or one that the protocol does not have.
     """
     runs = isinstance(protocol, TTestProtocol)
-    fitting = [name for name, one in CONDITIONS.items() if not (runs and one.walks_only)]
+    fitting = [
+        name for name, condition in CONDITIONS.items() if not (runs and condition.walks_only)
+    ]
     for name in names:
         if name not in fitting:
             known = ", ".join(fitting)
@@ -195,7 +197,7 @@ def robustness(
     for name, values in chosen.items():
         for level in values:
             setting = CONDITIONS[name].setting(float(level))
-            found = evaluate_many(
+            evaluations = evaluate_many(
                 policies,
                 _under(protocol, setting),
                 workers=workers,
@@ -203,7 +205,7 @@ def robustness(
                 overrides=[dict(setting.design(d)) if setting.design else {} for d in designs],
                 alterations=setting.alterations or None,
             )
-            table = trial_table(found)
+            table = trial_table(evaluations)
             table.insert(0, "condition", name)
             table.insert(1, "level", float(level))
             tables.append(table)
@@ -224,14 +226,14 @@ def curves(table: pd.DataFrame, kind: str = "walk") -> list[CurvePoint]:
             if measure != "arrived":
                 values = part.assign(**{measure: part[measure].where(part["outcome"] == ARRIVED)})
             groups = list(by_checkpoint(values, measure).values())
-            made = statistics.share if measure == "arrived" else statistics.estimate
+            estimator = statistics.share if measure == "arrived" else statistics.estimate
             points.append(
                 CurvePoint(
                     str(name),
                     float(str(level)),
                     str(variant),
                     measure,
-                    made(groups, resamples=1000),
+                    estimator(groups, resamples=1000),
                 )
             )
     return points

@@ -77,10 +77,10 @@ def stretches(path: np.ndarray, protocol: TTestProtocol, step: float) -> list[St
         bounds += [max(enter, bounds[-1]), max(leave, enter, bounds[-1])]
     labels.append(f"{names[-2]} to {names[-1]}")
     bounds.append(len(path) - 1)
-    found = []
+    parts = []
     for label, begin, end in zip(labels, bounds[:-1], bounds[1:], strict=True):
         own = speed[begin:end]
-        found.append(
+        parts.append(
             Stretch(
                 label,
                 (end - begin) * step,
@@ -89,7 +89,7 @@ def stretches(path: np.ndarray, protocol: TTestProtocol, step: float) -> list[St
                 float(own.max()) if len(own) else np.nan,
             )
         )
-    return found
+    return parts
 
 
 def _smooth(values: np.ndarray, step: float) -> np.ndarray:

@@ -87,11 +87,11 @@ def read_start(path: str | Path) -> StartPolicy:
         InputError: missing, truncated, or no such policy or critic.
     """
     path = Path(path)
-    told, network, digest = _read_network(path, FORMAT)
+    metadata, network, digest = _read_network(path, FORMAT)
     source: dict[str, Any] = {
-        key: told[key] for key in ("variant", "seed", "steps", "commit") if key in told
+        key: metadata[key] for key in ("variant", "seed", "steps", "commit") if key in metadata
     }
-    task = json.loads(told["task"])
+    task = json.loads(metadata["task"])
     source |= {"task": task["name"], "sha256": digest}
     critic = None
     if path.name == POLICY and (path.parent / CRITIC).is_file():
@@ -101,7 +101,7 @@ def read_start(path: str | Path) -> StartPolicy:
         )
     return StartPolicy(
         **network,
-        joints=tuple(json.loads(told["joints"])),
+        joints=tuple(json.loads(metadata["joints"])),
         commands=task["commands"]["kind"],
         posture={str(k): float(v) for k, v in task.get("posture_deg", {}).items()},
         source=source,
@@ -129,12 +129,12 @@ def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any]
         raise InputError(
             where, "", None, f"is no ONNX file, or is truncated ({in_short(error, 80)})"
         ) from None
-    told = {entry.key: entry.value for entry in model.metadata_props}
-    if told.get("format") != form:
+    metadata = {entry.key: entry.value for entry in model.metadata_props}
+    if metadata.get("format") != form:
         raise InputError(
             where,
             "format",
-            told.get("format"),
+            metadata.get("format"),
             f"expects a file made by `hyperleg train` ({form})",
         )
     arrays = {
@@ -151,7 +151,7 @@ def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any]
             None,
             "is conditioned on its design; start from a policy of one design",
         )
-    columns = tuple(json.loads(told["columns"]))
+    columns = tuple(json.loads(metadata["columns"]))
     network = {
         "columns": columns,
         "mean": arrays.get("mean", np.zeros(len(columns))).reshape(-1),
@@ -159,7 +159,7 @@ def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any]
         "weights": tuple(arrays[f"weight_{i}"] for i in layers),
         "biases": tuple(arrays[f"bias_{i}"] for i in layers),
     }
-    return told, network, hashlib.sha256(content).hexdigest()
+    return metadata, network, hashlib.sha256(content).hexdigest()
 
 
 def start_actor(
@@ -194,9 +194,9 @@ def start_actor(
     linear = [layer for layer in plain_layers(actor.mlp) if isinstance(layer, torch.nn.Linear)]
     shapes = [tuple(layer.weight.shape) for layer in linear]
     if [w.shape[0] for w in start.weights] != [s[0] for s in shapes]:
-        found = [int(w.shape[0]) for w in start.weights]
+        widths = [int(w.shape[0]) for w in start.weights]
         raise InputError(
-            "start", "layers", found, f"expects a policy with layers of {[s[0] for s in shapes]}"
+            "start", "layers", widths, f"expects a policy with layers of {[s[0] for s in shapes]}"
         )
     old = {name: i for i, name in enumerate(start.columns)}
     folded = [i for name, i in old.items() if command is not None and name.startswith(COMMAND)]

@@ -72,12 +72,12 @@ class UnevenFloor(Alteration):
         along x)`.
         """
         columns, rows = round(LENGTH / CELL) + 1, round(WIDTH / CELL) + 1
-        found = np.random.default_rng(self.seed).uniform(size=(rows, columns))
-        found[0, 0], found[-1, -1] = 0.0, 1.0  # MuJoCo stretches heights to 0 .. 1
+        heights = np.random.default_rng(self.seed).uniform(size=(rows, columns))
+        heights[0, 0], heights[-1, -1] = 0.0, 1.0  # MuJoCo stretches heights to 0 .. 1
         x = np.linspace(-BEHIND, LENGTH - BEHIND, columns)
         y = np.linspace(-WIDTH / 2, WIDTH / 2, rows)
-        found[np.ix_(np.abs(y) <= FLAT, np.abs(x) <= FLAT)] = 0.5
-        return found
+        heights[np.ix_(np.abs(y) <= FLAT, np.abs(x) <= FLAT)] = 0.5
+        return heights
 
     def shape(self, spec: mujoco.MjSpec) -> None:
         """Replace the plane by a height field under the same name."""

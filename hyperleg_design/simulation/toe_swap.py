@@ -58,11 +58,11 @@ class LockedToe(Alteration):
 
     def machine(self, machine: Machine) -> Machine:
         """Controller that takes no torque of the toe joints into account."""
-        kept = np.array([name not in TOES for name in machine.joints])
+        driven = np.array([name not in TOES for name in machine.joints])
         matrix = machine.joint_from_motor
-        own = motor_from_joint(matrix[..., kept, :], machine.power_constant)
-        inverse = np.zeros((*own.shape[:-1], len(kept)))
-        inverse[..., kept] = own
+        own = motor_from_joint(matrix[..., driven, :], machine.power_constant)
+        inverse = np.zeros((*own.shape[:-1], len(driven)))
+        inverse[..., driven] = own
         return dataclasses.replace(machine, motor_from_joint=inverse)
 
 

@@ -262,7 +262,7 @@ def _free(policies: Sequence[Shipped], kinds: Sequence[str]) -> dict[str, list[S
     themselves over all speeds of `SPEED`, by group.
     """
     fastest = max(CONDITIONS[SPEED].levels)
-    found: dict[str, list[Shipped]] = {}
+    chosen: dict[str, list[Shipped]] = {}
     counts: dict[tuple[str, str], int] = {}
     for policy, kind in zip(policies, kinds, strict=True):
         task = load_policy(policy.path).task if kind == WALK and not policy.late else None
@@ -273,8 +273,8 @@ def _free(policies: Sequence[Shipped], kinds: Sequence[str]) -> dict[str, list[S
         key = (policy.group, policy.design)
         counts[key] = counts.get(key, 0) + 1
         if counts[key] <= BAND_SEEDS:
-            found.setdefault(policy.group, []).append(policy)
-    return found
+            chosen.setdefault(policy.group, []).append(policy)
+    return chosen
 
 
 def _kind(evaluation: Evaluation) -> str:

@@ -38,7 +38,7 @@ HEAD = [
 _MARK = {DIFFERENT: "good", EQUIVALENT: "good"}
 
 
-def studies(found: Evaluated, plan: AnalysisPlan) -> list[dict[str, str]]:
+def studies(evaluated: Evaluated, plan: AnalysisPlan) -> list[dict[str, str]]:
     """Groups of trainings that are analysed together, by protocol: each group of walks that has
     both arms, with the T-test that belongs to it.
 
@@ -46,25 +46,27 @@ def studies(found: Evaluated, plan: AnalysisPlan) -> list[dict[str, str]]:
     without where it was not; the first one where there is none of that kind.
     """
     both = {plan.active, plan.compared}
-    runs = [g for g in found.groups(T_TEST) if both <= set(found.designs(g))]
+    runs = [g for g in evaluated.groups(T_TEST) if both <= set(evaluated.designs(g))]
     chosen = []
-    for group in (g for g in found.groups(WALK) if both <= set(found.designs(g))):
-        alike = [g for g in runs if _clocked(found, g) == _clocked(found, group)]
+    for group in (g for g in evaluated.groups(WALK) if both <= set(evaluated.designs(g))):
+        alike = [g for g in runs if _clocked(evaluated, g) == _clocked(evaluated, group)]
         chosen.append({WALK: group} | ({T_TEST: (alike or runs)[0]} if runs else {}))
     return chosen or [{T_TEST: g} for g in runs[:1]]
 
 
-def planned_rows(found: Evaluated, plan: AnalysisPlan | None = None) -> dict[str, list[PlannedRow]]:
+def planned_rows(
+    evaluated: Evaluated, plan: AnalysisPlan | None = None
+) -> dict[str, list[PlannedRow]]:
     """Rows of the plan of each of the `studies`, by the names of their groups."""
     plan = plan or load_plan()
-    made = {}
-    for study in studies(found, plan):
-        tables = {kind: found.table(group) for kind, group in study.items()}
-        made[" and ".join(study.values())] = planned_analysis(plan, tables)
-    return made
+    tables = {}
+    for study in studies(evaluated, plan):
+        trials = {kind: evaluated.table(group) for kind, group in study.items()}
+        tables[" and ".join(study.values())] = planned_analysis(plan, trials)
+    return tables
 
 
-def planned(found: Evaluated, plan: AnalysisPlan | None = None) -> Part:
+def planned(evaluated: Evaluated, plan: AnalysisPlan | None = None) -> Part:
     """Tables of the planned outcomes, a primary and a secondary one a study."""
     plan = plan or load_plan()
     primary = ", ".join(outcome.name.replace("_", " ") for outcome in plan.primary)
@@ -79,7 +81,7 @@ def planned(found: Evaluated, plan: AnalysisPlan | None = None) -> Part:
         "Trials that did not arrive, timeouts among them, are left out of measures of arrivals and "
         "counted in the last column."
     ]
-    for name, rows in planned_rows(found, plan).items():
+    for name, rows in planned_rows(evaluated, plan).items():
         content.append(Heading(f"Planned comparison: {name.replace('_', ' ')}"))
         content.append(_seeds(rows, plan))
         for some, caption in (
@@ -87,7 +89,7 @@ def planned(found: Evaluated, plan: AnalysisPlan | None = None) -> Part:
             ([r for r in rows if not r.primary], "Secondary outcomes, corrected together."),
         ):
             content.append(Table(HEAD, [_cells(row) for row in some], caption))
-    content.append(_plateaus(found, plan))
+    content.append(_plateaus(evaluated, plan))
     return Part("What the analysis plan says", content)
 
 
@@ -136,10 +138,10 @@ def _seeds(rows: list[PlannedRow], plan: AnalysisPlan) -> str:
     return f"There are, of those that the plan asks for, {'; '.join(parts)}."
 
 
-def _plateaus(found: Evaluated, plan: AnalysisPlan) -> str:
+def _plateaus(evaluated: Evaluated, plan: AnalysisPlan) -> str:
     """How many trainings ended on a plateau of their reward, by the plan's rule."""
     counts: dict[str, list[bool]] = {}
-    for policy in found.policies:
+    for policy in evaluated.policies:
         curve = [r for r in learning_curve(policy.path.parent) if {"steps", "reward"} <= set(r)]
         if policy.late or not curve:
             continue
@@ -159,7 +161,7 @@ def _plateaus(found: Evaluated, plan: AnalysisPlan) -> str:
     )
 
 
-def _clocked(found: Evaluated, group: str) -> bool:
+def _clocked(evaluated: Evaluated, group: str) -> bool:
     """Whether policies of a group observe a gait clock."""
-    pairs = zip(found.policies, found.evaluations, strict=True)
+    pairs = zip(evaluated.policies, evaluated.evaluations, strict=True)
     return any(p.group == group and "clock" in (e.origin.get("deviations") or ()) for p, e in pairs)

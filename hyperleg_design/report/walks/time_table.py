@@ -27,16 +27,16 @@ def stretch_means(
         Of each straight and turn, in order: time [s], mean speed, least and largest speed [m/s].
         Empty where no run arrived.
     """
-    found: dict[str, list[Stretch]] = {}
-    for one in runs:
-        for path, outcome in zip(one.paths, one.outcomes, strict=True):
+    by_name: dict[str, list[Stretch]] = {}
+    for evaluation in runs:
+        for path, outcome in zip(evaluation.paths, evaluation.outcomes, strict=True):
             if outcome == ARRIVED:
-                for stretch in stretches(path, one.protocol, step):
-                    found.setdefault(stretch.name, []).append(stretch)
+                for stretch in stretches(path, evaluation.protocol, step):
+                    by_name.setdefault(stretch.name, []).append(stretch)
     keys = ("time", "mean_speed", "slowest", "fastest")
     return {
         name: tuple(float(np.mean([getattr(s, key) for s in some])) for key in keys)  # type: ignore[misc]
-        for name, some in found.items()
+        for name, some in by_name.items()
     }
 
 
