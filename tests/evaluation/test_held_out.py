@@ -4,11 +4,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.held_out import check_held_out, compared
+from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
+from hyperleg_design.evaluation.training_fit import training_fit
 from hyperleg_design.simulation.design_observation import DesignRanges, Range
-from hyperleg_design.simulation.design_spread import DesignSpread
+from hyperleg_design.simulation.design_spread import (
+    DesignSpread,
+    design_spread,
+    load_design_spread,
+)
 
 
 def rows(cost: list[float], fell: list[int]) -> pd.DataFrame:
@@ -50,3 +57,14 @@ def test_policies_are_compared_on_the_same_designs() -> None:
 def test_needs_a_policy_for_all_designs(policies: list[str]) -> None:
     with pytest.raises(InputError, match="one policy for all"):
         check_held_out(policies, "toe")
+
+
+def test_the_shipped_conditioned_policy_was_not_trained_on_held_out_designs() -> None:
+    policy = load_policy(resources.content_folder("sim") / "conditioned/walk-toe-0/policy.onnx")
+    spread = load_design_spread("toe")
+    assert design_spread(policy.metadata["designs"], "policy") == spread
+    held_out = spread.held_out_designs(policy.design)
+    pool = spread.designs(policy.design)
+    for i in range(spread.held_out):
+        assert training_fit(policy, held_out.take(i)).kind == "conditioned"
+    assert not np.isin(held_out["toe.mass"], pool["toe.mass"]).any()
