@@ -54,11 +54,11 @@ class Effects(Printing):
         from hyperleg_design.gap.playback.show import effects_table
         from hyperleg_design.report.gap.show import effects_text
 
-        found = effects_table()
+        catalogue = effects_table()
         if self.json:
-            emit(found)
+            emit(catalogue)
         else:
-            print(effects_text(found))
+            print(effects_text(catalogue))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,11 +144,11 @@ class Apply(Printing):
         if self.policy:
             walk = added.walked(self.policy, overlay, self.protocol or None)
         path = write_overlay(self.out, overlay)
-        told = added.mapping(logs, walk)
+        changes = added.mapping(logs, walk)
         if logs or walk:
-            write_json(path.with_suffix(".json"), told)
+            write_json(path.with_suffix(".json"), changes)
         if self.json:
-            emit({"file": str(path), **overlay.mapping(), **told})
+            emit({"file": str(path), **overlay.mapping(), **changes})
             return
         effects = ", ".join(f"{effect} at {location}" for effect, location in overlay.change)
         print(f"{effects} -> {path}")
@@ -179,8 +179,8 @@ class Measure(Printing):
         from hyperleg_design.report.gap.text import gap_text
         from hyperleg_design.writing import output_folder, write_json
 
-        found = take_in(self.robot, self.logs, self.reference)
-        gap = measure(found.tests, found.references)
+        session = take_in(self.robot, self.logs, self.reference)
+        gap = measure(session.tests, session.references)
         if self.out is not None:
             with output_folder(self.out) as folder:
                 write_json(folder / "gap.json", gap.mapping())

@@ -171,15 +171,15 @@ class Evaluate(Printing):
 
         if not self.policies:
             raise InputError("evaluate", "", None, "expects ONNX files")
-        check_different(map(find_policy, self.policies), "evaluate")
-        for folder in (self.out, self.logs, self.lerobot):
-            if folder is not None:
-                check_output_folder(folder)
         overlay = None
         if self.overlay:
             from hyperleg_design.gap.playback.overlay import read_overlay, write_overlay
 
             overlay = read_overlay(self.overlay)
+        check_different(map(find_policy, self.policies), "evaluate")
+        for folder in (self.out, self.logs, self.lerobot):
+            if folder is not None:
+                check_output_folder(folder)
         alterations: Alterations | None = overlay.alterations if overlay else None
         if self.swap:
             if overlay:

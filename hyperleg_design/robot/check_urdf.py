@@ -465,8 +465,12 @@ def _limit(joint: Any, place: str, kind: str) -> list[Finding]:
     ]
     if ends["lower"] is not None and ends["upper"] is not None:
         findings += _range(float(ends["lower"][0]), float(ends["upper"][0]), place, kind)
+    driven = {"effort": numbers(limit.get("effort"), 1)}
+    driven["velocity"] = numbers(limit.get("velocity"), 1)
+    if all(value is not None and value[0] == 0 for value in driven.values()):
+        return findings  # no motor drives this joint, such as a toe on a spring
     for key, unit in (("effort", "Nm or N"), ("velocity", "rad/s or m/s")):
-        value = numbers(limit.get(key), 1)
+        value = driven[key]
         if value is None or value[0] <= 0:
             findings.append(
                 Finding(

@@ -65,7 +65,9 @@ class DesignRanges:
         """Observed numbers of a robot `(k,)` or a batch `(n, k)`, within -1 .. 1 inside the
         ranges.
         """
-        values = [one.scaled(np.asarray(design[path], float)) for path, one in self.ranges.items()]
+        values = [
+            bounds.scaled(np.asarray(design[path], float)) for path, bounds in self.ranges.items()
+        ]
         return np.stack(np.broadcast_arrays(*values), -1)
 
     def outside(self, design: RobotDesign) -> list[str]:
@@ -80,18 +82,18 @@ class DesignRanges:
     def draw(self, count: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
         """Values of designs drawn evenly over the ranges, by path, each `(count,)`."""
         drawn = {}
-        for path, one in self.ranges.items():
+        for path, bounds in self.ranges.items():
             place = rng.random(count)
             drawn[path] = (
-                one.low * (one.high / one.low) ** place
-                if one.log
-                else one.low + place * (one.high - one.low)
+                bounds.low * (bounds.high / bounds.low) ** place
+                if bounds.log
+                else bounds.low + place * (bounds.high - bounds.low)
             )
         return drawn
 
     def to_mapping(self) -> dict[str, Any]:
         """The ranges as plain values, for the metadata of a policy."""
-        return {path: vars(one) for path, one in self.ranges.items()}
+        return {path: vars(bounds) for path, bounds in self.ranges.items()}
 
 
 def design_ranges(data: Any, where: str) -> DesignRanges:

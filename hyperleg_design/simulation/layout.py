@@ -189,16 +189,16 @@ def foot_links(tree: Tree) -> dict[str, str]:
     does; pads of the base are a foot of their own.
     """
     carrier = {joint.child: joint.parent for joint in tree.joints}
-    found: dict[str, str] = {}
+    links_by_name: dict[str, str] = {}
     for link in tree.links:
         if not link.pads:
             continue
         first, above = link.name, carrier.get(link.name)
         while above is not None and above != tree.base:
-            first = found.get(above, first)
+            first = links_by_name.get(above, first)
             above = carrier.get(above)
-        found[link.name] = first
-    return found
+        links_by_name[link.name] = first
+    return links_by_name
 
 
 def _own(name: str, limb: str) -> str:

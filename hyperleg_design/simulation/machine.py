@@ -99,13 +99,13 @@ def bus_voltage(design: RobotDesign) -> float:
     """Nominal voltage of the motors times the design's ratio [V]; NaN where motors, or designs of a
     batch, differ in it.
     """
-    found = {
+    voltages = {
         float(v)
         for actuator in design.every_actuator
         for v in np.ravel(gather(actuator.motor, lambda m: m.nominal_voltage))
     }
     ratios = {float(v) for v in np.ravel(design.electrical_section.voltage_ratio)}
-    return found.pop() * ratios.pop() if len(found) == len(ratios) == 1 else float("nan")
+    return voltages.pop() * ratios.pop() if len(voltages) == len(ratios) == 1 else float("nan")
 
 
 def rotor_inertia(design: RobotDesign) -> np.ndarray:

@@ -230,9 +230,7 @@ def human_stride(state: State, robot: Robot, width: float = 0.25) -> np.ndarray:
     period must be that of the cycle.
     """
     motion, joints = state.motion, robot.layout.joints
-    away = human_gait.distance_at(
-        joints, motion.joint_position, motion.joint_velocity, state.phase
-    )
+    away = human_gait.distance_at(joints, motion.joint_position, motion.joint_velocity, state.phase)
     return _near(away, state, width)
 
 

@@ -71,7 +71,7 @@ def rollout(
         )
     environment.recording = True
     observations = environment.reset()
-    kept: dict[str, list[np.ndarray]] = {}
+    recorded: dict[str, list[np.ndarray]] = {}
     commands, actions, terms, endings = [], [], [], []
     command_columns = [
         i
@@ -89,7 +89,7 @@ def rollout(
                 raise InputError(
                     "rollout", "keep", name, f"no such signal; there are {', '.join(signals)}"
                 )
-            kept.setdefault(name, []).append(signals[name].copy())
+            recorded.setdefault(name, []).append(signals[name].copy())
         actions.append(action)
         terms.append(step.reward_terms)
         endings.append(step.ending)
@@ -98,7 +98,7 @@ def rollout(
     ending = np.stack(endings, 1)
     ended = ending != 0
     return Recording(
-        signals={name: np.concatenate(parts, 1) for name, parts in kept.items()},
+        signals={name: np.concatenate(parts, 1) for name, parts in recorded.items()},
         time_step=float(environment.task.physics.time_step),
         commands=np.stack(commands, 1),
         actions=np.stack(actions, 1),

@@ -42,13 +42,13 @@ def mirrored_joints(tree: Tree) -> tuple[tuple[int, float], ...] | None:
     if images is None:
         return None
     order = {joint.name: index for index, joint in enumerate(tree.moving)}
-    found = []
+    mirrored = []
     for joint in tree.moving:
         other, sign = images[joint.name]
         if abs(other.default - sign * joint.default) > ANGLE:
             return None
-        found.append((order[other.name], sign))
-    return tuple(found)
+        mirrored.append((order[other.name], sign))
+    return tuple(mirrored)
 
 
 def mirrored_order(tree: Tree, links: Sequence[str]) -> tuple[int, ...] | None:
@@ -72,7 +72,7 @@ def _images(tree: Tree) -> dict[str, tuple[TreeJoint, float]] | None:
     """
     poses = link_poses(tree)
     image_of = {tree.base: tree.base}
-    found: dict[str, tuple[TreeJoint, float]] = {}
+    images: dict[str, tuple[TreeJoint, float]] = {}
     taken: set[str] = set()
     for joint in tree.joints:
         for other in tree.joints:
@@ -81,14 +81,14 @@ def _images(tree: Tree) -> dict[str, tuple[TreeJoint, float]] | None:
                 continue
             sign = _sign(joint, other, poses)
             if sign:
-                found[joint.name] = (other, sign)
+                images[joint.name] = (other, sign)
                 image_of[joint.child] = other.child
                 taken.add(other.name)
                 break
         else:
             if not joint.fixed:
                 return None
-    return found
+    return images
 
 
 def _sign(joint: TreeJoint, other: TreeJoint, poses: dict[str, Pose]) -> float:

@@ -196,12 +196,12 @@ def joined(alterations: Sequence[Alteration]) -> list[Alteration]:
     """Alterations with the belts of each motor made one: compliances and plays add up, dampings act
     in series.
     """
-    found: list[Alteration] = []
+    belts: list[Alteration] = []
     for alteration in alterations:
         twin = next(
             (
                 i
-                for i, a in enumerate(found)
+                for i, a in enumerate(belts)
                 if isinstance(alteration, Belt)
                 and isinstance(a, Belt)
                 and a.motor == alteration.motor
@@ -209,12 +209,12 @@ def joined(alterations: Sequence[Alteration]) -> list[Alteration]:
             None,
         )
         if twin is None:
-            found.append(alteration)
+            belts.append(alteration)
             continue
-        one, two = found[twin], alteration
-        assert isinstance(one, Belt)
-        assert isinstance(two, Belt)
-        dampings = [np.asarray(b.damping, float) for b in (one, two) if b.damping is not None]
+        first, second = belts[twin], alteration
+        assert isinstance(first, Belt)
+        assert isinstance(second, Belt)
+        dampings = [np.asarray(b.damping, float) for b in (first, second) if b.damping is not None]
         damping = (
             None
             if not dampings
@@ -223,10 +223,12 @@ def joined(alterations: Sequence[Alteration]) -> list[Alteration]:
             else dampings[0] * dampings[1] / (dampings[0] + dampings[1])
         )
         side, stiffening = (
-            np.maximum(getattr(one, name), getattr(two, name)) for name in ("side", "stiffening")
+            np.maximum(getattr(first, name), getattr(second, name))
+            for name in ("side", "stiffening")
         )
         compliance, play = (
-            np.asarray(getattr(one, name)) + getattr(two, name) for name in ("compliance", "play")
+            np.asarray(getattr(first, name)) + getattr(second, name)
+            for name in ("compliance", "play")
         )
-        found[twin] = Belt(one.motor, compliance, play, damping, stiffening=stiffening, side=side)
-    return found
+        belts[twin] = Belt(first.motor, compliance, play, damping, stiffening=stiffening, side=side)
+    return belts

@@ -398,7 +398,7 @@ def _force_arrows(
     pads = [i for i, solid in enumerate(kinds) if solid.kind == "sphere" and solid.colour == PAD]
     if len(pads) != len(trial.layout.pads):
         return []
-    found = []
+    arrows = []
     for foot in range(len(trial.layout.feet)):
         mine = trial.layout.pad_foot == foot
         force = trial.pad_force[sample, mine]
@@ -412,8 +412,8 @@ def _force_arrows(
             / trial.layout.weight
             * np.array([float(heading @ total[:2]), 0.0, float(total[2])])
         )
-        found.append((np.array([centre[0], -0.3, floor]), vector, _FORCE))
-    return found
+        arrows.append((np.array([centre[0], -0.3, floor]), vector, _FORCE))
+    return arrows
 
 
 def _track(

@@ -45,8 +45,8 @@ def replay(
         if isinstance(protocol, str | Path)
         else protocol
     )
-    one = run.changed(trials=1) if seed is None else run.changed(trials=1, seed=seed)
-    return evaluate(chosen, one, design=design, task=task, threads=1)
+    single = run.changed(trials=1) if seed is None else run.changed(trials=1, seed=seed)
+    return evaluate(chosen, single, design=design, task=task, threads=1)
 
 
 def motion_of(found: Evaluation, **options: Any) -> Motion:

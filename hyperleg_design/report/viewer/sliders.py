@@ -61,25 +61,25 @@ def parameters_of(design: RobotDesign) -> tuple[Parameter, ...]:
     """
     if isinstance(design, TreeDesign):
         return _of_tree(design)
-    found = []
+    parameters = []
     for group, paths in _HYPERLEG.items():
         for path in paths:
             if design["toe.joint"] == "none" and "toe" in path:
                 continue
-            found.append(
+            parameters.append(
                 Parameter(group, path, (path,), float(design[path]), design.rules[path].unit)
             )
-    return tuple(found)
+    return tuple(parameters)
 
 
 def _of_tree(design: TreeDesign) -> tuple[Parameter, ...]:
     """Gears, ratios between motors and joints, masses of links, and lengths of links."""
-    found = [
+    parameters = [
         Parameter("Reductions", path, (path,), float(design[path]))
         for name in design.actuator_sections
         for path in (f"actuators.{name}.gear",)
     ]
-    found += [
+    parameters += [
         Parameter("Reductions", path, (path,), float(design[path]))
         for path, rule in design.rules.items()
         if path.startswith("transmission.") and rule.kind == "number" and not rule.size
@@ -88,12 +88,12 @@ def _of_tree(design: TreeDesign) -> tuple[Parameter, ...]:
     for name, link in design.link_sections.items():
         if link.mass > 0:
             path = f"links.{name}.mass"
-            found.append(Parameter("Masses", path, (path,), float(link.mass), "kg"))
+            parameters.append(Parameter("Masses", path, (path,), float(link.mass), "kg"))
     for name in design.link_sections:
         paths, length = _length(design, name)
         if length > 0 and name != design.trunk.link:
-            found.append(Parameter("Lengths", f"length of {name}", paths, length, "m"))
-    return tuple(found)
+            parameters.append(Parameter("Lengths", f"length of {name}", paths, length, "m"))
+    return tuple(parameters)
 
 
 def _length(design: TreeDesign, link: str) -> tuple[tuple[str, ...], float]:

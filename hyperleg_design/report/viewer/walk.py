@@ -93,7 +93,7 @@ class RecordedWalk:
             poses: of its links in the base's frame.
         """
         feet = self.log.feet
-        found = []
+        contacts = []
         for link in tree.links:
             places: list[Any] = []
             forces: list[np.ndarray] = []
@@ -113,8 +113,8 @@ class RecordedWalk:
             weight = np.maximum(np.array(forces)[:, 2], 1e-9)
             rotation, position = poses[link.name]
             place = (np.array(places) * weight[:, None]).sum(0) / weight.sum()
-            found.append((position + rotation @ place, total))
-        return found
+            contacts.append((position + rotation @ place, total))
+        return contacts
 
     def moving(self, rate: float) -> Poses:
         """The motion at even times; a base that the log does not know stands still and upright.

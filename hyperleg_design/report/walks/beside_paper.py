@@ -61,19 +61,19 @@ _MARK = {AGREES: "good", DIFFERS: "bad", statistics.NOT_TOLD_APART: "note", NOT_
 _ONE_SEED = "Rests on fewer than three trainings a side, so it tells nothing about the toe."
 
 
-def rows_beside_paper(found: Evaluated) -> dict[str, list[PaperRow]]:
+def rows_beside_paper(evaluated: Evaluated) -> dict[str, list[PaperRow]]:
     """Every printed number beside ours, by table and group; tables of groups that lack one of the
     paper's two robots are left out.
     """
-    made = {}
+    rows_by_table = {}
     for kind, place, printed in (
         (WALK, "Table III", (*paper.TABLE_THREE, *paper.RIGHT_LEG_POWER)),
         (T_TEST, "Table IV", paper.TABLE_FOUR),
     ):
-        for group in found.groups(kind):
-            if set(VARIANTS) <= set(found.designs(group)):
-                made[f"{place}, {group}"] = paper_rows(found.table(group), printed)
-    return made
+        for group in evaluated.groups(kind):
+            if set(VARIANTS) <= set(evaluated.designs(group)):
+                rows_by_table[f"{place}, {group}"] = paper_rows(evaluated.table(group), printed)
+    return rows_by_table
 
 
 def row_facts(row: PaperRow) -> dict[str, Any]:
@@ -136,27 +136,27 @@ def beside(rows: Sequence[PaperRow], caption: str) -> list[Any]:
             ]
         )
     head = ["", "toe: paper", "ours", "ablation: paper", "ours", "Δ paper", "Δ ours", "verdict"]
-    one = rows[0]
-    trials = [side.trials + side.missing for side in (one.toe, one.ablation)]
-    made: list[Any] = [
+    first = rows[0]
+    trials = [side.trials + side.missing for side in (first.toe, first.ablation)]
+    content: list[Any] = [
         Table(
             head,
             cells,
-            f"{caption}: {one.toe.seeds} and {one.ablation.seeds} seeds, {trials[0]} and "
+            f"{caption}: {first.toe.seeds} and {first.ablation.seeds} seeds, {trials[0]} and "
             f"{trials[1]} trials.",
         )
     ]
     reasons = [[row.printed.quantity, row.why] for row in rows if row.why]
     return (
         [
-            *made,
+            *content,
             Details(
                 "Why numbers differ or cannot be reproduced",
                 [Table(["", "known reasons"], reasons)],
             ),
         ]
         if reasons
-        else made
+        else content
     )
 
 
@@ -164,15 +164,15 @@ def toe_sentence(rows: Sequence[PaperRow]) -> str:
     """What can be said about the toe from a table, in one paragraph."""
     if any(row.difference.verdict == statistics.TOO_FEW_SEEDS for row in rows):
         return _ONE_SEED
-    told = [r for r in rows if r.difference.verdict == statistics.DIFFERS]
+    different = [r for r in rows if r.difference.verdict == statistics.DIFFERS]
     same = [r.printed.quantity for r in rows if r.difference.verdict == statistics.NOT_TOLD_APART]
     parts_of = []
-    if told:
+    if different:
         parts_of.append(
             "With the toe "
             + ", ".join(
                 f"{r.printed.quantity} changes by {100 * r.difference.relative:+.1f} %"
-                for r in told
+                for r in different
             )
             + "."
         )
@@ -181,9 +181,9 @@ def toe_sentence(rows: Sequence[PaperRow]) -> str:
     return " ".join(parts_of)
 
 
-def differences(found: Evaluated, group: str, kind: str) -> Details:
+def differences(evaluated: Evaluated, group: str, kind: str) -> Details:
     """Toe against ablation in many measures: unpaired, and paired by seed."""
-    table = found.table(group)
+    table = evaluated.table(group)
     rows = []
     for name in SUMMARY[kind]:
         if name not in table:
@@ -246,12 +246,12 @@ def differences(found: Evaluated, group: str, kind: str) -> Details:
     )
 
 
-def short(one: Estimate) -> str:
+def short(estimate: Estimate) -> str:
     """Mean, interval and how many trials gave no value."""
-    if not math.isfinite(one.mean):
+    if not math.isfinite(estimate.mean):
         return "–"
-    return interval(one.mean, one.low, one.high, "") + (
-        f" ({one.missing} missing)" if one.missing else ""
+    return interval(estimate.mean, estimate.low, estimate.high, "") + (
+        f" ({estimate.missing} missing)" if estimate.missing else ""
     )
 
 

@@ -64,9 +64,9 @@ class Evaluated:
 
     def designs(self, group: str) -> list[str]:
         """Designs of a group, the paper's two first."""
-        found = dict.fromkeys(p.design for p in self.policies if p.group == group)
+        names = dict.fromkeys(p.design for p in self.policies if p.group == group)
         return sorted(
-            found,
+            names,
             key=lambda name: (VARIANTS.index(name) if name in VARIANTS else len(VARIANTS), name),
         )
 
@@ -79,7 +79,10 @@ class Evaluated:
 
     def shown(self, group: str, design: str) -> Trial | None:
         """A trial of a group and design whose signals are there."""
-        return next((one.trials[0] for one in self.of(group, design) if one.trials), None)
+        return next(
+            (evaluation.trials[0] for evaluation in self.of(group, design) if evaluation.trials),
+            None,
+        )
 
     def seeds(self, group: str, design: str) -> list[int]:
         """Trainings of a group and design."""
@@ -122,7 +125,9 @@ def evaluate_shipped(
     Raises:
         InputError: no such folder, a policy that cannot be used, or the same policy twice.
     """
-    policies = [one for one in shipped_policies(folder) if one.family == "hyperleg"]
+    policies = [
+        evaluation for evaluation in shipped_policies(folder) if evaluation.family == "hyperleg"
+    ]
     check_different(policy.path for policy in policies)
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
     kinds = [
@@ -132,30 +137,30 @@ def evaluate_shipped(
     banded = _banded(policies, kinds) if band else []
     count, done = len(policies) + len(banded) * len(band), 0
 
-    def note(one: Evaluation) -> None:
+    def note(evaluation: Evaluation) -> None:
         nonlocal done
         done += 1
         if progress is not None:
-            progress(done, count, one.policy)
+            progress(done, count, evaluation.policy)
 
     processes = workers or os.cpu_count() or 1
     shown = {(p.group, p.design): i for i, p in reversed(list(enumerate(policies))) if p.late == 0}
-    found: dict[int, Evaluation] = {}
+    by_job: dict[int, Evaluation] = {}
     for kind, protocol in protocols.items():
         places = [i for i, own in enumerate(kinds) if own == kind]
-        kept = [int(i in shown.values()) for i in places]
+        signals = [int(i in shown.values()) for i in places]
         some = (
             evaluate_many(
                 [policies[i].path for i in places],
                 protocol,
                 workers=processes,
-                kept=kept,
+                kept=signals,
                 progress=note,
             )
             if places
             else []
         )
-        found |= dict(zip(places, some, strict=True))
+        by_job |= dict(zip(places, some, strict=True))
     jobs = [(policy, constant) for policy in banded for constant in band]
     few = protocols[WALK].changed(trials=min(BAND_TRIALS, int(protocols[WALK].trials)))
     changes = [{"contact.time_constant": constant} for _, constant in jobs]
@@ -181,11 +186,11 @@ def evaluate_shipped(
         for group, some in _free(policies, kinds).items()
     }
     over: dict[str, dict[float, list[Evaluation]]] = {}
-    for (policy, constant), one in zip(jobs, walks, strict=True):
-        over.setdefault(policy.design, {}).setdefault(constant, []).append(one)
+    for (policy, constant), evaluation in zip(jobs, walks, strict=True):
+        over.setdefault(policy.design, {}).setdefault(constant, []).append(evaluation)
     return Evaluated(
         policies,
-        [found[i] for i in range(len(policies))],
+        [by_job[i] for i in range(len(policies))],
         missing_trainings(policies),
         over,
         speeds,

@@ -60,18 +60,18 @@ def run_paper(
         OutputError: the folder is not ours, or cannot be written.
     """
     check_output_folder(out)
-    found = evaluate_with_bar(policies, workers=workers, progress=progress, **options)
+    evaluated = evaluate_with_bar(policies, workers=workers, progress=progress, **options)
     with output_folder(out) as folder:
-        made = (
-            [Section(part.title, part.content) for part in policy_parts(found, folder)]
-            if found.policies
+        sections = (
+            [Section(part.title, part.content) for part in policy_parts(evaluated, folder)]
+            if evaluated.policies
             else []
         )
         commit = provenance.git_commit()
         page = Page(
             title="Active toes: the paper's experiment, run again",
-            lead=LEAD if found.policies else NO_POLICY,
-            sections=made,
+            lead=LEAD if evaluated.policies else NO_POLICY,
+            sections=sections,
             provenance={
                 **provenance.versions(),
                 **({"commit": commit} if commit else {}),
@@ -82,11 +82,11 @@ def run_paper(
     return Path(out) / "index.html"
 
 
-def policy_parts(found: Evaluated, folder: Path, prefix: str = "") -> list[Any]:
+def policy_parts(evaluated: Evaluated, folder: Path, prefix: str = "") -> list[Any]:
     """Draw and write everything into a page's folder.
 
     Args:
-        found: evaluated policies, at least one.
+        evaluated: evaluated policies, at least one.
         folder: of the page.
         prefix: in front of each figure's name.
 
@@ -96,14 +96,20 @@ def policy_parts(found: Evaluated, folder: Path, prefix: str = "") -> list[Any]:
     (folder / FIGURES).mkdir(exist_ok=True)
     write_json(
         folder / TABLES,
-        {name: [row_facts(row) for row in rows] for name, rows in rows_beside_paper(found).items()},
+        {
+            name: [row_facts(row) for row in rows]
+            for name, rows in rows_beside_paper(evaluated).items()
+        },
     )
     write_json(
         folder / PLANNED,
-        {name: [row_numbers(row) for row in rows] for name, rows in planned_rows(found).items()},
+        {
+            name: [row_numbers(row) for row in rows]
+            for name, rows in planned_rows(evaluated).items()
+        },
     )
-    write_results(folder / RESULTS, found.evaluations)
-    return parts(found, Drawer(folder, prefix))
+    write_results(folder / RESULTS, evaluated.evaluations)
+    return parts(evaluated, Drawer(folder, prefix))
 
 
 def evaluate_with_bar(
@@ -129,8 +135,8 @@ def evaluate_with_bar(
 def read_tables(out: str | Path) -> dict[str, list[dict[str, Any]]]:
     """`tables.json` of a folder written by `run_paper`; empty where there was no policy."""
     path = Path(out) / TABLES
-    found: dict[str, list[dict[str, Any]]] = json.loads(path.read_text()) if path.is_file() else {}
-    return found
+    tables: dict[str, list[dict[str, Any]]] = json.loads(path.read_text()) if path.is_file() else {}
+    return tables
 
 
 def tables_text(tables: dict[str, list[dict[str, Any]]]) -> str:

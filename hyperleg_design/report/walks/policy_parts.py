@@ -31,35 +31,35 @@ from hyperleg_design.report.walks.versus_figures import change_figure
 from hyperleg_design.report.walks.walk_figures import operating_points_figure
 
 
-def parts(found: Evaluated, draw: Drawer) -> list[Part]:
+def parts(evaluated: Evaluated, draw: Drawer) -> list[Part]:
     """All parts that the policies that are there allow, in the order of a page; what is missing is
     said in the first.
     """
-    made = [_what(found)]
-    if planned_rows(found):
-        made.append(planned(found))
-    if found.groups(WALK):
-        made += [
-            walks.walks(found, draw),
-            walks.table_three(found, draw),
-            walks.confound(found, draw),
-            walks.cycle(found, draw),
+    list_of_parts = [_what(evaluated)]
+    if planned_rows(evaluated):
+        list_of_parts.append(planned(evaluated))
+    if evaluated.groups(WALK):
+        list_of_parts += [
+            walks.walks(evaluated, draw),
+            walks.table_three(evaluated, draw),
+            walks.confound(evaluated, draw),
+            walks.cycle(evaluated, draw),
         ]
-    if found.speeds:
-        made.append(walks.speeds(found, draw))
-    if found.groups(T_TEST):
-        made.append(_table_four(found, draw))
-    if found.band:
-        made.append(walks.impacts(found, draw))
-    return [*made, _motors(found, draw), _learning(found, draw)]
+    if evaluated.speeds:
+        list_of_parts.append(walks.speeds(evaluated, draw))
+    if evaluated.groups(T_TEST):
+        list_of_parts.append(_table_four(evaluated, draw))
+    if evaluated.band:
+        list_of_parts.append(walks.impacts(evaluated, draw))
+    return [*list_of_parts, _motors(evaluated, draw), _learning(evaluated, draw)]
 
 
-def _what(found: Evaluated) -> Part:
+def _what(evaluated: Evaluated) -> Part:
     rows: list[list[Any]] = []
     for kind in (WALK, T_TEST):
-        for group in found.groups(kind):
-            table = found.table(group)
-            for design in found.designs(group):
+        for group in evaluated.groups(kind):
+            table = evaluated.table(group)
+            for design in evaluated.designs(group):
                 part = table[table["variant"] == design]
                 falls = statistics.share(list(by_checkpoint(part, "fell").values()), resamples=1000)
                 arrived = int(part["arrived"].sum())
@@ -67,7 +67,7 @@ def _what(found: Evaluated) -> Part:
                     f"{count} {str(name).replace('_', ' ')}"
                     for name, count in part["outcome"].value_counts().items()
                 )
-                seeds, policies = found.seeds(group, design), part["policy"].nunique()
+                seeds, policies = evaluated.seeds(group, design), part["policy"].nunique()
                 fell = int(part["fell"].sum())
                 share = f"{100 * falls.mean:.1f} % [{100 * falls.low:.1f}, {100 * falls.high:.1f}]"
                 rows.append(
@@ -82,13 +82,13 @@ def _what(found: Evaluated) -> Part:
                         Cell(ends, "good" if arrived == len(part) else "note"),
                     ]
                 )
-    protocols = {e.protocol.name: e.protocol for e in found.evaluations}
+    protocols = {e.protocol.name: e.protocol for e in evaluated.evaluations}
     text = "; ".join(
         f"{name}: {int(p.trials)} trials, starting states from seed {int(p.seed)}"
         for name, p in protocols.items()
     )
     content: list[Any] = [
-        f"{len(found.policies)} policies of {len({p.training for p in found.policies})} trainings, each run on its own protocol ({text}), deterministic and without assist. "
+        f"{len(evaluated.policies)} policies of {len({p.training for p in evaluated.policies})} trainings, each run on its own protocol ({text}), deterministic and without assist. "
         "Intervals are 95 % and rest on a hierarchical bootstrap over training seeds, late checkpoints and trials, widened for few seeds; "
         "a difference is told only where both sides have three seeds and the interval leaves zero out. Falls are counted, never dropped; what a fallen trial cannot give is counted as missing.",
         Table(
@@ -106,19 +106,19 @@ def _what(found: Evaluated) -> Part:
         ),
     ]
     content.append(
-        f"Of the campaign's trainings {len(found.missing)} are not there: {missing_text(found.missing)}."
-        if found.missing
+        f"Of the campaign's trainings {len(evaluated.missing)} are not there: {missing_text(evaluated.missing)}."
+        if evaluated.missing
         else "All trainings of the campaign are there."
     )
-    content.append(_deviations(found))
+    content.append(_deviations(evaluated))
     return Part("What was evaluated", content)
 
 
-def _deviations(found: Evaluated) -> Any:
+def _deviations(evaluated: Evaluated) -> Any:
     """Reward terms and observations that are not the paper's, by group."""
     terms: dict[str, dict[str, str]] = {}
-    for policy, one in zip(found.policies, found.evaluations, strict=True):
-        given = one.origin.get("deviations")
+    for policy, evaluation in zip(evaluated.policies, evaluated.evaluations, strict=True):
+        given = evaluation.origin.get("deviations")
         terms.setdefault(policy.group, {}).update(given if isinstance(given, dict) else {})
     rows = [
         [group, name.replace("_", " "), text]
@@ -134,29 +134,31 @@ def _deviations(found: Evaluated) -> Any:
     )
 
 
-def _table_four(found: Evaluated, draw: Drawer) -> Part:
+def _table_four(evaluated: Evaluated, draw: Drawer) -> Part:
     content: list[Any] = [
         "The Robot T-test, A B C D B A with the human test's lengths and free torso yaw. Deviation is from the nearest point of the course; from the leg being run it stands in the table of differences."
     ]
-    made = {
-        name: rows for name, rows in rows_beside_paper(found).items() if name.startswith("Table IV")
+    tables = {
+        name: rows
+        for name, rows in rows_beside_paper(evaluated).items()
+        if name.startswith("Table IV")
     }
-    if not made:
+    if not tables:
         content.append(
             "Table IV cannot be reproduced yet: no group has both of the paper's robots."
         )
-    for name, rows in made.items():
+    for name, rows in tables.items():
         content += [*beside(rows, name), toe_sentence(rows)]
-    if made:
+    if tables:
         content.append(
             draw(
                 "table_4",
                 "Change that the toe makes: ours beside the paper's.",
-                lambda p: save(change_figure(made), p),
+                lambda p: save(change_figure(tables), p),
             )
         )
-    for group in found.groups(T_TEST):
-        runs = {d: found.of(group, d) for d in found.designs(group)}
+    for group in evaluated.groups(T_TEST):
+        runs = {d: evaluated.of(group, d) for d in evaluated.designs(group)}
         shown = next((one.trials[0] for some in runs.values() for one in some if one.trials), None)
         step = shown.time_step * shown.substeps if shown is not None else 0.02
         content.append(
@@ -168,7 +170,7 @@ def _table_four(found: Evaluated, draw: Drawer) -> Part:
         )
         jobs: list[Any] = []
         for d, some in runs.items():
-            if (t := found.shown(group, d)) is not None:
+            if (t := evaluated.shown(group, d)) is not None:
                 caption = f"A T-test, {d.replace('_', ' ')}; longer runs faster than true."
                 jobs.append(
                     (
@@ -184,18 +186,18 @@ def _table_four(found: Evaluated, draw: Drawer) -> Part:
         content.append(draw.together(jobs))
         content.append(time_table(runs, group, step))
         if set(VARIANTS) <= set(runs):
-            content.append(differences(found, group, T_TEST))
+            content.append(differences(evaluated, group, T_TEST))
     return Part("Table IV: the T-test, beside the paper", content)
 
 
-def _motors(found: Evaluated, draw: Drawer) -> Part:
+def _motors(evaluated: Evaluated, draw: Drawer) -> Part:
     content: list[Any] = []
     for kind, word in ((T_TEST, "a T-test"), (WALK, "a walk")):
-        for group in found.groups(kind)[:1]:
+        for group in evaluated.groups(kind)[:1]:
             trials = {
                 d: t
-                for d in found.designs(group)
-                if d in VARIANTS and (t := found.shown(group, d)) is not None
+                for d in evaluated.designs(group)
+                if d in VARIANTS and (t := evaluated.shown(group, d)) is not None
             }
             if kind == T_TEST and "toe" in trials:
                 toe = trials["toe"]
@@ -222,8 +224,8 @@ def _motors(found: Evaluated, draw: Drawer) -> Part:
     return Part("Motors in their envelopes", content)
 
 
-def _learning(found: Evaluated, draw: Drawer) -> Part:
-    curves = [p for p in found.policies if p.late == 0 and learning_curve(p.path.parent)]
+def _learning(evaluated: Evaluated, draw: Drawer) -> Part:
+    curves = [p for p in evaluated.policies if p.late == 0 and learning_curve(p.path.parent)]
     if not curves:
         return Part("Learning curves", ["No training brought its learning curve along."])
     caption = "Means over the robots in training, with exploration, and with assist as long as there is some."

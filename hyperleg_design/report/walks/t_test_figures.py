@@ -52,8 +52,8 @@ def t_test_figure(runs: Mapping[str, Sequence[Evaluation]], step: float) -> Figu
             axes = figure.add_subplot(grid[0, column], sharex=layout, sharey=layout)
             panels.append(axes)
             _course(axes, protocol)
-            for one in evaluations:
-                for path, outcome in zip(one.paths, one.outcomes, strict=True):
+            for evaluation in evaluations:
+                for path, outcome in zip(evaluation.paths, evaluation.outcomes, strict=True):
                     if len(path) < 3:
                         continue
                     seen = path[:, ::-1] * [-1.0, 1.0]  # ahead is up, left is left
@@ -65,8 +65,10 @@ def t_test_figure(runs: Mapping[str, Sequence[Evaluation]], step: float) -> Figu
                     axes.add_collection(lines)
                     if outcome != ARRIVED:
                         axes.plot(*seen[-1], "x", color="#b3372f", ms=7, mew=2, zorder=5)
-            trials = sum(len(one.outcomes) for one in evaluations)
-            ended = sum(outcome != ARRIVED for one in evaluations for outcome in one.outcomes)
+            trials = sum(len(evaluation.outcomes) for evaluation in evaluations)
+            ended = sum(
+                outcome != ARRIVED for evaluation in evaluations for outcome in evaluation.outcomes
+            )
             axes.set_title(
                 f"{name.replace('_', ' ')}\n{trials} trials, {ended} without arrival"
                 + (" (crosses)" if ended else ""),
@@ -155,8 +157,8 @@ def _speed(
 ) -> None:
     """Median and middle half of the trials' speed over their way."""
     curves = []
-    for one in evaluations:
-        for path, outcome in zip(one.paths, one.outcomes, strict=True):
+    for evaluation in evaluations:
+        for path, outcome in zip(evaluation.paths, evaluation.outcomes, strict=True):
             if outcome == ARRIVED and len(path) > 2:
                 way = np.concatenate(
                     [[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=-1))]

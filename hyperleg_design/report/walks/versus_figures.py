@@ -44,7 +44,7 @@ def change_figure(groups: Mapping[str, Sequence[PaperRow]]) -> Figure:
         )
         for axes, (name, rows) in zip(panels[0], groups.items(), strict=True):
             for i, row in enumerate(rows):
-                found = row.difference
+                change = row.difference
                 axes.plot(
                     100 * row.printed.change,
                     i - 0.14,
@@ -53,20 +53,20 @@ def change_figure(groups: Mapping[str, Sequence[PaperRow]]) -> Figure:
                     ms=6,
                     label="paper" if i == 0 else None,
                 )
-                if np.isfinite(found.relative):
+                if np.isfinite(change.relative):
                     axes.plot(
-                        100 * found.relative,
+                        100 * change.relative,
                         i + 0.14,
                         "o",
                         color=_OURS,
                         ms=6,
                         label="ours, 95 % interval" if i == 0 else None,
                     )
-                    if np.isfinite(found.relative_low):
+                    if np.isfinite(change.relative_low):
                         axes.hlines(
                             i + 0.14,
-                            100 * found.relative_low,
-                            100 * found.relative_high,
+                            100 * change.relative_low,
+                            100 * change.relative_high,
                             color=_OURS,
                             lw=1.8,
                         )

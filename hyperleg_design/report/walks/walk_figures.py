@@ -53,8 +53,8 @@ def cycle_power_figure(walks: Mapping[str, Sequence[Evaluation]]) -> Figure:
         )
         for column, (name, evaluations) in enumerate(walks.items()):
             cycles = [
-                [c for c in one.cycles if c is not None and len(c.mechanical)]
-                for one in evaluations
+                [c for c in evaluation.cycles if c is not None and len(c.mechanical)]
+                for evaluation in evaluations
             ]
             cycles = [some for some in cycles if some]
             upper, lower = grid[:, column]
@@ -135,18 +135,24 @@ def impact_band_figure(
             scale = 1e-3 if measure == "grf_loading_rate" else 1.0
             for i, (design, walks) in enumerate(band.items()):
                 constants = sorted(walks)
-                found = [
-                    estimate([one.values(measure) * scale for one in walks[c]], resamples=1000)
+                estimates = [
+                    estimate(
+                        [evaluation.values(measure) * scale for evaluation in walks[c]],
+                        resamples=1000,
+                    )
                     for c in constants
                 ]
                 x = np.array([stiffness[c] for c in constants]) * 1e-3 * (1 + 0.03 * i)
-                mean = np.array([f.mean for f in found])
+                mean = np.array([f.mean for f in estimates])
                 colour = VARIANT_COLOUR.get(design, _GREY)
                 axes.plot(x, mean, "o-", color=colour, ms=5, label=design.replace("_", " "))
-                told = np.array([f.speaks_of_seeds for f in found])
+                over_seeds = np.array([f.speaks_of_seeds for f in estimates])
                 axes.vlines(
-                    x[told],
-                    *(np.array([getattr(f, end) for f in found])[told] for end in ("low", "high")),
+                    x[over_seeds],
+                    *(
+                        np.array([getattr(f, end) for f in estimates])[over_seeds]
+                        for end in ("low", "high")
+                    ),
                     color=colour,
                     lw=1.4,
                 )
@@ -233,13 +239,13 @@ def operating_points_figure(trials: Mapping[str, Trial]) -> Figure:
 
 
 def _envelope(axes: Axes, trial: Trial, index: int) -> None:
-    one = motor_envelope(trial.design).select([index])
-    free = float(one.no_load_speed[0])
+    envelope = motor_envelope(trial.design).select([index])
+    free = float(envelope.no_load_speed[0])
     speed = np.linspace(-1.1 * free, 1.1 * free, 401)
-    lower, upper = (limit[:, 0] for limit in torque_limits(one, speed[:, None]))
+    lower, upper = (limit[:, 0] for limit in torque_limits(envelope, speed[:, None]))
     axes.plot(speed, lower, color="#1d2129", lw=1.1)
     axes.plot(speed, upper, color="#1d2129", lw=1.1)
-    peak = float(one.peak_torque[0])
+    peak = float(envelope.peak_torque[0])
     axes.set(xlim=(-1.1 * free, 1.1 * free), ylim=(-1.2 * peak, 1.2 * peak))
     axes.axhline(0, color=_GREY, lw=0.6)
     axes.axvline(0, color=_GREY, lw=0.6)

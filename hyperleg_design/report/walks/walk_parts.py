@@ -40,21 +40,23 @@ ATTRIBUTED = ("power", "joule_power", "steady_cost_of_transport", "grf_peak", "g
 """Measures whose difference is split into toe, torque and mass."""
 
 
-def walks(found: Evaluated, draw: Drawer) -> Part:
+def walks(evaluated: Evaluated, draw: Drawer) -> Part:
     """Pictures of walks, and the demands on them."""
     content: list[Any] = []
-    groups = found.groups(WALK)
-    columns = [(group, design) for group in groups for design in found.designs(group)]
-    findings = [walk_findings(found.of(*column)) for column in columns]
+    groups = evaluated.groups(WALK)
+    columns = [(group, design) for group in groups for design in evaluated.designs(group)]
+    findings = [walk_findings(evaluated.of(*column)) for column in columns]
     rows = []
     for lines in zip(*findings, strict=True):
         demand = lines[0].demand
         cells = [Cell(line.found, "good" if line.met else "bad") for line in lines]
         rows.append([demand.why, f"{demand.low:.3g} … {demand.high:.3g}", *cells])
     for group in groups[:1]:
-        trials = {d: t for d in found.designs(group) if (t := found.shown(group, d)) is not None}
+        trials = {
+            d: t for d in evaluated.designs(group) if (t := evaluated.shown(group, d)) is not None
+        }
         pair = {
-            d: (t, found.of(group, d)[0].protocol.events)
+            d: (t, evaluated.of(group, d)[0].protocol.events)
             for d, t in trials.items()
             if d in VARIANTS or d == next(iter(trials))
         }
@@ -93,12 +95,12 @@ def walks(found: Evaluated, draw: Drawer) -> Part:
     return Part("Walks that a person would believe", content)
 
 
-def speeds(found: Evaluated, draw: Drawer) -> Part:
+def speeds(evaluated: Evaluated, draw: Drawer) -> Part:
     """Cost of transport over commanded speed, cadence chosen by the policies."""
     content: list[Any] = [
         "Walks at commanded speeds from 0.6 to 2.0 m/s by policies that observe no gait clock, so that they choose their cadence: share of trials that arrive, and cost of transport over the steady strides of those that do."
     ]
-    for group, table in found.speeds.items():
+    for group, table in evaluated.speeds.items():
         content.append(
             draw(
                 f"speeds_{group}",
@@ -109,54 +111,54 @@ def speeds(found: Evaluated, draw: Drawer) -> Part:
     return Part("Cost of transport over speed", content)
 
 
-def table_three(found: Evaluated, draw: Drawer) -> Part:
+def table_three(evaluated: Evaluated, draw: Drawer) -> Part:
     """Part of the page with Table III: walking, measured beside printed numbers."""
     content: list[Any] = [
         "The paper's numbers beside ours: twenty metres at 1.33 m/s. Ablation: toe and its motor removed at equal mass (toe_removed_matched), which fits the ratios of the table best. "
         "A printed number agrees where it lies in our interval."
     ]
-    made = {
+    tables = {
         name: rows
-        for name, rows in rows_beside_paper(found).items()
+        for name, rows in rows_beside_paper(evaluated).items()
         if name.startswith("Table III")
     }
-    if not made:
+    if not tables:
         content.append("Cannot be reproduced yet: no group has both of the paper's robots.")
-    for name, rows in made.items():
+    for name, rows in tables.items():
         content += [*beside(rows, name), toe_sentence(rows)]
-    if made:
+    if tables:
         content.append(
             draw(
                 "table_3",
                 "Change that the toe makes: ours beside the paper's.",
-                lambda p: save(change_figure(made), p),
+                lambda p: save(change_figure(tables), p),
             )
         )
     content += [
-        differences(found, group, WALK)
-        for group in found.groups(WALK)
-        if set(VARIANTS) <= set(found.designs(group))
+        differences(evaluated, group, WALK)
+        for group in evaluated.groups(WALK)
+        if set(VARIANTS) <= set(evaluated.designs(group))
     ]
     return Part("Table III: walking, beside the paper", content)
 
 
-def confound(found: Evaluated, draw: Drawer) -> Part:
+def confound(evaluated: Evaluated, draw: Drawer) -> Part:
     """The difference split into toe, torque and mass."""
     ladder: list[Any] = [
         "Taking the toe's motor away also weakens knee and ankle, which it helps, and lightens the leg. The ablations change one thing at a time: toe locked with its motor kept, toe and motor gone at equal mass, gone with their mass. "
         "Each line is the one without less the one with."
     ]
     figures = {}
-    for group in found.groups(WALK):
-        if len(set(attribution.LADDER) & set(found.designs(group))) < 2:
+    for group in evaluated.groups(WALK):
+        if len(set(attribution.LADDER) & set(evaluated.designs(group))) < 2:
             continue
-        table = found.table(group)
+        table = evaluated.table(group)
         rows = []
         shares = {}
         for name in ATTRIBUTED:
             groups = {
                 d: list(by_checkpoint(table[table["variant"] == d], name).values())
-                for d in found.designs(group)
+                for d in evaluated.designs(group)
             }
             shares[name.replace("_", " ")] = found_shares = attribution.attribute(groups)
             for share in found_shares:
@@ -174,11 +176,11 @@ def confound(found: Evaluated, draw: Drawer) -> Part:
             Table(
                 ["measure", "what is taken away", "change", "relative", "verdict"],
                 rows,
-                f"Group {group}: {' → '.join(d for d in attribution.LADDER if d in found.designs(group))}.",
+                f"Group {group}: {' → '.join(d for d in attribution.LADDER if d in evaluated.designs(group))}.",
             )
         )
         figures[group] = shares
-        absent = [d for d in attribution.LADDER if d not in found.designs(group)]
+        absent = [d for d in attribution.LADDER if d not in evaluated.designs(group)]
         if absent:
             ladder.append(
                 f"Steps that need {', '.join(absent)} cannot be told in the group {group}: no such training is there."
@@ -196,11 +198,11 @@ def confound(found: Evaluated, draw: Drawer) -> Part:
     return Part("How much is the toe, how much the lost torque, how much the mass", ladder)
 
 
-def cycle(found: Evaluated, draw: Drawer) -> Part:
+def cycle(evaluated: Evaluated, draw: Drawer) -> Part:
     """Part of the page with Figure 6: power over the gait cycle."""
     content: list[Any] = []
-    for group in found.groups(WALK):
-        walks = {d: found.of(group, d) for d in found.designs(group) if d in VARIANTS}
+    for group in evaluated.groups(WALK):
+        walks = {d: evaluated.of(group, d) for d in evaluated.designs(group) if d in VARIANTS}
         if not walks:
             continue
         content.append(
@@ -213,11 +215,11 @@ def cycle(found: Evaluated, draw: Drawer) -> Part:
     return Part("Power over the gait cycle", content)
 
 
-def impacts(found: Evaluated, draw: Drawer) -> Part:
+def impacts(evaluated: Evaluated, draw: Drawer) -> Part:
     """Impacts over the stiffness of the sole, and the pad that it stands for."""
     evaluation, trial = next(
         (e, e.trials[0])
-        for e in found.evaluations
+        for e in evaluated.evaluations
         if e.trials and not hasattr(e.protocol, "course")
     )
     steps = measured_steps(trial, evaluation.protocol.events)
@@ -231,7 +233,7 @@ def impacts(found: Evaluated, draw: Drawer) -> Part:
             "Impacts over the stiffness of the sole",
             ["Cannot be told: the walk that would say what mass stands behind a heel has no step."],
         )
-    constants = sorted(next(iter(found.band.values())))
+    constants = sorted(next(iter(evaluated.band.values())))
     robot = walker(trial.design, "the stiffness of the sole")
     pads = {c: pad_of_contact(robot, mass, c) for c in constants}
     own = float(robot.contact.time_constant)
@@ -239,16 +241,17 @@ def impacts(found: Evaluated, draw: Drawer) -> Part:
     for c in constants:
         pad = pads[c]
         cells = []
-        for walks in found.band.values():
-            one = statistics.estimate(
+        for walks in evaluated.band.values():
+            value = statistics.estimate(
                 [e.values("grf_peak_body_weights") for e in walks[c]], resamples=1000
             )
             fell = int(sum(e.values("fell").sum() for e in walks[c]))
             cells.append(
-                f"{interval(one.mean, one.low if one.speaks_of_seeds else math.nan, one.high, '')}{f', {fell} fell' if fell else ''}"
+                f"{interval(value.mean, value.low if value.speaks_of_seeds else math.nan, value.high, '')}{f', {fell} fell' if fell else ''}"
             )
         pair = [
-            [e.values("grf_peak_body_weights") for e in walks[c]] for walks in found.band.values()
+            [e.values("grf_peak_body_weights") for e in walks[c]]
+            for walks in evaluated.band.values()
         ]
         told = statistics.difference(*pair, resamples=1000).verdict if len(pair) == 2 else ""
         rows.append(
@@ -272,7 +275,7 @@ def impacts(found: Evaluated, draw: Drawer) -> Part:
                 "stiffness [kN/m]",
                 "damping [Ns/m]",
                 "modulus [MPa]",
-                *(d.replace("_", " ") for d in found.band),
+                *(d.replace("_", " ") for d in evaluated.band),
                 "difference",
             ],
             rows,
@@ -282,7 +285,7 @@ def impacts(found: Evaluated, draw: Drawer) -> Part:
             "impact_band",
             "Impact over the stiffness of the pad under a heel.",
             lambda p: save(
-                impact_band_figure(found.band, {c: pads[c].stiffness for c in constants}), p
+                impact_band_figure(evaluated.band, {c: pads[c].stiffness for c in constants}), p
             ),
         ),
     ]
