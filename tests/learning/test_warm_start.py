@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.preset import Preset
 
@@ -167,3 +168,9 @@ def test_bad_starts(tiny: Preset, walker: Path, tmp_path: Path) -> None:
 
 def with_goal_paper(tiny: Preset) -> Preset:
     return dataclasses.replace(tiny, tasks={**tiny.tasks, "goal_paper": tiny.tasks["goal"]})
+
+
+def test_a_conditioned_policy_is_no_start_yet() -> None:
+    path = resources.content_folder("sim") / "conditioned/walk-toe-0/policy.onnx"
+    with pytest.raises(InputError, match="conditioned on its design"):
+        read_start(path)
