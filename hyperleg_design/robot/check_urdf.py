@@ -467,7 +467,8 @@ def _limit(joint: Any, place: str, kind: str) -> list[Finding]:
         findings += _range(float(ends["lower"][0]), float(ends["upper"][0]), place, kind)
     driven = {"effort": numbers(limit.get("effort"), 1)}
     driven["velocity"] = numbers(limit.get("velocity"), 1)
-    if all(value is not None and value[0] == 0 for value in driven.values()):
+    passive = all(value is not None and value[0] == 0 for value in driven.values())
+    if passive and not findings:
         return findings  # no motor drives this joint, such as a toe on a spring
     for key, unit in (("effort", "Nm or N"), ("velocity", "rad/s or m/s")):
         value = driven[key]

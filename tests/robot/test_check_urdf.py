@@ -149,6 +149,12 @@ def test_places_name_element_and_line():
     assert [f.place for f in found] == ["joint shoulder (line 12)"]
 
 
+def test_a_joint_without_a_motor_is_right():
+    passive = GOOD.replace('effort="10" velocity="5"', 'effort="0" velocity="0"')
+    assert passive != GOOD
+    assert check_urdf(passive) == []
+
+
 def test_all_faults_are_told_at_once():
     broken = GOOD
     for case in ("loose link", "negative mass", "no body's inertia", "reversed", "friction"):

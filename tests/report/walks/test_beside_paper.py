@@ -85,9 +85,9 @@ def test_differences_are_there_unpaired_and_paired(found):
     (table,) = made.content
     power = next(row for row in table.rows if row[0] == "power")
     assert power[1] == "W"
-    unpaired, paired = power[4], power[6]
+    unpaired, paired = power[5], power[7]
     assert unpaired.split(" ")[0] == paired.split(" ")[0]  # the same mean
-    assert power[7] == Cell(statistics.DIFFERS, "bad")  # seeds share their spread, so pairs see it
+    assert power[8] == Cell(statistics.DIFFERS, "bad")  # seeds share their spread, so pairs see it
 
 
 def test_numbers_that_are_not_there_are_dashes():
