@@ -204,34 +204,38 @@ def joint_limits(state: State, robot: Robot, share: float = 0.95) -> np.ndarray:
     )
 
 
-def _near(away: np.ndarray, state: State, width: float) -> np.ndarray:
-    """exp(-d^2 - |v_cmd - v|^2 / width), d the distance from the human cycle."""
+def _near(away: np.ndarray, state: State, width: float, spread: float) -> np.ndarray:
+    """exp(-(d / spread)^2 - |v_cmd - v|^2 / width), d the distance from the human cycle."""
     motion, goal = state.motion, state.goal
     commanded = state.command[:, :2]
     if goal is not None:
         commanded = goal.offset * (goal.speed_cap / np.maximum(goal.distance, 1e-9))[:, None]
     error = commanded - motion.walking_velocity
-    return np.exp(-(away**2) - np.einsum("ni,ni->n", error, error) / width)
+    return np.exp(-((away / spread) ** 2) - np.einsum("ni,ni->n", error, error) / width)
 
 
 @term(joints=tuple(human_gait.KNOTS))
-def human_cycle(state: State, robot: Robot, width: float = 0.25) -> np.ndarray:
-    """exp(-d^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human walking;
-    with waypoints, v_cmd is the speed cap toward the present one.
+def human_cycle(
+    state: State, robot: Robot, width: float = 0.25, spread: float = 1.0
+) -> np.ndarray:
+    """exp(-(d / spread)^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human
+    walking; with waypoints, v_cmd is the speed cap toward the present one.
     """
     motion, joints = state.motion, robot.layout.joints
     away = human_gait.distance(joints, motion.joint_position, motion.joint_velocity)
-    return _near(away, state, width)
+    return _near(away, state, width, spread)
 
 
 @term(joints=tuple(human_gait.KNOTS))
-def human_stride(state: State, robot: Robot, width: float = 0.25) -> np.ndarray:
+def human_stride(
+    state: State, robot: Robot, width: float = 0.25, spread: float = 1.0
+) -> np.ndarray:
     """As `human_cycle`, with the distance from human walking at the phase of the gait clock, whose
     period must be that of the cycle.
     """
     motion, joints = state.motion, robot.layout.joints
     away = human_gait.distance_at(joints, motion.joint_position, motion.joint_velocity, state.phase)
-    return _near(away, state, width)
+    return _near(away, state, width, spread)
 
 
 @term()
