@@ -215,9 +215,7 @@ def _near(away: np.ndarray, state: State, width: float, spread: float) -> np.nda
 
 
 @term(joints=tuple(human_gait.KNOTS))
-def human_cycle(
-    state: State, robot: Robot, width: float = 0.25, spread: float = 1.0
-) -> np.ndarray:
+def human_cycle(state: State, robot: Robot, width: float = 0.25, spread: float = 1.0) -> np.ndarray:
     """exp(-(d / spread)^2 - |v_cmd - v|^2 / width), d the distance from the nearest phase of human
     walking; with waypoints, v_cmd is the speed cap toward the present one.
     """
@@ -236,6 +234,18 @@ def human_stride(
     motion, joints = state.motion, robot.layout.joints
     away = human_gait.distance_at(joints, motion.joint_position, motion.joint_velocity, state.phase)
     return _near(away, state, width, spread)
+
+
+@term(joints=("knee", "ankle_pitch"))
+def stance_flexion(state: State, robot: Robot, free: float = 0.26) -> np.ndarray:
+    """Knee flexion and ankle dorsiflexion beyond a free angle [rad], of each leg weighted by the
+    share of the body's weight on its foot, at most 1, and summed: how crouched the robot stands.
+    """
+    layout, position = robot.layout, state.motion.joint_position
+    knees, ankles = (layout.joint_indices(name) for name in ("knee", "ankle_pitch"))
+    load = np.minimum(state.foot_load[-1] / np.reshape(layout.weight, (-1, 1)), 1.0)
+    bent = np.maximum(position[:, knees] - free, 0.0) + np.maximum(-position[:, ankles] - free, 0.0)
+    return np.einsum("nf,nf->n", load, bent)
 
 
 @term()

@@ -116,6 +116,22 @@ def test_posture_terms(state, robot):
     np.testing.assert_allclose(value("roll_pitch_rate", state, robot), [5.0, 0.0])
 
 
+def test_stance_flexion_counts_bent_legs_by_the_weight_that_they_bear(state, robot):
+    layout, motion = robot.layout, state.motion
+    knees, ankles = layout.joint_indices("knee"), layout.joint_indices("ankle_pitch")
+    motion.joint_position[:, knees] = 0.5, 0.1
+    motion.joint_position[:, ankles] = -0.3, -0.9
+    state.foot_load[-1, :, 0] = layout.weight / 4
+    state.foot_load[-1, :, 1] = 3 * layout.weight, 0.0
+    np.testing.assert_allclose(
+        value("stance_flexion", state, robot, free=0.2),
+        [0.25 * (0.3 + 0.1) + 0.7, 0.25 * (0.3 + 0.1)],
+    )
+    motion.joint_position[:, ankles] = 0.9  # plantar flexion is free
+    motion.joint_position[:, knees] = 0.2
+    np.testing.assert_allclose(value("stance_flexion", state, robot, free=0.2), 0.0)
+
+
 def test_tilt_is_the_sine_squared_of_the_lean(state, robot):
     lean = 0.3
     qpos = np.zeros((1, 21))
@@ -139,7 +155,18 @@ def test_human_cycle_pays_for_the_cycle_at_the_commanded_velocity(state, robot):
         value("human_cycle", state, robot), [1.0, np.exp(-(0.2**2 + 0.1**2) / 0.25)]
     )
     state.goal = goal
-    motion.joint_position[:, places] += 2 * human_gait.ANGLE
+    phase = 7 / human_gait.PHASES
+    state.phase = np.array([phase, phase + 0.5])
+    stride = value("human_stride", state, robot)
+    assert stride[0] == pytest.approx(value("human_cycle", state, robot)[0])
+    assert stride[1] < 0.01 * value("human_cycle", state, robot)[1]  # half a stride away
+    motion.joint_position[:, places] += human_gait.ANGLE
+    distance = human_gait.distance(
+        robot.layout.joints, motion.joint_position, motion.joint_velocity
+    )
+    near, far = (value("human_cycle", state, robot, spread=spread) for spread in (1.0, 2.0))
+    np.testing.assert_allclose(np.log(far / near), 0.75 * distance**2)
+    motion.joint_position[:, places] += human_gait.ANGLE
     assert np.all(value("human_cycle", state, robot) < 0.5)
 
 
