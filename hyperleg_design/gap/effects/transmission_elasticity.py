@@ -29,7 +29,7 @@ SLOWEST = 0.5
 """Lowest frequency of a rotor on its belt that is searched [Hz]."""
 STIFFER = 30.0
 """Usual stiffening [1/rad], twice as stiff at 2 degrees; that a search starts from, too."""
-RESONANCE = 8.0
+TELLING = 8.0
 """Content of the motion that tells elasticity from delay [Hz]."""
 
 
@@ -91,10 +91,10 @@ class TransmissionElasticity(Effect):
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """See `Effect.excited`."""
-        good = f"motion reaches past {RESONANCE:.0f} Hz"
-        lacking = f"motion holds nothing above {RESONANCE:.0f} Hz: looks like delay"
+        good = f"motion reaches past {TELLING:.0f} Hz"
+        lacking = f"motion holds nothing above {TELLING:.0f} Hz: looks like delay"
         return by_speeds(self.identifier, log, motion) or at_joints(
-            self.identifier, motion, motion.content > RESONANCE, good, lacking
+            self.identifier, motion, motion.content > TELLING, good, lacking
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
