@@ -9,6 +9,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.measures import WALK
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.power import power_constants
@@ -97,3 +98,11 @@ def test_a_biped_with_a_parallel_ankle_is_measured_like_hyperleg():
     (trial,) = found.trials
     assert trial.outcome == "timed_out"
     assert trial.foot_load[-1].sum() == pytest.approx(trial.layout.weight, rel=0.2)
+
+
+def test_the_shipped_quadruped_walks():
+    protocol = WalkProtocol(trials=2, distance=4.0, time_limit=8.0, steady=Steady(begin=1.5))
+    found = evaluate("walk_any-mini_cheetah-0", protocol, threads=1)
+    assert [trial.outcome for trial in found.trials] == ["arrived", "arrived"]
+    assert found.trained.kind == "specialist"
+    assert found.measures[0]["flight"] < 0.3
