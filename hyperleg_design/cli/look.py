@@ -21,6 +21,8 @@ class View(Printing):
 
     designs: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
     """One or two shipped names or YAML files; what was recorded, else hyperleg, by default."""
+    variant: str = ""
+    """Ablation to make of all designs: toe, toe_locked, toe_removed_matched or toe_removed."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """PATH=VALUE, applied to all designs."""
     recording: Path | None = None
@@ -47,7 +49,10 @@ class View(Printing):
             raise InputError("view", "--policy", self.policy, "leave it out or --recording")
         viewer.check_installed()
         viewer.check_port(self.host, self.port)
-        designs = [load_robot(name, overrides=self.set) for name in self.designs]
+        designs = [
+            load_robot(name, overrides=self.set, variant=self.variant or None)
+            for name in self.designs
+        ]
         first = designs[0] if designs else None
         walk = None
         if self.recording:

@@ -56,6 +56,16 @@ class Details:
 
 
 @dataclass(frozen=True)
+class Explorer:
+    """Points that a reader sorts, filters and selects; `templates/explorer.js` shows them."""
+
+    name: str
+    """Unique in the page."""
+    data: dict[str, Any]
+    """As `sweep.explorer` makes it."""
+
+
+@dataclass(frozen=True)
 class Heading:
     """A heading inside a section."""
 
@@ -102,20 +112,19 @@ def number(value: Any, digits: int = 4) -> str:
 
 
 def render(page: Page) -> str:
-    """The page as HTML."""
-    return fill("page.html", page=page)
-
-
-def fill(template: str, **values: Any) -> str:
-    """One of the templates beside this file, filled with values."""
+    """The page as HTML; plotly is embedded, once, where an explorer needs it."""
     import jinja2
 
+    folder = Path(__file__).parent / "templates"
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        loader=jinja2.FileSystemLoader(folder),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     environment.filters["number"] = number
     environment.tests["kind"] = lambda value, name: type(value).__name__ == name
-    return environment.get_template(template).render(**values)
+    explored = any(isinstance(item, Explorer) for s in page.sections for item in s.content)
+    names = ("plotly-basic.min.js", "explorer.js") if explored else ()
+    scripts = [(folder / name).read_text(encoding="utf-8") for name in names]
+    return environment.get_template("page.html").render(page=page, scripts=scripts)

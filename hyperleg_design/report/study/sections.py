@@ -340,7 +340,7 @@ def sweeps(context: Context) -> Made:
         designs += result.summary["designs"]
         content += [
             Heading(name.replace("_", " ").capitalize()),
-            *sweep_content(result, context.folder, f"figures/{name}"),
+            *sweep_content(result, f"sweep-{name}"),
         ]
     return Made(
         Section("Sweeps", content), ((f"{designs:,}".replace(",", " "), "designs in the sweeps"),)

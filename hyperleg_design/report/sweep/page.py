@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.report.page import Details, Page, Picture, Section, Table, render
+import numpy as np
+
+from hyperleg_design.report.page import Details, Explorer, Page, Section, Table, render
+from hyperleg_design.report.sweep.explorer import explorer
+from hyperleg_design.report.sweep.rows import fronts_of
 from hyperleg_design.sweep import measures
 from hyperleg_design.writing import write_text
 
@@ -13,19 +16,14 @@ if TYPE_CHECKING:
     from hyperleg_design.sweep.run import SweepResult
 
 
-def sweep_content(result: SweepResult, page_folder: Path, figures: str) -> list[Any]:
-    """What a page says of a sweep; draws its figures.
+def sweep_content(result: SweepResult, name: str = "designs") -> list[Any]:
+    """What a page says of a sweep.
 
     Args:
         result: the finished sweep.
-        page_folder: folder of the page.
-        figures: folder for the figures, relative to the page.
+        name: of the sweep's explorer, unique in the page.
     """
-    from hyperleg_design.report.sweep.figures import draw_sweep
-
     summary = result.summary
-    folder = page_folder / figures
-    folder.mkdir(parents=True, exist_ok=True)
     content: list[Any] = [summary["description"], _axes_text(result)]
     if summary["rejected"]:
         reasons = "; ".join(
@@ -34,10 +32,7 @@ def sweep_content(result: SweepResult, page_folder: Path, figures: str) -> list[
         content.append(
             f"{summary['rejected']} of {summary['designs']} combinations make no robot: {reasons}."
         )
-    content += [
-        Picture(f"{figures}/{name}", caption)
-        for name, caption in draw_sweep(result, folder).items()
-    ]
+    content.append(_explorer(result, name))
     rows = []
     for variant, ranges in summary["range"].items():
         base = summary["base"].get(variant, {})
@@ -57,6 +52,21 @@ def sweep_content(result: SweepResult, page_folder: Path, figures: str) -> list[
         )
     )
     return content
+
+
+def _explorer(result: SweepResult, name: str) -> Explorer:
+    """All designs, with the measures that the sweep draws or aims at."""
+    sweep = result.sweep
+    wanted = dict.fromkeys((*sweep.objectives, *(chosen.measure for chosen in sweep.maps)))
+    measured = (column for ranges in result.summary["range"].values() for column in ranges)
+    columns = list(wanted or dict.fromkeys(measured))
+    table = result.columns(["variant", *(axis.name for axis in sweep.axes), *columns])
+    front = np.zeros(len(table["variant"]), bool)
+    if len(sweep.objectives) > 1:
+        for rows in fronts_of(result)[1].values():
+            front[rows] = True
+    labels = {column: measures.label(column) for column in columns}
+    return explorer(sweep, table, labels, sweep.maps, front, name)
 
 
 def _axes_text(result: SweepResult) -> str:
@@ -83,7 +93,7 @@ def sweep_report(result: SweepResult) -> dict[str, Any]:
     page = Page(
         title=f"Sweep {result.sweep.name}",
         lead=result.summary["description"],
-        sections=[Section("Results", sweep_content(result, result.folder, "figures")[1:])],
+        sections=[Section("Results", sweep_content(result)[1:])],
         provenance={**result.summary["versions"], "commit": result.summary["commit"]},
     )
     target = write_text(result.folder / "index.html", render(page))

@@ -1,4 +1,4 @@
-"""What the figures of a sweep have in common: rows of fronts, levels of the unchanged design."""
+"""Rows of the fronts of a sweep, and levels of its unchanged design."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from hyperleg_design.sweep.evaluate import Columns
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.run import SweepResult
 from hyperleg_design.sweep.space import Sweep
-from hyperleg_design.sweep.summary import base_values
 
 
 def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:
@@ -42,11 +41,6 @@ def thinned(count: int, most: int) -> np.ndarray:
     return np.arange(count) if count <= most else np.linspace(0, count - 1, most).astype(int)
 
 
-def axis_of(sweep: Sweep, name: str) -> Axis:
-    """Axis of a sweep by name."""
-    return next(a for a in sweep.axes if a.name == name)
-
-
 def base_value(axis: Axis, sweep: Sweep) -> Any:
     """Where the unchanged design stands on an axis; 1 for factors."""
     return 1.0 if axis.scaled else sweep.base[axis.paths[0]]
@@ -58,15 +52,3 @@ def base_level(axis: Axis, sweep: Sweep) -> Any:
     if not axis.numeric:
         return value if value in axis.levels else axis.levels[0]
     return min(axis.levels, key=lambda level: abs(level - value))
-
-
-def base_row(sweep: Sweep) -> dict[str, Any]:
-    """Axis values and measures of the unchanged design as the sweep's first variant."""
-    return {axis.name: base_value(axis, sweep) for axis in sweep.axes} | base_values(
-        sweep, sweep.variants[0]
-    )
-
-
-def variant_title(variant: str) -> str:
-    """A variant as a reader sees it."""
-    return variant.replace("_", " ")

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.report.page import Page, Picture, Section, Table, render
-from hyperleg_design.report.style import VARIANT_COLOUR, figure_style, save
+from hyperleg_design.report.page import Explorer, Page, Section, Table, render
+from hyperleg_design.report.sweep.explorer import explorer
 from hyperleg_design.report.sweep.page import sweep_content
-from hyperleg_design.report.sweep.rows import axis_of, base_value
 from hyperleg_design.report.text import table as text_table
 from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.space import Map, Sweep
@@ -29,7 +28,6 @@ from hyperleg_design.writing import write_bytes, write_json, write_text
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
     from hyperleg_design.sweep.run import SweepResult
 
@@ -81,12 +79,12 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
     )
     sections = [
         Section("Policies", [_policy_text(trials), *_policy_table(sweep, designs, protocols)]),
-        Section("Measures over the parameters", _pictures(result, designs, protocols, shown)),
+        Section("Measures over the parameters", [_explorer(sweep, designs, fronts, shown)]),
         Section("Limits that act", [_limits(designs, protocols)]),
         Section("Which parameter each measure follows", [_sensitivity_table(followed)]),
         Section("Pareto front", _front_tables(sweep, fronts, objectives)),
         Section("Best designs", _best_tables(sweep, chosen, commands, objectives)),
-        Section("Sizing measures", sweep_content(result, folder, "figures")),
+        Section("Sizing measures", sweep_content(result)),
     ]
     page = Page(
         title=f"Sweep {sweep.name}",
@@ -166,74 +164,21 @@ def _policy_table(sweep: Sweep, designs: pd.DataFrame, protocols: list[str]) -> 
     ]
 
 
-def _pictures(
-    result: SweepResult, designs: pd.DataFrame, protocols: list[str], shown: list[str]
-) -> list[Any]:
-    sweep, folder = result.sweep, result.folder / "figures"
-    folder.mkdir(exist_ok=True)
+def _explorer(
+    sweep: Sweep, designs: pd.DataFrame, fronts: pd.DataFrame, shown: list[str]
+) -> Explorer:
+    """Every evaluated design; bars are intervals over policies and trials."""
+    names = dict.fromkeys([*shown, *(chosen.measure for chosen in sweep.trial_maps)])
+    labels = {name: registry.label(name) for name in names if name in designs}
+    keys = ["sample", "variant"]
+    best_rows = fronts[fronts["on_front"]] if len(fronts) else fronts
+    front = designs.set_index(keys).index.isin(best_rows.set_index(keys).index)
     numeric = [axis.name for axis in sweep.axes if axis.numeric]
-    maps = list(sweep.trial_maps)
+    maps = [chosen for chosen in sweep.trial_maps if chosen.measure in labels]
     if not maps and numeric:
-        second = numeric[1] if len(numeric) > 1 and len(numeric) == 2 else ""
-        maps = [Map(numeric[0], second, name) for name in shown]
-    content: list[Any] = []
-    for i, chosen in enumerate(maps):
-        if chosen.measure not in designs or not np.isfinite(designs[chosen.measure]).any():
-            continue
-        name = f"{sweep.name}-trials-{i + 1}.png"
-        save(trial_figure(sweep, designs, chosen), folder / name)
-        entry = registry.entries()[chosen.measure]
-        caption = f"{entry.protocol}: {entry.doc}. Bars are intervals over policies and trials."
-        content.append(Picture(f"figures/{name}", caption, wide=False))
-    return content or ["No axis holds numbers; see the tables."]
-
-
-def trial_figure(sweep: Sweep, designs: pd.DataFrame, chosen: Map) -> Figure:
-    """A measure of trials over one axis, with intervals, or over two, as dots of its colour."""
-    axis = axis_of(sweep, chosen.x)
-    with figure_style():
-        import matplotlib.pyplot as plt
-
-        figure, panel = plt.subplots(figsize=(5.6, 3.6), layout="constrained")
-        if chosen.y:
-            real = designs[np.isfinite(designs[chosen.measure])]
-            drawn = panel.scatter(
-                real[chosen.x], real[chosen.y], c=real[chosen.measure], s=60, cmap="viridis"
-            )
-            figure.colorbar(drawn, ax=panel, label=registry.label(chosen.measure))
-            panel.set(xlabel=axis.label, ylabel=axis_of(sweep, chosen.y).label)
-            return figure
-        for variant, own in designs.groupby("variant", sort=False):
-            part = own[np.isfinite(own[chosen.measure])].sort_values(chosen.x)
-            mean = part[chosen.measure].to_numpy(float)
-            bars = None
-            if f"{chosen.measure}.low" in part:
-                bars = np.nan_to_num(
-                    np.stack(
-                        [
-                            mean - part[f"{chosen.measure}.low"].to_numpy(float),
-                            part[f"{chosen.measure}.high"].to_numpy(float) - mean,
-                        ]
-                    ).clip(0)
-                )
-            panel.errorbar(
-                part[chosen.x],
-                mean,
-                bars,
-                marker="o",
-                markersize=3.5,
-                capsize=2,
-                linestyle="-" if len(sweep.axes) == 1 else "none",
-                color=VARIANT_COLOUR[str(variant)],
-                label=str(variant).replace("_", " "),
-            )
-        panel.axvline(base_value(axis, sweep), color="#8a8f99", linewidth=0.8, linestyle=":")
-        panel.set(xlabel=axis.label, ylabel=registry.label(chosen.measure))
-        if axis.log:
-            panel.set_xscale("log")
-        if designs["variant"].nunique() > 1:
-            panel.legend()
-        return figure
+        maps = [Map(numeric[0], "", name) for name in labels]
+    table = {str(name): designs[name].to_numpy() for name in designs}
+    return explorer(sweep, table, labels, maps, front, "evaluated")
 
 
 def _limits(designs: pd.DataFrame, protocols: list[str]) -> Table:

@@ -48,10 +48,9 @@ def test_the_page_shows_policies_limits_sensitivities_front_and_best(ran):
         "Which parameter each measure follows",
         "Pareto front",
         "hyperleg build --design hyperleg",
-        "Bars are intervals",
+        'id="evaluated"',
     ):
         assert words in page
-    assert list((ran / "figures").glob("mine-trials-*.png"))
 
 
 def test_tables_hold_every_design(ran):
