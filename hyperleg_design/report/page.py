@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+TEMPLATES = Path(__file__).parent / "templates"
+
 
 @dataclass(frozen=True)
 class Table:
@@ -113,18 +115,22 @@ def number(value: Any, digits: int = 4) -> str:
 
 def render(page: Page) -> str:
     """The page as HTML; plotly is embedded, once, where an explorer needs it."""
+    explored = any(isinstance(item, Explorer) for s in page.sections for item in s.content)
+    names = ("plotly-basic.min.js", "explorer.js") if explored else ()
+    scripts = [(TEMPLATES / name).read_text(encoding="utf-8") for name in names]
+    return fill("page.html", page=page, scripts=scripts)
+
+
+def fill(template: str, **values: Any) -> str:
+    """One of the templates beside this file, filled with values."""
     import jinja2
 
-    folder = Path(__file__).parent / "templates"
     environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(folder),
+        loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     environment.filters["number"] = number
     environment.tests["kind"] = lambda value, name: type(value).__name__ == name
-    explored = any(isinstance(item, Explorer) for s in page.sections for item in s.content)
-    names = ("plotly-basic.min.js", "explorer.js") if explored else ()
-    scripts = [(folder / name).read_text(encoding="utf-8") for name in names]
-    return environment.get_template("page.html").render(page=page, scripts=scripts)
+    return environment.get_template(template).render(**values)

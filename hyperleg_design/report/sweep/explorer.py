@@ -58,7 +58,9 @@ def explorer(
     others = np.flatnonzero(~first)
     rest = max(MOST_POINTS - int(first.sum()), MOST_POINTS // 3)
     rows = np.union1d(np.flatnonzero(first), others[thinned(others.size, rest)])
-    columns = [{"name": "variant", "label": "variant", "values": _texts(table["variant"][rows])}]
+    columns: list[dict[str, Any]] = [
+        {"name": "variant", "label": "variant", "values": _texts(table["variant"][rows])}
+    ]
     for axis in sweep.axes:
         values = table[axis.name][rows]
         base: Any = base_level(axis, sweep) if sweep.sampling == "grid" else base_value(axis, sweep)
