@@ -18,6 +18,7 @@ ROOT = Path(hyperleg_design.__file__).resolve().parent.parent
 TUTORIALS = [
     *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
     ROOT / "docs" / "how-to" / "add_a_robot.md",
+    ROOT / "docs" / "how-to" / "look_at_a_robot.md",
 ]
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
 AS_EXACT = 0.05
