@@ -96,7 +96,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
     """
     path = resources.find("sim", name)
     data, where = read_yaml(path), short_name(path)
-    _check_keys(data, ("name", "preset", "processes", "groups"), where, "")
+    _check_keys(data, ("name", "preset", "processes", "groups"), where, "", ("processes",))
     processes = _whole(data.get("processes", 2), where, "processes")
     groups = data["groups"]
     if not isinstance(groups, list) or not groups:
@@ -106,14 +106,21 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
     for g, group in enumerate(groups):
         if not isinstance(group, Mapping):
             raise InputError(where, f"groups.{g}", group, "expects a mapping")
-        _check_keys(group, ("name", "task", "designs", "seeds", "start"), where, f"groups.{g}.")
+        _check_keys(
+            group,
+            ("name", "task", "designs", "seeds", "start", "preset"),
+            where,
+            f"groups.{g}.",
+            ("start", "preset"),
+        )
         if group["name"] in names:
             raise InputError(where, f"groups.{g}.name", group["name"], "stands twice")
         start = str(group.get("start") or "")
         before = {(run.design, run.seed) for *_, run in runs if run.group == start}
         names.add(group["name"])
         task = load_task(str(group["task"])).name
-        load_preset(str(data["preset"])).stages(task)
+        preset = str(group.get("preset") or data["preset"])
+        load_preset(preset).stages(task)
         if not isinstance(group["designs"], list) or not group["designs"]:
             raise InputError(
                 where, f"groups.{g}.designs", group["designs"], "expects a list of designs"
@@ -133,7 +140,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
                     str(group["task"]),
                     str(design),
                     seed,
-                    str(data["preset"]),
+                    preset,
                     start,
                 )
                 runs.append((seed, g, d, run))
@@ -327,12 +334,18 @@ def _shown(value: Any, width: int) -> str:
     return f"{value:>{width}.2f}" if isinstance(value, int | float) else " " * width
 
 
-def _check_keys(data: Mapping[str, Any], known: tuple[str, ...], where: str, path: str) -> None:
+def _check_keys(
+    data: Mapping[str, Any],
+    known: tuple[str, ...],
+    where: str,
+    path: str,
+    optional: tuple[str, ...],
+) -> None:
     for key in data:
         if key not in known:
             raise InputError(where, f"{path}{key}", data[key], unknown(str(key), list(known)))
     for key in known:
-        if key not in data and key not in ("processes", "start"):
+        if key not in data and key not in optional:
             raise InputError(where, f"{path}{key}", None, "is missing")
 
 

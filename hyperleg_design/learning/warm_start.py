@@ -2,7 +2,8 @@
 
 Where both tasks take the same kind of commands, these columns keep their weights, too. Where a walk
 becomes a waypoint task, the old command becomes part of the first layer's bias, so that the new
-policy begins by doing what the old one did under that command; columns that only the new task has
+policy begins by doing what the old one did under that command. So does a gait clock that the old
+task no longer showed, where the new task does not observe it. Columns that only the new task has
 begin without weight. The critic starts anew, alone for some iterations.
 
 A finished training writes its critic beside its policy. A training of the same task that starts
@@ -33,7 +34,9 @@ if TYPE_CHECKING:
 SEEN = 200_000
 """Samples that the old normaliser counts for, so that it soon follows the new task; assumed."""
 COMMAND = "command"
-"""Beginning of the names of the columns that are folded in."""
+"""Beginning of the names of the columns of the command."""
+CLOCK = "clock"
+"""Beginning of the names of the columns of the gait clock."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +58,8 @@ class StartPolicy:
     """Kind of the commands that it follows, `velocity` or `waypoints`."""
     posture: dict[str, float]
     """Default posture that its task states [deg]."""
+    clock_hidden: bool
+    """Whether its task shows no gait clock, so that the clock's columns were zero at the end."""
     source: dict[str, Any]
     """What `run.json` says of it: task, variant, seed, steps, commit and SHA-256 of the file, and
     of its critic's."""
@@ -104,6 +109,7 @@ def read_start(path: str | Path) -> StartPolicy:
         joints=tuple(json.loads(metadata["joints"])),
         commands=task["commands"]["kind"],
         posture={str(k): float(v) for k, v in task.get("posture_deg", {}).items()},
+        clock_hidden=task.get("clock", {}).get("shown", 1.0) == 0.0,
         source=source,
         critic=critic,
     )
@@ -200,6 +206,11 @@ def start_actor(
         )
     old = {name: i for i, name in enumerate(start.columns)}
     folded = [i for name, i in old.items() if command is not None and name.startswith(COMMAND)]
+    hidden = [
+        i
+        for name, i in old.items()
+        if start.clock_hidden and name.startswith(CLOCK) and name not in columns
+    ]
     shared = [
         (new, old[name])
         for new, name in enumerate(columns)
@@ -215,7 +226,7 @@ def start_actor(
     mean, scale = np.zeros(len(columns)), np.maximum(observation.std(0), 0.1)
     first, to, of = np.zeros(shapes[0]), [n for n, _ in shared], [o for _, o in shared]
     first[:, to], mean[to], scale[to] = start.weights[0][:, of], start.mean[of], start.deviation[of]
-    unseen = [o for o in old.values() if o not in of and o not in folded]
+    unseen = [o for o in old.values() if o not in {*of, *folded, *hidden}]
     if unseen:
         raise InputError(
             "start",
@@ -223,7 +234,9 @@ def start_actor(
             start.columns[unseen[0]],
             "the new task does not observe this; the policy would miss it",
         )
-    bias = start.biases[0]
+    bias = start.biases[0] - start.weights[0][:, hidden] @ (
+        start.mean[hidden] / start.deviation[hidden]
+    )
     if command is not None:
         bias = bias + start.weights[0][:, folded] @ (
             (command - start.mean[folded]) / start.deviation[folded]

@@ -58,13 +58,17 @@ def test_the_campaign_of_the_fair_study_has_the_seeds_that_its_plan_asks_for() -
         for design in plan.designs:
             seeds = {r.seed for r in runs if (r.group, r.design) == (group, design)}
             assert len(seeds) >= plan.seeds["walk"]
-    assert {r.preset for r in runs} == {"study"}
+    assert {(r.preset, r.start) for r in runs if r.task != "walk_guided"} == {
+        ("study", "walk_guided")
+    }
+    assert {(r.preset, r.start) for r in runs if r.task == "walk_guided"} == {("guided", "")}
 
 
 @pytest.mark.parametrize(
     ("change", "field"),
     [
         ({"preset": "desktop"}, ""),
+        ({"groups": [{**DATA["groups"][0], "preset": "desktop"}]}, ""),
         ({"runs": 3}, "runs"),
         ({"processes": 0}, "processes"),
         ({"groups": []}, "groups"),
@@ -111,8 +115,11 @@ def test_status_of_each_training(write, tmp_path: Path) -> None:
 def test_the_t_tests_of_the_fair_study_are_those_of_the_plan() -> None:
     runs, plan = load_campaign("campaign_t_test").runs, load_plan()
     assert {run.design for run in runs} == set(plan.designs)
-    assert len(runs) == len(plan.designs) * plan.seeds["t_test"]
-    assert {(run.task, run.preset) for run in runs} == {("t_test_free", "t_test")}
+    assert len(runs) == 2 * len(plan.designs) * plan.seeds["t_test"]
+    assert {(r.task, r.preset, r.start) for r in runs} == {
+        ("walk_guided", "guided", ""),
+        ("t_test_free", "t_test", "walk_guided"),
+    }
     fast = load_protocol("t_test_fast")
     caps = [r.high for s in load_preset("t_test").stages("t_test_free") for r in s.ramps]
     assert fast.speed_cap == 3.8

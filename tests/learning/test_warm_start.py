@@ -46,6 +46,32 @@ def begun_from_checkpoint(tiny: Preset, folder: Path) -> Training:
     return Training(task, robot, 0, tiny, folder, 1, describe(task, robot, 0, tiny))
 
 
+@pytest.mark.parametrize("task", ["walk_upright", "t_test_free"])
+def test_a_clock_that_was_no_longer_shown_is_left(tiny: Preset, tmp_path: Path, task: str) -> None:
+    """A policy without the clock does what the old one does where the clock is zero."""
+    stages = tiny.stages("walk")
+    plain = tuple(dataclasses.replace(s, rewards={}, commands={}, ramps=()) for s in stages)
+    preset = dataclasses.replace(tiny, tasks={"walk_guided": plain, task: plain})
+    assert train("walk_guided", "toe", 0, preset, tmp_path / "guided")
+    policy = tmp_path / "guided" / "policy.onnx"
+    training = begun(preset, policy, tmp_path / "next", task=task)
+    columns = list(training.environment.observation_columns["policy"])
+    assert not any(name.startswith("clock") for name in columns)
+    old = json.loads({e.key: e.value for e in onnx.load(policy).metadata_props}["columns"])
+    observation = np.random.default_rng(2).normal(0.0, 1.0, (20, len(columns))).astype(np.float32)
+    before = np.zeros((20, len(old)), np.float32)
+    for i, name in enumerate(old):
+        if name.startswith("command") and task == "t_test_free":
+            before[:, i] = float(tiny.warm_start.forward) * (name == "command.0")
+        elif not name.startswith("clock"):
+            before[:, i] = observation[:, columns.index(name)]
+    (expected,) = ort.InferenceSession(policy).run(["action"], {"observation": before})
+    np.testing.assert_allclose(
+        training.policy(observation), expected, atol=2e-4 * (1 + np.abs(expected).max())
+    )
+    training.environment.close()
+
+
 def test_it_begins_by_doing_what_the_walk_did(tiny: Preset, walker: Path, tmp_path: Path) -> None:
     training = begun(tiny, walker, tmp_path)
     columns = list(training.environment.observation_columns["policy"])
