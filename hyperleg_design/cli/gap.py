@@ -209,14 +209,8 @@ class Diagnose(Printing):
     """Folder to write diagnosis.json, index.html and its figures to."""
     seed: Annotated[int, AtLeast(0)] = 0
     """Seed of all random numbers."""
-    thresholds: str = ""
-    """Rules of the decision, a YAML file; the shipped ones by default."""
     threads: Annotated[int, AtLeast(1)] = 2
     """Number of threads; the answer does not depend on it."""
-    method: Literal["", "posterior", "rules"] = ""
-    """How causes are decided: `posterior`, by their posterior probabilities beside a model of
-    the nominal model's own error, or `rules`, which each cause must pass; the usual method by
-    default."""
 
     def run(self) -> None:
         """Diagnose the logs, write the page, and print the answer."""
@@ -231,10 +225,8 @@ class Diagnose(Printing):
             self.out,
             reference_robot=self.reference_robot,
             seed=self.seed,
-            thresholds=self.thresholds or None,
             threads=self.threads,
             show=show,
-            method=self.method,
         )
         if self.json:
             emit(found)

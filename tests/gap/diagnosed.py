@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import robots
 
-from hyperleg_design.gap.inference.preparation import prepare
-from hyperleg_design.gap.inference.thresholds import load_thresholds
+from hyperleg_design.gap.inference.assembly import evidence_of
+from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 
@@ -89,22 +87,7 @@ def conditioned(robot, *logs):
     return [condition(log, subject) for log in logs]
 
 
-def prepared(robot, *logs, references=()):
-    """What causes are fitted on."""
+def evidence(robot, *logs, references=()):
+    """What causes are judged on."""
     signals = conditioned(robot, *logs, *references)
-    return prepare(signals[: len(logs)], signals[len(logs) :], load_thresholds())
-
-
-def in_episodes(share, *residual_names):
-    """Rows of 1000 samples each in two groups, the second their episodes."""
-    residual_names = residual_names or ("drive",)
-    group = np.tile((np.arange(1000) < 1000 * share).astype(int), len(residual_names))
-    rows = tuple(SimpleNamespace(residual_name=residual_name) for residual_name in residual_names)
-    row = np.repeat(np.arange(len(residual_names)), 1000)
-    return SimpleNamespace(
-        rows=rows,
-        row=row,
-        group=group,
-        episodic=np.array([False, True]),
-        share=np.full(len(row), 0.5),
-    )
+    return evidence_of(signals[: len(logs)], signals[len(logs) :], InferenceRules())

@@ -137,10 +137,6 @@ class CommandDelay(Effect):
         """Nothing is between commands and targets."""
         return np.array([False, True])
 
-    def unsettles(self, values: np.ndarray) -> bool:
-        """Late targets are in no loop."""
-        return bool(values[1] < TARGETS)
-
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """A few delays, of commands and, where they are known, of targets."""
         ways = (0.0, 1.0) if _told(signals, location) else (0.0,)

@@ -173,16 +173,6 @@ class Effect(ABC):
         """
         return np.zeros(len(self.parameters), bool)
 
-    def doubtful(self, values: np.ndarray) -> bool:
-        """Whether at some values `(k,)` it is like what nobody models well of a healthy robot, so
-        that it needs more evidence.
-        """
-        return False
-
-    def unsettles(self, values: np.ndarray) -> bool:
-        """Whether at some values `(k,)` it can make control loops unstable, of effects that can."""
-        return True
-
     def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
         """Log prior odds for it at some values `(k,)`, over those at usual ones."""
         return 0.0

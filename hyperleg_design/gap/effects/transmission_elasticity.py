@@ -149,10 +149,6 @@ class TransmissionElasticity(Effect):
         behind, stiffens = values[3] >= belt.CHOSEN, values[4] > 0
         return np.array([False, False, behind or stiffens, True, not (behind or stiffens)])
 
-    def doubtful(self, values: np.ndarray) -> bool:
-        """Joints that rub behind a belt: friction that turns over late, as bristles let it, too."""
-        return bool(values[3] >= belt.CHOSEN)
-
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Several resonances, with encoders on either side, and with joints that rub behind a belt,
         which may stiffen.

@@ -8,7 +8,7 @@ little and keeps the channels independent of each other given the causes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.rules import InferenceRules
     from hyperleg_design.gap.inference.samples import Samples
-    from hyperleg_design.gap.inference.thresholds import Thresholds
     from hyperleg_design.gap.signals.filtering import FilteredLog
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -48,6 +47,8 @@ class Evidence:
     signals: tuple[Signals, ...]
     """Under test."""
     references: tuple[Signals, ...]
+    usual: Mapping[tuple[str, str, int], float]
+    """Deviation of the usual calibration error of an effect's parameter at a place."""
     moved: tuple[float, ...]
     """Share of the numbers of each channel in which its load is no noise."""
 
@@ -141,7 +142,6 @@ def evidence_of(
     tests: Sequence[Signals],
     references: Sequence[Signals],
     rules: InferenceRules,
-    thresholds: Thresholds,
 ) -> Evidence:
     """Channels of all logs.
 
@@ -149,14 +149,13 @@ def evidence_of(
         tests: conditioned logs under test.
         references: conditioned logs of the healthy robot.
         rules: of the inference.
-        thresholds: of the noise model.
 
     Raises:
         InputError: no log shows a residual.
     """
     subject = tests[0].subject
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references))
-    sets = [_set(tests, errors, rules, thresholds, bool(references), tested=True)]
+    sets = [_set(tests, errors, rules, bool(references), tested=True)]
     if not len(sets[0].samples.value):
         raise InputError(
             tests[0].log.name,
@@ -165,7 +164,7 @@ def evidence_of(
             "has too few ticks of which torques and motion are known: log longer, or more signals",
         )
     if references:
-        sets.append(_set(references, errors, rules, thresholds, True, tested=False))
+        sets.append(_set(references, errors, rules, True, tested=False))
     keys = [(row.residual_name, row.column) for row in sets[0].samples.rows]
     made = [_channel(key, sets, rules) for key in keys]
     return Evidence(
@@ -174,6 +173,7 @@ def evidence_of(
         sets[0].samples,
         tuple(tests),
         tuple(references),
+        {(one.effect, one.location, one.parameter): one.spread for one in errors},
         tuple(moved for _, moved in made),
     )
 
@@ -199,12 +199,11 @@ def _set(
     signals: Sequence[Signals],
     errors: Sequence[nuisance.NuisanceParameter],
     rules: InferenceRules,
-    thresholds: Thresholds,
     calibrated: bool,
     tested: bool,
 ) -> _Set:
     filtered_logs = [filtering.filtered_log(one, filtering.sticking(one)) for one in signals]
-    floors = [noise_model.expected(one, thresholds) for one in filtered_logs]
+    floors = [noise_model.expected(one, rules.noise) for one in filtered_logs]
     names = [one.log.metadata.session or f"\0{i}" for i, one in enumerate(signals)]
     order = list(dict.fromkeys(names))
     sessions = [order.index(name) for name in names]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.inference.fit import _bounded
+from hyperleg_design.gap.inference.fit import bounded
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
@@ -218,7 +218,7 @@ def _solve(
             slope, bend = factor.slopes(float(theta[place]))
             precision[place, place] += bend
             target[place] += slope + bend * theta[place]
-        theta, covariance = _bounded(precision, target, low, high)
+        theta, covariance = bounded(precision, target, low, high)
     occam = -0.5 * float(np.sum((theta / deviation) ** 2))
     occam -= float(np.sum(np.log(deviation))) + 0.5 * float(np.linalg.slogdet(precision)[1])
     occam += sum(factor.log(float(theta[place])) for place, factor in factors)

@@ -5,8 +5,8 @@ Of each sample of `filtering`, as a standard deviation. Torque noise is the resi
 above its cutoff, taken as white; noise of accelerations is the smoother's, times the inertias by
 which the accelerations of all joints load one, and larger where joints are fast, as far as the
 samples scatter more there: what is stamped a moment early or late is off by its speed. Beyond
-noise, drives and friction of a healthy robot are known to shares of their size (`floor_torque`,
-`floor_friction`), which `nuisance` cannot express. Reference logs scale all of it.
+noise, drives and friction of a healthy robot are known to shares of their size (`NoiseRules`),
+which `nuisance` cannot express.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.ground import footings
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.thresholds import Thresholds
+    from hyperleg_design.gap.inference.rules import NoiseRules
     from hyperleg_design.gap.signals.filtering import Band, FilteredLog
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -48,14 +48,12 @@ _SHAKEN: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 _INERTIAS: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
 
-def expected(filtered_log: FilteredLog, thresholds: Thresholds) -> list[np.ndarray]:
+def expected(filtered_log: FilteredLog, rules: NoiseRules) -> list[np.ndarray]:
     """Standard deviation that each sample of each row may have, `(samples,)` a row, in the row's
     unit.
     """
     load, still = _loads(filtered_log)
-    return [
-        _row(filtered_log, row, load, still, thresholds) for row in range(len(filtered_log.rows))
-    ]
+    return [_row(filtered_log, row, load, still, rules) for row in range(len(filtered_log.rows))]
 
 
 def _row(
@@ -63,7 +61,7 @@ def _row(
     row: int,
     load: dict[str, np.ndarray],
     still: dict[str, np.ndarray],
-    thresholds: Thresholds,
+    rules: NoiseRules,
 ) -> np.ndarray:
     signals, one = filtered_log.signals, filtered_log.rows[row]
     moving = load[one.residual_name][:, one.column]
@@ -96,10 +94,10 @@ def _row(
         noise = white * (band.high - band.low) + _at(
             _of_acceleration(filtered_log, row, band.low, band.high), band
         )
-        share = thresholds.floor_torque**2 * local + (thresholds.floor_leak * whole) ** 2
-        dry = (
-            (thresholds.floor_friction + thresholds.floor_turning * _at(turning, band)) * constant
-        ) ** 2 / len(filtered_log.bands[row])
+        share = rules.torque**2 * local + (rules.leak * whole) ** 2
+        dry = ((rules.friction + rules.turning * _at(turning, band)) * constant) ** 2 / len(
+            filtered_log.bands[row]
+        )
         found[part] = np.sqrt(
             noise + share + dry + _at(sinking, band) + (LEAST * _strength(filtered_log, row)) ** 2
         )

@@ -2,9 +2,7 @@
 recording session.
 
 Each is one parameter of an effect of the catalogue at one place, so that its trace is the effect's
-own. Widths are assumed, of the order that data sheets and drawings are wrong by; `WIDE` is what a
-robot that is never described well (a harmonic drive without friction in its model) may differ by
-for life, which reference logs tell; `DAY` is what changes from one session to the next.
+own. Widths are assumed, of the order that data sheets and drawings are wrong by.
 """
 
 from __future__ import annotations
@@ -34,7 +32,7 @@ from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.actuation import friction_damping
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.filtering import FilteredLog
@@ -71,47 +69,6 @@ measurement."""
 FORCES_SCALED, OF_FORCES = "contact_scale", 0.01
 """Share by which the forces under a foot are told too large or too small (assumed: load cells in
 feet)."""
-WIDE = {
-    "coulomb_friction": 15.0,
-    "viscous_friction": 15.0,
-    "stribeck_friction": 15.0,
-    "load_dependent_friction": 10.0,
-    "torque_constant": 4.0,
-    "encoder_offset": 4.0,
-    "link_mass": 4.0,
-    "link_com": 4.0,
-    "rotor_inertia": 5.0,
-    "joint_spring": 6.0,
-    "command_delay": 6.0,
-    "actuator_bandwidth": 6.0,
-    "controller_gain": 3.0,
-    "imu_bias": 4.0,
-    "ground_friction": 3.0,
-    "ground_compliance": 2.0,
-    FORCES_SCALED: 2.0,
-}
-DESCRIBED = {"load_dependent_friction": 3.0}
-"""Instead of `WIDE` at joints of whose friction the model tells: reference logs hardly tell
-friction under load from friction."""
-DAY = {
-    "coulomb_friction": 0.3,
-    "viscous_friction": 0.4,
-    "stribeck_friction": 0.3,
-    "load_dependent_friction": 0.5,
-    "torque_constant": 0.4,
-    "encoder_offset": 0.35,
-    "link_mass": 0.1,
-    "link_com": 0.1,
-    "rotor_inertia": 0.1,
-    "joint_spring": 0.6,
-    "command_delay": 0.3,
-    "actuator_bandwidth": 0.3,
-    "controller_gain": 0.3,
-    "imu_bias": 1.0,
-    "ground_friction": 0.7,
-    "ground_compliance": 0.3,
-    FORCES_SCALED: 0.2,
-}
 TURNOVER, SWUNG = "friction_turnover", "friction_in_chatter"
 """Friction of models turns over with speed, as tanh(v / v_s); that of robots at once, or over a way
 on which bristles bend. By how much of these differences, nobody knows: no effect of the catalogue,
@@ -123,12 +80,6 @@ are, which give a little."""
 SPEEDS = (GEARED, TOLD_LATE, GIVING)
 OF_SPEED = 0.003
 """Of the joints' speed: cords run on their own thickness, linkages off their drawing (assumed)."""
-UNDESCRIBED = dict.fromkeys(
-    ("coulomb_friction", "viscous_friction", "stribeck_friction", TURNOVER), 50.0
-)
-"""Instead of `WIDE` at joints of whose friction the model tells nothing: all of it is an error
-then, and gears rub by up to a tenth of the torque that the joint is made for, and as much again at
-1 rad/s (assumed); errors go to `base.LIMIT` of this."""
 STIFF, GIVES = 60.0, 0.001
 """Frequency of a rotor on a belt that nobody calls soft [Hz], and angle at a joint by which one
 gives under all of its torque [rad]; the softer of both is usual."""
@@ -153,10 +104,6 @@ SWINGS, OF_SWING = (0.5, 2.0), 0.7
 friction (assumed)."""
 AT_ONCE, OF_WAY = 0.5, 0.3
 """Share of the model's friction that turns over at once, and on each of these ways."""
-ABOVE_CALIBRATED = 0.05
-"""Day-to-day change of friction over what reference logs calibrated."""
-LEAST = 1e-3
-"""Trace at its usual size over the floor, below which a nuisance is left out."""
 
 
 @dataclass(frozen=True)
@@ -540,21 +487,3 @@ def columns(
                 if np.any(np.nan_to_num(values) != 0):
                     found[row][place] = filtered_log.sample(row, values[None])[0]
     return found
-
-
-def spreads(errors: Sequence[NuisanceParameter], factors: Mapping[str, float]) -> np.ndarray:
-    """Factor of each error's effect `(errors,)`."""
-    return np.array([factors.get(one.effect, 1.0) for one in errors])
-
-
-def for_life(errors: Sequence[NuisanceParameter], subject: Subject) -> np.ndarray:
-    """Deviation of each error of a healthy robot, in usual ones `(errors,)`."""
-    told = {
-        joint for joint, coulomb in zip(subject.joints, subject.coulomb, strict=True) if coulomb > 0
-    }
-    return np.array(
-        [
-            ({**WIDE, **(DESCRIBED if one.location in told else UNDESCRIBED)}).get(one.effect, 1.0)
-            for one in errors
-        ]
-    )

@@ -13,8 +13,6 @@ from hyperleg_design.gap.results.diagnosis import Value
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.judge import Judge
-    from hyperleg_design.gap.inference.model import Model
     from hyperleg_design.gap.model.subject import Subject
 
 NORMAL = 1.96
@@ -22,16 +20,6 @@ NORMAL = 1.96
 ROUGH = {("backlash", "angle"): 0.15, ("transmission_elasticity", "compliance"): 0.15}
 """Standard deviation, over the value, of sizes that follow from a trace at first order: how rotors
 move on belts that give (in development they were 10 to 25 % off)."""
-
-
-def parameters(judge: Judge, model: Model, place: int) -> dict[str, Value]:
-    """Values of one cause with 95 % intervals, nuisance parameters and coloured noise included."""
-    return intervals(
-        model.causes[place],
-        model.values(place),
-        judge.thresholds.interval * model.deviation(place),
-        judge.base.samples.filtered_logs[0].signals.subject,
-    )
 
 
 def intervals(

@@ -21,6 +21,15 @@ class NoiseRules:
     information: float = 0.4
     """Share of the independent numbers of white noise that a sample counts for [-]; what is left of
     a motion repeats with it (developed)."""
+    torque: float = 0.008
+    """What drives and models leave, of the torque of a joint in the same band and half second [-]
+    (developed)."""
+    friction: float = 0.04
+    """The same of the model's Coulomb friction [-] (developed)."""
+    turning: float = 0.2
+    """The same, while a joint turns round and its friction turns over [-] (developed)."""
+    leak: float = 0.001
+    """The same of the whole torque, into every band [-] (developed)."""
     weight: float = 4.0
     """Independent numbers that the expected noise counts for when that of a channel and band is
     estimated [-] (assumed)."""
@@ -80,6 +89,11 @@ class CauseRules:
 
     probability: float = 0.5
     """That anything of the catalogue is wrong [-] (assumed)."""
+    usual: float = 2.0
+    """Deviations of the usual calibration error from which a size is rather a fault, of causes that
+    no reference logs tell from it [-] (assumed)."""
+    usual_odds: float = 10.0
+    """Log odds against a fault of no size, which fall to nothing at `usual` [nat] (developed)."""
     width: float = 3.0
     """Prior deviation of a parameter over its effect's usual size [-]; a fit beyond it widens it
     (assumed)."""
@@ -121,6 +135,9 @@ class PosteriorRules:
     """Share of the gap that causes must close, else the answer is `unknown` [-] (assumed)."""
     remainder: float = 0.1
     """Share of the gap that is left, from which a remainder is reported [-] (assumed)."""
+    interval: float = 1.4
+    """Factor on the standard deviations of parameters [-]: what models of friction and drives get
+    wrong is in none of them (developed)."""
     most_certain: float = 0.985
     """Highest probability that is stated [-] (assumed)."""
 

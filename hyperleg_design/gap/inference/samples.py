@@ -9,8 +9,7 @@ parts are dealt to folds twice: `BLOCKS` deals stretches of every log, `LOGS` wh
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,9 +76,6 @@ class Samples:
     """Of each part `(2, P)`, by way of holding out."""
     log: np.ndarray
     """Of each part `(P,)`."""
-    holds: Mapping[str, float] = field(default_factory=dict)
-    """Joints that hold more than all known friction in any of the logs, and by how much [Nm]; see
-    `holding`."""
 
     @property
     def groups(self) -> int:
@@ -99,22 +95,6 @@ class Samples:
     def weight(self) -> np.ndarray:
         """What samples are multiplied by before products are taken `(S,)`."""
         return np.asarray(np.sqrt(self.share) / self.floor)
-
-    @cached_property
-    def runs(self) -> tuple[Piece, ...]:
-        """Pieces joined over the parts of a session, which then stands for the part."""
-        found: list[Piece] = []
-        for piece in sorted(self.pieces, key=lambda p: p.start):
-            session, last = int(self.session[piece.part]), found[-1] if found else None
-            if last is not None and (last.stop, last.group, last.part) == (
-                piece.start,
-                piece.group,
-                session,
-            ):
-                found[-1] = Piece(last.start, piece.stop, piece.group, session)
-            else:
-                found.append(Piece(piece.start, piece.stop, piece.group, session))
-        return tuple(found)
 
     def columns(
         self, trace: Callable[[Signals], Mapping[str, np.ndarray]], count: int
@@ -251,64 +231,3 @@ def _parts(filtered_logs: Sequence[FilteredLog]) -> list[int]:
         wanted = FOLDS if duration < 30 else 2 * FOLDS
         found.append(wanted if wanted <= most else (FOLDS if most >= FOLDS else most))
     return found
-
-
-@dataclass(frozen=True, eq=False)
-class Products:
-    """Sums of products of k columns and the p columns of a base, by part (or session) and group,
-    over floor and share.
-    """
-
-    own: np.ndarray
-    """`(P, G, k, k)`"""
-    cross: np.ndarray
-    """`(P, G, k, p)`"""
-
-
-def products(
-    samples: Samples, columns: np.ndarray, packed: Packed, whole: bool = False
-) -> Products:
-    """Of columns `(k, S)` among themselves and with a base, both weighted already; of `whole`
-    sessions or by part.
-    """
-    k = len(columns)
-    count = samples.sessions if whole else len(samples.session)
-    own = np.zeros((count, samples.groups, k, k))
-    cross = np.zeros((count, samples.groups, k, packed.count))
-    total = np.concatenate([[0], np.cumsum(np.any(columns != 0, 0))])
-    for run, (shown, base), inside in zip(samples.runs, packed.runs, packed.pieces, strict=True):
-        for piece in (run,) if whole else inside:
-            if total[piece.stop] > total[piece.start]:
-                mine = columns[:, piece.start : piece.stop]
-                own[piece.part, piece.group] += mine @ mine.T
-                cross[piece.part, piece.group][:, shown] += (
-                    mine @ base[:, piece.start - run.start : piece.stop - run.start].T
-                )
-    return Products(own, cross)
-
-
-@dataclass(frozen=True, eq=False)
-class Packed:
-    """The p columns of a base run by run, without those that are nothing there."""
-
-    count: int
-    """p."""
-    runs: tuple[tuple[np.ndarray, np.ndarray], ...]
-    """Of each of the samples' runs: which columns `(n,)`, and their part `(n, samples)`."""
-    pieces: tuple[tuple[Piece, ...], ...]
-    """Inside each run."""
-
-
-def pack(samples: Samples, base: np.ndarray, shown: Sequence[np.ndarray]) -> Packed:
-    """Of a base `(p, S)` of which each row of the samples shows some columns `(n,)`."""
-    starts = np.array([run.start for run in samples.runs])
-    inside: list[list[Piece]] = [[] for _ in samples.runs]
-    for piece in samples.pieces:
-        inside[int(np.searchsorted(starts, piece.start, side="right")) - 1].append(piece)
-    runs = []
-    for run in samples.runs:
-        own = shown[samples.group_row[run.group]]
-        runs.append((own, np.ascontiguousarray(base[own, run.start : run.stop])))
-    return Packed(
-        len(base), tuple(runs), tuple(tuple(sorted(one, key=lambda p: p.start)) for one in inside)
-    )

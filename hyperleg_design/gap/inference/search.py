@@ -24,6 +24,7 @@ from hyperleg_design.gap.inference.hypothesis import (
     shifted,
     solve,
 )
+from hyperleg_design.gap.inference.prior_odds import prior_odds
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
@@ -42,13 +43,6 @@ TOGETHER = 16
 """Promises whose columns are multiplied with each other, though only each alone is asked for."""
 LARGEST = 10.0
 """Size of a start's trace that is tried, over the start's own [-]."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Samples:
-    """What `screen` needs of a base."""
-
-    samples: Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,8 +133,7 @@ class Search:
 
     def _traced(self, place: tuple[str, str]) -> list[screen.Traces]:
         """In the logs under test and, with references, in all logs."""
-        base: Any = _Samples(self.evidence.samples)
-        whole = screen._trace(base, EFFECTS[place[0]], place[1])
+        whole = screen.trace(self.evidence.samples, EFFECTS[place[0]], place[1])
         if isinstance(whole, screen.NotJudged):
             return [whole] * (2 if self.evidence.references else 1)
         count = len(self.evidence.tests.value)
@@ -402,11 +395,26 @@ class Search:
                     EFFECTS[cause.effect].odds(
                         cause.location, self.evidence.signals[0].subject, values
                     )
-                    + prior_odds(cause, values)
+                    + min(prior_odds(cause, values) - cause.odds, 0.0)
+                    - self.like_usual(cause, values)
                 )
                 place += 1
             found += float(np.mean(odds))
         return found
+
+    def like_usual(self, cause: Cause, values: np.ndarray) -> float:
+        """Log odds against a cause that is no larger than the usual calibration error [nat]; what
+        references tell has no such error.
+        """
+        if self.evidence.references and not cause.standing:
+            return 0.0
+        own = self.rules.cause
+        sizes = []
+        for place, (value, null) in enumerate(zip(values, cause.nulls, strict=True)):
+            spread = self.evidence.usual.get((cause.effect, cause.location, place), 0.0)
+            if not cause.shape[place] and value != null:
+                sizes.append(abs(value - null) / max(own.usual * spread, 1e-300))
+        return own.usual_odds * max(1 - max(sizes, default=np.inf), 0.0)
 
 
 def eased(
@@ -419,10 +427,3 @@ def eased(
         noise[place] = np.minimum(noise[place], EASED * channel.usual_noise(one.noise, rules))
         found.append(replace(one, noise=noise))
     return tuple(found)
-
-
-def prior_odds(cause: Cause, values: np.ndarray) -> float:
-    """Log prior odds of a cause at some values, beside those that its effect states."""
-    from hyperleg_design.gap.inference.judge import _odds
-
-    return min(_odds(cause, values) - cause.odds, 0.0)

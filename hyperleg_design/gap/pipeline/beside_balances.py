@@ -1,5 +1,5 @@
-"""Causes that no residual shows, put into a diagnosis: belts that are heard, sensors that differ
-from others, feet that slide or sink.
+"""Causes that no residual shows, put into a diagnosis: sensors that differ from others, feet that
+slide or sink.
 """
 
 from __future__ import annotations
@@ -8,14 +8,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from hyperleg_design.gap.experiments import experiment
-from hyperleg_design.gap.inference.detectors.heard import KNOCKING, RINGING, UNSTABLE
 from hyperleg_design.gap.inference.detectors.imu_offset import OFFSET, PLACE
 from hyperleg_design.gap.inference.detectors.sinking import SINKS
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import SLIPS
 from hyperleg_design.gap.results.diagnosis import (
-    LEAST_SHARE,
     MOST_RIVALS,
     Diagnosis,
     Named,
@@ -24,11 +21,10 @@ from hyperleg_design.gap.results.diagnosis import (
 )
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.detectors.heard import Heard
     from hyperleg_design.gap.inference.detectors.imu_offset import Offset
     from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
 
-APART = (RINGING, KNOCKING, UNSTABLE, OFFSET, SLIPS, SINKS)
+APART = (OFFSET, SLIPS, SINKS)
 """Shapes by which such causes are known."""
 OTHER_SENSOR = 0.05
 """Probability that what differs from an IMU is wrong instead of it (assumed)."""
@@ -36,64 +32,6 @@ OTHER_GROUND = 0.05
 """Probability that forces or heights of feet are wrong instead of their ground (assumed)."""
 OF_FEET = 0.5
 """Share of an unknown gap in the ground under feet that tell of it, from which it is theirs."""
-OTHERWISE = 0.15
-"""Probability at most that something else makes such noises (assumed): it would have explained
-them."""
-
-
-def of_heard(told: Diagnosis, heard: Heard) -> Diagnosis:
-    """A diagnosis with what is heard of belts and control loops: beside what is named already, or
-    instead of nothing.
-
-    Where nothing is named, the gap is that of the noise: what rings is in no residual.
-    """
-    names = tuple((c.effect, c.location) for c in heard.causes)
-    rivals = [r for r in told.rivals if (r.effect, r.location) not in names]
-    beside = sum(r.probability for r in rivals)
-    likely = 1 - (OTHERWISE if told.causes else min(beside, OTHERWISE))
-    first, *others = (replace(c, probability=likely * c.probability) for c in heard.causes)
-    noise = {
-        "shape": heard.shape,
-        "location": heard.location,
-        "says": heard.says,
-        "closed_beyond": heard.closed,
-        "gain": 0.0,
-    }
-    shapes = (noise, *(s for s in told.residual_shape if s["shape"] != "chatter"))
-    sets = (names,) if others else ()
-    if told.causes:
-        return replace(
-            told,
-            verdict="ambiguous" if others else told.verdict,
-            causes=(*told.causes, first),
-            rivals=(*rivals, *others)[:MOST_RIVALS],
-            equivalent=(*told.equivalent, *sets),
-            residual_shape=shapes,
-        )
-    rivals = [
-        replace(r, probability=r.probability * (1 - likely) / max(beside, 1e-12), closed=0.0)
-        for r in rivals
-    ]  # of what is heard
-    trial = experiment.separating(names) if others else None
-    ordered = sorted(heard.shares.items(), key=lambda item: (-item[1], item[0]))
-    size = heard.size
-    return replace(
-        told,
-        verdict="ambiguous" if others else "explained",
-        gap=Shrinkage(
-            size, (1 - heard.closed) * size, 0.0, heard.closed, heard.closed_interval, heard.unit
-        ),
-        where=tuple(
-            Place(place, heard.kind, "all", share)
-            for place, share in ordered
-            if share >= LEAST_SHARE
-        ),
-        causes=(first,),
-        rivals=(*others, *rivals)[:MOST_RIVALS],
-        equivalent=sets,
-        separating_experiment=None if trial is None else experiment.as_mapping(trial, names),
-        residual_shape=shapes,
-    )
 
 
 def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:

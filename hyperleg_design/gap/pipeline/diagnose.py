@@ -12,27 +12,17 @@ from typing import TYPE_CHECKING
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.check import Check, check_log
 from hyperleg_design.gap.inference import screen
-from hyperleg_design.gap.inference.decide import decide
 from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, imu_offset
 from hyperleg_design.gap.inference.detectors.sinking import EFFECT as SOFT
 from hyperleg_design.gap.inference.detectors.sinking import sinks
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import slips
-from hyperleg_design.gap.inference.preparation import prepare
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.sensitivity import smallest
-from hyperleg_design.gap.inference.thresholds import Thresholds, load_thresholds
-from hyperleg_design.gap.pipeline.answer import Answer
 from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_imu
 from hyperleg_design.gap.pipeline.judged import judge_signals
 from hyperleg_design.gap.results.diagnosis import Diagnosis
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-
-POSTERIOR, RULES = METHODS = ("posterior", "rules")
-"""Ways to decide: by the posterior probabilities of one model, or by the rules before it."""
-DEFAULT = RULES
-"""The usual one."""
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
@@ -47,10 +37,8 @@ def diagnose(
     *,
     reference_robot: str | Path | None = None,
     seed: int = 0,
-    thresholds: str | Path | Thresholds | None = None,
     threads: int = 2,
     show: Callable[[str], None] | None = None,
-    method: str = DEFAULT,
     rules: InferenceRules | None = None,
 ) -> Diagnosis:
     """Diagnose logs of a robot.
@@ -62,11 +50,9 @@ def diagnose(
         reference_robot: nominal model of the robot in the reference logs, where it was built
             differently then; by default the same as now. Joints and motors must be the same.
         seed: of the bootstrap; the same logs and seed give the same diagnosis.
-        thresholds: rules, or a file of them; the shipped ones by default.
         threads: that share the work; they change no result.
         show: takes lines of progress.
-        method: one of `METHODS`.
-        rules: of the posterior.
+        rules: numbers that the inference decides by; the usual ones by default.
 
     Raises:
         InputError: no log to diagnose, a log that is not fit for it, or one that does not go with
@@ -95,11 +81,9 @@ def diagnose(
         [condition(log, subject) for log in tests],
         [condition(log, before) for log in healthy],
         seed=seed,
-        thresholds=thresholds,
         threads=threads,
         show=show,
         checks=checks,
-        method=method,
         rules=rules,
     )
 
@@ -153,12 +137,10 @@ def diagnose_signals(
     references: Sequence[Signals] = (),
     *,
     seed: int = 0,
-    thresholds: str | Path | Thresholds | None = None,
     threads: int = 2,
     show: Callable[[str], None] | None = None,
     checks: Sequence[Check] = (),
     effects: Sequence[str] | None = None,
-    method: str = DEFAULT,
     rules: InferenceRules | None = None,
 ) -> Diagnosis:
     """Diagnose conditioned logs; arguments as of `diagnose`.
@@ -167,52 +149,28 @@ def diagnose_signals(
         signals: of the logs to be diagnosed.
         references: of logs of the healthy robot.
         seed: of the bootstrap.
-        thresholds: rules, or a file of them.
         threads: that share the work.
         show: takes lines of progress.
         checks: of the logs, for remarks and doubts.
         effects: of the catalogue that are tried; all by default.
-        method: one of `METHODS`.
-        rules: of the posterior.
+        rules: numbers that the inference decides by; the usual ones by default.
 
     Raises:
-        InputError: no log, or none with a residual, or an unknown method.
+        InputError: no log, or none with a residual.
     """
     say = show or (lambda _: None)
-    if method not in METHODS:
-        raise InputError("diagnose", "method", method, f"expects one of {', '.join(METHODS)}")
-    fixed = thresholds if isinstance(thresholds, Thresholds) else load_thresholds(thresholds)
     if not signals:
         raise InputError("diagnose", "logs", None, "are missing: give at least one log")
-    if method == POSTERIOR:
-        say("noise, discrepancy and the hypotheses of the catalogue")
-        told = judge_signals(
-            signals,
-            references,
-            screen.places(signals[0].subject, effects),
-            rules or InferenceRules(),
-            fixed,
-            seed=seed,
-            threads=threads,
-            checks=checks,
-        )
-        return _beside(told, signals, references, effects)
-    say("calibration errors and floor")
-    ready = prepare(signals, references, fixed, threads)
-    samples = ready.base.samples
-    say(
-        f"{len(samples.rows)} rows, {len(ready.errors)} calibration errors; screening the catalogue"
+    say("noise, discrepancy and the hypotheses of the catalogue")
+    told = judge_signals(
+        signals,
+        references,
+        screen.places(signals[0].subject, effects),
+        rules or InferenceRules(),
+        seed=seed,
+        threads=threads,
+        checks=checks,
     )
-    places = screen.places(samples.filtered_logs[0].signals.subject, effects)
-    judge, found = decide(ready.base, fixed, places, threads, references)
-    say("intervals, rivals, the next experiment and what these logs can show")
-    told = Answer(
-        ready, judge, found, seed, list(signals), list(references), list(checks)
-    ).diagnosis()
-    judged = [
-        name for name in places if name not in {(n.effect, n.location) for n in found.not_judged}
-    ]
-    told = replace(told, sensitivity=tuple(one.mapping() for one in smallest(judge, judged)))
     return _beside(told, signals, references, effects)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,7 +38,6 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.checks.check import Check
     from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
     from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.inference.thresholds import Thresholds
     from hyperleg_design.gap.signals.signals import Signals
 
 DRAWS = 400
@@ -53,7 +53,6 @@ def judge_signals(
     references: Sequence[Signals],
     places: Sequence[tuple[str, str]],
     rules: InferenceRules,
-    thresholds: Thresholds,
     *,
     seed: int = 0,
     threads: int = 1,
@@ -67,18 +66,17 @@ def judge_signals(
         references: of logs of the healthy robot.
         places: effects and locations that are tried.
         rules: of the inference.
-        thresholds: of the noise model.
         seed: of the bootstrap.
         threads: that share the work; they change no result.
         checks: of the logs, for remarks.
         sensitivity: whether to say what these logs could have shown.
     """
-    evidence = evidence_of(signals, references, rules, thresholds)
+    evidence = evidence_of(signals, references, rules)
     search = Search(evidence, rules, places, threads)
     result = search.result()
     held = predicted(evidence, result.best, rules)
     posterior = posterior_of(result, evidence, held, rules)
-    answer = _Answer(evidence, result, posterior, held, rules, thresholds, seed)
+    answer = _Answer(evidence, result, posterior, held, rules, seed)
     return answer.diagnosis(
         checks, tuple(one.mapping() for one in detectable(search)) if sensitivity else ()
     )
@@ -94,11 +92,10 @@ class _Answer:
         posterior: Posterior,
         held: Prediction,
         rules: InferenceRules,
-        thresholds: Thresholds,
         seed: int,
     ) -> None:
         self.evidence, self.result, self.posterior, self.held = evidence, result, posterior, held
-        self.rules, self.thresholds, self.seed = rules, thresholds, seed
+        self.rules, self.seed = rules, seed
         self.squares = {
             "before": mean_squares(evidence, held.before),
             "after": mean_squares(evidence, held.after),
@@ -126,7 +123,7 @@ class _Answer:
         trial = experiment.separating(equivalent[0]) if equivalent else None
         left = told.remainder if told.remainder >= self.rules.posterior.remainder else None
         return Diagnosis(
-            verdict=told.verdict,
+            verdict="unknown" if told.verdict == "none" and self.cycling else told.verdict,
             gap=self.gap(naming),
             where=self.where(),
             causes=causes,
@@ -173,7 +170,7 @@ class _Answer:
                 continue
             cause = hypothesis.causes[place]
             values = hypothesis.values(place)
-            deviation = self.thresholds.interval * hypothesis.deviation(place)
+            deviation = self.rules.posterior.interval * hypothesis.deviation(place)
             clear = np.abs(values - cause.nulls) / np.maximum(deviation, 1e-300)
             stands = float(np.max(np.where(cause.shape, 0.0, clear)))
             named = Named(
@@ -314,15 +311,35 @@ class _Answer:
             if value / total >= LEAST_SHARE
         )
 
+    @cached_property
+    def cycling(self) -> dict[str, float]:
+        """Joints in a limit cycle that reference logs lack, and its frequency [Hz]."""
+        before = {joint for one in self.evidence.references for joint in _cycles(one)}
+        found: dict[str, float] = {}
+        for one in self.evidence.signals:
+            found |= {joint: f for joint, f in _cycles(one).items() if joint not in before}
+        return found
+
     def shape(self) -> tuple[dict[str, Any], ...]:
         """Channels in which something unlisted acts."""
-        left = self._squares(self.held.unlisted)
-        found = []
+        left = np.maximum(self.squares["after"] - self.squares["noise"], 0.0)
+        found = [
+            {
+                "shape": "limit cycle",
+                "location": joint,
+                "says": f"swings to and fro at {frequency:.0f} Hz (or a frequency that the log's "
+                "rate folds there), which nothing commands: its control loop is on the edge of "
+                "stability",
+                "closed_beyond": 0.0,
+                "gain": 0.0,
+            }
+            for joint, frequency in self.cycling.items()
+        ]
         for place in np.argsort(-left, kind="stable").tolist()[:3]:
             if left[place] <= 0 or self.posterior.remainder <= 0:
                 continue
             one = self.evidence.channels[place]
-            says = f"the {one.residual} residual of {one.name} depends on the state in another way"
+            says = f"the {one.residual} residual of {one.name} is left larger or of another shape"
             found.append(
                 {
                     "shape": "unlisted",
@@ -363,6 +380,15 @@ class _Answer:
             "commit": provenance.git_commit(),
             "versions": provenance.versions(("hyperleg-design", "numpy", "scipy")),
         }
+
+
+def _cycles(signals: Signals) -> dict[str, float]:
+    """Joints of a log that are in a limit cycle, and its frequency [Hz]."""
+    cycle = signals.limit_cycle
+    if cycle is None:
+        return {}
+    joints = np.asarray(signals.subject.joints)[cycle.joints]
+    return dict(zip(joints.tolist(), cycle.frequency[cycle.joints].tolist(), strict=True))
 
 
 def _scaled(one: Named, share: float) -> Named:

@@ -23,10 +23,8 @@ def diagnose_to_folder(
     *,
     reference_robot: str = "",
     seed: int = 0,
-    thresholds: str | None = None,
     threads: int = 2,
     show: Callable[[str], None] | None = None,
-    method: str = "",
 ) -> tuple[dict[str, Any], Path]:
     """Diagnose logs and write `diagnosis.json`, `index.html` and the page's figures.
 
@@ -39,10 +37,8 @@ def diagnose_to_folder(
         reference_robot: of the references, where the robot was built differently then; empty: the
             same.
         seed: of everything random.
-        thresholds: rules of the decision, a file; the shipped ones by default.
         threads: the answer does not depend on them.
         show: takes lines of progress.
-        method: by which it decides, see `pipeline.diagnose`; empty: the usual one.
 
     Returns:
         The diagnosis as the file holds it, and the page.
@@ -52,7 +48,7 @@ def diagnose_to_folder(
         OutputError: the folder cannot be written.
     """
     from hyperleg_design.gap.checks.intake import open_logs
-    from hyperleg_design.gap.pipeline.diagnose import DEFAULT, diagnose, subjects
+    from hyperleg_design.gap.pipeline.diagnose import diagnose, subjects
     from hyperleg_design.gap.signals.conditioning import condition
     from hyperleg_design.report.gap.page import write_gap_page
 
@@ -64,10 +60,8 @@ def diagnose_to_folder(
         healthy,
         reference_robot=reference_robot or None,
         seed=seed,
-        thresholds=thresholds,
         threads=threads,
         show=show,
-        method=method or DEFAULT,
     ).mapping()
     subject, _ = subjects(robot or None, reference_robot or None, tests, healthy)
     with output_folder(out) as folder:

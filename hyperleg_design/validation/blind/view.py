@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.sensitivity import RARELY
 from hyperleg_design.gap.results.diagnosis import NAMING
 from hyperleg_design.validation.blind.trial import FAILED
+
+RARELY = ("torque_saturation", "voltage_sag")
+"""Effects that act in rare moments and then wholly: no size is small."""
 
 
 @dataclass(frozen=True)

@@ -30,11 +30,6 @@ def test_trace_is_what_late_targets_leave(pendulum):
         assert max(others, default=0.0) == 0.0
 
 
-def test_late_targets_are_in_no_loop():
-    assert DELAY.unsettles(np.array([0.02, 0.0]))
-    assert not DELAY.unsettles(np.array([0.02, 1.0]))
-
-
 def test_simulation_with_late_targets_leaves_its_trace(simulated):
     signals, plain = simulated("command_delay", [0.012, 1.0]), simulated("command_delay", None)
     signals.residual["drive"][:] -= np.mean(plain.residual["drive"])

@@ -21,7 +21,7 @@ def test_the_slopes_are_the_derivatives():
 
 
 def test_effects_that_scale_torques_pay_and_others_do_not(robot_files):
-    samples = diagnosed.prepared(robot_files["coupled"], diagnosed.run("healthy", 0)).base.samples
+    samples = diagnosed.evidence(robot_files["coupled"], diagnosed.run("healthy", 0)).samples
     one = factor(samples, "torque_constant", "m_front", np.array([0.08]))
     assert one is not None
     assert one.log(0.0) == 0
@@ -32,7 +32,7 @@ def test_effects_that_scale_torques_pay_and_others_do_not(robot_files):
 
 
 def test_a_torque_that_is_nothing_over_the_floor_gains_nothing_by_being_scaled_up(robot_files):
-    samples = diagnosed.prepared(robot_files["coupled"], diagnosed.run("healthy", 0)).base.samples
+    samples = diagnosed.evidence(robot_files["coupled"], diagnosed.run("healthy", 0)).samples
     own = factor(samples, "torque_constant", "m_front", np.array([0.08]))
     assert own.shows == 1
     faint = replace(samples, floor=1e3 * samples.floor)
@@ -59,7 +59,7 @@ def test_noise_that_shrinks_gains_nothing():
 
 
 def test_belts_pay_where_encoders_at_the_joints_bring_noise_into_their_load(robot_files):
-    samples = diagnosed.prepared(robot_files["servos"], diagnosed.stamped_badly(0)).base.samples
+    samples = diagnosed.evidence(robot_files["servos"], diagnosed.stamped_badly(0)).samples
     usual = np.array([0.004, 0.05, 1.0, 1.0, 30.0])
     at_joints, at_rotors = (
         factor(

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.noise_model import expected
-from hyperleg_design.gap.inference.thresholds import load_thresholds
+from hyperleg_design.gap.inference.rules import NoiseRules
 from hyperleg_design.gap.signals.filtering import filtered_log
 
 
@@ -28,9 +28,7 @@ def noise_of(one, floors, row):
 
 
 def test_white_torque_noise_is_told_from_the_log_itself(one):
-    nothing = dataclasses.replace(
-        load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0
-    )
+    nothing = NoiseRules(torque=0, friction=0, turning=0, leak=0)
     rng = np.random.default_rng(0)
     level = 0.3
     noisy = dataclasses.replace(
@@ -48,9 +46,7 @@ def test_white_torque_noise_is_told_from_the_log_itself(one):
 
 
 def test_what_rings_at_high_frequencies_is_no_noise_at_low_ones(one):
-    nothing = dataclasses.replace(
-        load_thresholds(), floor_torque=0, floor_friction=0, floor_turning=0, floor_leak=0
-    )
+    nothing = NoiseRules(torque=0, friction=0, turning=0, leak=0)
     rng = np.random.default_rng(1)
     quiet = 0.05 * rng.normal(size=one.signals.residual["motion"].shape)
     rung = np.zeros_like(quiet)
@@ -67,9 +63,9 @@ def test_what_rings_at_high_frequencies_is_no_noise_at_low_ones(one):
 
 
 def test_a_worse_known_torque_raises_the_floor(one):
-    rules = load_thresholds()
+    rules = NoiseRules()
     low = expected(one, rules)
-    high = expected(one, dataclasses.replace(rules, floor_torque=10 * rules.floor_torque))
+    high = expected(one, dataclasses.replace(rules, torque=10 * rules.torque))
     for a, b in zip(low, high, strict=True):
         assert np.all(a > 0)
         assert np.all(b >= a)
@@ -77,7 +73,7 @@ def test_a_worse_known_torque_raises_the_floor(one):
 
 
 def test_positions_stamped_early_or_late_are_noisier_where_joints_are_fast(jittering):
-    signals, rules = jittering.signals, load_thresholds()
+    signals, rules = jittering.signals, NoiseRules()
     even = filtered_log(
         dataclasses.replace(signals, velocity=np.ones_like(signals.velocity))
     )  # no tick faster than any other
@@ -101,6 +97,6 @@ def test_noise_of_one_joint_is_in_the_balances_of_those_that_it_shakes(jittering
     signals, floors = jittering.signals, []
     for times in (1.0, 10.0):
         noisier = dataclasses.replace(signals, noise=signals.noise * np.array([1.0, times]))
-        floors.append(expected(dataclasses.replace(jittering, signals=noisier), load_thresholds()))
+        floors.append(expected(dataclasses.replace(jittering, signals=noisier), NoiseRules()))
     hip = next(i for i, row in enumerate(jittering.rows) if row.name == "hip")
     assert floors[1][hip].max() > 2 * floors[0][hip].max()

@@ -5,14 +5,13 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.fit import Cause
-from hyperleg_design.gap.inference.model import Model
-from hyperleg_design.gap.inference.parameters import parameters
+from hyperleg_design.gap.inference.parameters import intervals
 
 SUBJECT = SimpleNamespace(joints=("swing",), default=np.zeros(1))
 
 
-def model_of(effect, values, deviation):
-    """A model of one cause with given values and standard deviations of its parameters."""
+def values_of(effect, values, deviation):
+    """Intervals of one cause with given values and standard deviations of its parameters."""
     one = EFFECTS[effect]
     count = len(one.nulls)
     low, high = (np.array([getattr(p, end) for p in one.parameters]) for end in ("low", "high"))
@@ -30,21 +29,11 @@ def model_of(effect, values, deviation):
         none,
         True,
     )
-    fit = SimpleNamespace(phi=cause.phi, covariance=np.diag(np.square(deviation)))
-    return Model((cause,), fit, None, 0.0)
-
-
-def judge(interval=1.0):
-    samples = SimpleNamespace(
-        filtered_logs=[SimpleNamespace(signals=SimpleNamespace(subject=SUBJECT))]
-    )
-    return SimpleNamespace(
-        thresholds=SimpleNamespace(interval=interval), base=SimpleNamespace(samples=samples)
-    )
+    return intervals(cause, np.array(values), np.array(deviation), SUBJECT)
 
 
 def test_a_limit_is_told_with_the_interval_of_its_inverse():
-    found = parameters(judge(), model_of("torque_saturation", [0.5], [0.05]), 0)
+    found = values_of("torque_saturation", [0.5], [0.05])
     inverse, limit = found["inverse_limit"], found["limit"]
     assert (limit.value, limit.unit) == (2.0, "Nm")
     assert limit.low == pytest.approx(1 / inverse.high)
@@ -52,32 +41,28 @@ def test_a_limit_is_told_with_the_interval_of_its_inverse():
 
 
 def test_what_is_infinite_is_not_told():
-    assert "limit" not in parameters(judge(), model_of("torque_saturation", [0.02], [0.05]), 0)
+    assert "limit" not in values_of("torque_saturation", [0.02], [0.05])
 
 
 def test_a_rest_angle_has_the_doubt_of_both_numbers_it_comes_of():
-    found = parameters(judge(), model_of("joint_spring", [2.0, 1.0], [0.1, 0.2]), 0)["rest"]
+    found = values_of("joint_spring", [2.0, 1.0], [0.1, 0.2])["rest"]
     assert found.value == pytest.approx(-0.5)
     assert found.high - found.value == pytest.approx(
         np.hypot(1.96 * 0.2 / 2, 0.5 - 1 / (2 + 1.96 * 0.1)), rel=1e-6
     )
 
 
-def test_intervals_end_at_bounds_and_scale_with_the_rule():
-    narrow = parameters(judge(), model_of("coulomb_friction", [0.3], [0.1]), 0)["torque"]
-    wide = parameters(judge(2.0), model_of("coulomb_friction", [0.3], [0.1]), 0)["torque"]
+def test_intervals_end_at_bounds_and_scale_with_the_deviation():
+    narrow = values_of("coulomb_friction", [0.3], [0.1])["torque"]
+    wide = values_of("coulomb_friction", [0.3], [0.2])["torque"]
     assert wide.high - wide.value == pytest.approx(2 * (narrow.high - narrow.value))
     assert narrow.low >= EFFECTS["coulomb_friction"].parameters[0].low
 
 
 def test_sizes_of_belts_are_no_better_known_than_their_traces():
-    sure = parameters(judge(), model_of("backlash", [0.02, 1.0, 1.0, 0.0], [1e-5, 0, 0, 0]), 0)[
-        "angle"
-    ]
+    sure = values_of("backlash", [0.02, 1.0, 1.0, 0.0], [1e-5, 0, 0, 0])["angle"]
     assert (sure.low, sure.high) == pytest.approx(
         (0.02 * (1 - 1.96 * 0.15), 0.02 * (1 + 1.96 * 0.15)), rel=1e-3
     )
-    doubtful = parameters(
-        judge(), model_of("backlash", [0.02, 1.0, 1.0, 0.0], [0.004, 0, 0, 0]), 0
-    )["angle"]
+    doubtful = values_of("backlash", [0.02, 1.0, 1.0, 0.0], [0.004, 0, 0, 0])["angle"]
     assert doubtful.high - 0.02 == pytest.approx(1.96 * np.hypot(0.004, 0.003), rel=1e-6)

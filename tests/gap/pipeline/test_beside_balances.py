@@ -2,36 +2,17 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from diagnosed import run
 
-from hyperleg_design.gap.inference.detectors.heard import KNOCKING, Heard
 from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, Offset
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
-from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_heard, of_imu
+from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_imu
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import Named, Place, Value
 from hyperleg_design.report.gap.text import diagnosis_text
 
 OTHER = Named("coulomb_friction", "hip", 0.9, 0.8, {})
-PLAY, SPRING = (
-    Named(effect, "m_back", share, 0.7, {})
-    for effect, share in (("backlash", 0.7), ("transmission_elasticity", 0.3))
-)
-BELT = Heard(
-    "m_back",
-    KNOCKING,
-    "knocks about",
-    np.nan,
-    2.0,
-    "Nm",
-    0.7,
-    (0.6, 0.8),
-    "motor",
-    {"m_front": 0.2, "m_back": 0.8},
-    (PLAY, SPRING),
-)
 
 
 @pytest.fixture(scope="module")
@@ -111,29 +92,6 @@ def test_a_vertical_that_leans_is_an_unknown_gap_and_no_cause(none, offset):
     assert names(of_imu(replace(none, verdict="explained", causes=(OTHER,)), leaning).causes) == [
         ("coulomb_friction", "hip")
     ]
-
-
-def test_a_belt_is_the_cause_where_nothing_else_is(none):
-    told = of_heard(none, BELT)
-    assert told.verdict == "ambiguous"
-    assert names(told.causes) == [("backlash", "m_back")]
-    assert told.equivalent == ((("backlash", "m_back"), ("transmission_elasticity", "m_back")),)
-    assert (told.gap.before, told.gap.closed, told.gap.closed_interval) == (2.0, 0.7, (0.6, 0.8))
-    assert told.gap.after == pytest.approx(0.6)
-    assert [(place.location, place.share) for place in told.where] == [
-        ("m_back", 0.8),
-        ("m_front", 0.2),
-    ]
-    assert told.causes[0].probability > told.rivals[0].probability
-    assert certain(told) < 1 + 1e-9
-
-
-def test_a_belt_beside_another_cause_leaves_that_ones_gap_as_it_is(none):
-    explained = replace(none, verdict="explained", causes=(OTHER,))
-    told = of_heard(explained, BELT)
-    assert names(told.causes) == [("coulomb_friction", "hip"), ("backlash", "m_back")]
-    assert told.gap == explained.gap
-    assert (told.verdict, told.residual_shape[0]["location"]) == ("ambiguous", "m_back")
 
 
 def feet(effect, shape, says, unit):

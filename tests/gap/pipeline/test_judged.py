@@ -5,15 +5,14 @@ import json
 import diagnosed
 import pytest
 
-from hyperleg_design.errors import InputError
-from hyperleg_design.gap.pipeline.diagnose import POSTERIOR, diagnose, diagnose_signals
+from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import SCHEMA_FILE, read_diagnosis, write_diagnosis
 
 
 def found(robot_files, kind, seeds=(0, 1), references=(), threads=1):
     logs = [diagnosed.run(kind, s, session="today") for s in seeds]
     healthy = [diagnosed.run("healthy", s, session="before", role="reference") for s in references]
-    return diagnose(robot_files["coupled"], logs, healthy, threads=threads, method=POSTERIOR)
+    return diagnose(robot_files["coupled"], logs, healthy, threads=threads)
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +47,7 @@ def test_a_robot_like_its_references_is_none_and_a_change_is_named(robot_files):
 def test_what_the_references_show_as_well_is_no_change_but_what_the_model_lacks(robot_files):
     logs = [diagnosed.run("dry", s, session="today") for s in (0, 1)]
     healthy = [diagnosed.run("dry", s, session="before", role="reference") for s in (2, 3)]
-    result = diagnose(robot_files["coupled"], logs, healthy, threads=1, method=POSTERIOR)
+    result = diagnose(robot_files["coupled"], logs, healthy, threads=1)
     assert result.verdict == "none"
     assert not result.causes
     assert result.lacks["verdict"] == "explained"
@@ -91,9 +90,3 @@ def test_a_log_told_twice_in_one_session_gives_no_other_cause(robot_files, visco
     twice = found(robot_files, "viscous", seeds=(0, 1, 0, 1))
     assert twice.causes[0].effect == viscous.causes[0].effect
     assert twice.causes[0].location == viscous.causes[0].location
-
-
-def test_an_unknown_method_is_an_error(robot_files):
-    signals = diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))
-    with pytest.raises(InputError, match="posterior"):
-        diagnose_signals(signals, method="magic")

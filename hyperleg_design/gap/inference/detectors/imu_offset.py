@@ -139,35 +139,6 @@ def imu_offset(signals: Sequence[Signals], references: Sequence[Signals] = ()) -
     )
 
 
-def felt_upright(signals: Sequence[Signals]) -> tuple[np.ndarray, float, float] | None:
-    """What accelerometers feel too much along the vertical, which no orientation that is a little
-    off can feign.
-
-    Returns:
-        The vertical in the sensor's axes `(3,)`, the error along it and its standard deviation
-        [m/s^2]; None where it is not known.
-    """
-    based = [one for one in signals if one.base is not None]
-    if len(based) < len(signals):
-        return None
-    means, errors, _ = (np.array(part) for part in zip(*map(_means, based), strict=True))
-    mean, error = (values[3:] for values in _together(means, errors))
-    gravity = based[0].subject.gravity
-    rotation = np.mean(
-        [np.nanmean(one.base.rotation, 0) for one in based if one.base is not None], 0
-    )
-    up = -(rotation @ based[0].subject.imu_rotation).T @ gravity
-    length = float(np.linalg.norm(up))
-    if (
-        not np.isfinite([*mean, *error, length]).all()
-        or length < UPRIGHT * float(np.linalg.norm(gravity))
-        or length == 0
-    ):
-        return None
-    up = up / length
-    return up, float(up @ mean), float(np.hypot(np.linalg.norm(up * error), SURE))
-
-
 def _means(signals: Signals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Mean error of gyro and accelerometer in the sensor's axes `(6,)`, its standard error, and
     means of both halves `(2, 6)`; NaN if unknown.

@@ -18,7 +18,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects.ground_friction import GroundFriction
 from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
-from hyperleg_design.gap.inference.nuisance import DAY, GROUND
+from hyperleg_design.gap.inference.nuisance import GROUND
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, footings
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 EFFECT = GroundFriction.identifier
 SLIPS = "slips"
+DAY = 0.7
+"""Change of a ground's friction from one session to the next, over `GROUND` [-] (assumed)."""
 FAST = 0.015
 """Speed against the force from which a contact may slide [m/s] (assumed: above what encoders' noise
 makes)."""
@@ -91,9 +93,7 @@ def _slip(
     if as_simulated and abs(float(np.median(edges)) / ground.friction - 1) <= UNUSUAL * GROUND:
         return None
     healthy = _coefficient([one for s in references if (one := _sliding(s, place)) is not None])
-    usual, unsure = (
-        (ground.friction, GROUND) if healthy is None else (healthy, DAY[EFFECT] * GROUND)
-    )
+    usual, unsure = (ground.friction, GROUND) if healthy is None else (healthy, DAY * GROUND)
     scale = ratio / usual
     if abs(scale - 1) < UNUSUAL * GROUND:
         return None
