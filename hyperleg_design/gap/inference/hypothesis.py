@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.special import erfcx
 
 from hyperleg_design.gap.inference.fit import bounded
 
@@ -222,8 +223,28 @@ def _solve(
     occam = -0.5 * float(np.sum((theta / deviation) ** 2))
     occam -= float(np.sum(np.log(deviation))) + 0.5 * float(np.linalg.slogdet(precision)[1])
     occam += sum(factor.log(float(theta[place])) for place, factor in factors)
+    occam += _beyond(theta, precision, target, low, high, shape)
     gain = float(right @ theta - 0.5 * theta @ normal @ theta)
     return Solution(theta, covariance, gain + occam, occam)
+
+
+def _beyond(
+    theta: np.ndarray,
+    precision: np.ndarray,
+    target: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    shape: np.ndarray,
+) -> float:
+    """What Laplace's method takes too much where sizes would rather lie beyond their bounds [nat]:
+    log of the integral of exp(-z t - t^2 / 2) over t > 0, over that over all t of exp(-t^2 / 2),
+    where z is the slope at the bound in standard deviations.
+    """
+    slope = target - precision @ theta
+    held = ~shape & (low < high)
+    at_end = ((theta <= low) & (slope < 0)) | ((theta >= high) & (slope > 0))
+    z = (np.abs(slope) / np.sqrt(np.diag(precision)))[held & at_end]
+    return float(np.sum(np.log(0.5 * erfcx(z / np.sqrt(2)))))
 
 
 def shifted(products: np.ndarray, last: bool) -> np.ndarray:

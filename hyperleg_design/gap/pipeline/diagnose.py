@@ -165,7 +165,11 @@ def diagnose_signals(
     told = judge_signals(
         signals,
         references,
-        screen.places(signals[0].subject, effects),
+        [
+            place
+            for place in screen.places(signals[0].subject, effects)
+            if place[0] not in (SLIPPERY, SOFT)  # feet tell these by themselves, see `_beside`
+        ],
         rules or InferenceRules(),
         seed=seed,
         threads=threads,

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.stats import multivariate_normal
+from scipy.stats import multivariate_normal, norm
 
 from hyperleg_design.gap.inference.channel import Scales
 from hyperleg_design.gap.inference.hypothesis import reduced, shifted, solve
@@ -101,3 +101,16 @@ def test_causes_that_do_not_act_are_seldom_worth_their_prior():
     gains = np.array(gains)
     assert np.mean(gains > np.log(10)) <= 0.1
     assert np.mean(gains > 0) <= 0.2
+
+
+def test_a_size_that_would_rather_lie_beyond_its_bound_is_worth_the_integral_up_to_it():
+    rng = np.random.default_rng(6)
+    channel, _ = made(rng)
+    columns = rng.standard_normal((1, len(channel.samples)))
+    products = reduced(evidence(channel), [SCALES], columns)
+    free = solve(products, np.full(1, -np.inf), np.full(1, np.inf), np.zeros(1, bool), RULES)
+    deviation = float(np.sqrt(free.covariance[0, 0]))
+    for beyond in (0.5, 2.0):
+        end = free.theta[0] - beyond * deviation
+        found = solve(products, np.full(1, end - 50.0), np.full(1, end), np.zeros(1, bool), RULES)
+        assert found.gain - free.gain == pytest.approx(norm.logcdf(-beyond), abs=1e-6)
