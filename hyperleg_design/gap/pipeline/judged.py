@@ -221,7 +221,8 @@ class _Answer:
 
     def gap(self, naming: bool) -> Shrinkage:
         """Before, after and floor over the channels that count, in their unit."""
-        scale = float(np.sqrt(self._total(self._squares(1 / self.evidence.weight))))
+        # the root mean square of the expected noise, in the unit of the channels
+        scale = float(np.sqrt(self._total(self._squares(self.evidence.samples.floor**2))))
         before, after = (float(np.sqrt(self._total(self.squares[n]))) for n in ("before", "after"))
         lowest = float(np.sqrt(self.lowest()))
         closed, low, high = 0.0, 0.0, 0.0

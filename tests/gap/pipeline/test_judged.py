@@ -34,6 +34,7 @@ def test_a_cause_is_named_with_place_and_size(viscous):
     assert damping.low < 0.3 < damping.high
     assert damping.value == pytest.approx(0.3, rel=0.15)
     assert viscous.gap.before > 2 * viscous.gap.after
+    assert (viscous.gap.unit, 0.05 < viscous.gap.before < 3) == ("Nm", True)  # 0.3 Nms/rad lacks
     assert viscous.where[0].location == "knee"
 
 
