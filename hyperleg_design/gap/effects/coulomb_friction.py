@@ -34,6 +34,7 @@ class CoulombFriction(Effect):
 
     identifier: ClassVar[str] = "coulomb_friction"
     kind: ClassVar[str] = "joint"
+    described: ClassVar[bool] = True
     summary: ClassVar[str] = "a joint resists motion with a torque of constant size"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(

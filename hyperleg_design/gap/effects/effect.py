@@ -72,6 +72,14 @@ class Effect(ABC):
     linear: ClassVar[bool] = False
     """Whether the trace is linear in (values - nulls), but for parameters that only shape it: these
     are one of `variants`."""
+    rare: ClassVar[float] = 0.0
+    """Log prior odds over those of an effect that looks like it, of one that is rarer [nat]."""
+    driver: ClassVar[str] = ""
+    """Field of `Signals` that drives it, if any."""
+    unseen: ClassVar[float] = 0.0
+    """Log prior odds for it where no log has its driver: a model of that fits much [nat]."""
+    described: ClassVar[bool] = False
+    """Whether a robot's model describes it, so that there may also be less of it than described."""
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {}
     """By name of an experiment of `gap/experiments/experiment.py`, effects that it tells apart from
     this one; that one of two effects says so is enough."""

@@ -23,6 +23,8 @@ class LinkCom(InertialEffect):
     """
 
     identifier: ClassVar[str] = "link_com"
+    rare: ClassVar[float] = -1.0
+    """Assumed: links are made as drawn, while zeros of encoders slip."""
     summary: ClassVar[str] = "a link's centre of mass is elsewhere than modelled"
     parameters: ClassVar[tuple[Parameter, ...]] = tuple(
         Parameter(

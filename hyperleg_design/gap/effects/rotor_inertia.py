@@ -35,6 +35,7 @@ class RotorInertia(Effect):
 
     identifier: ClassVar[str] = "rotor_inertia"
     kind: ClassVar[str] = "motor"
+    described: ClassVar[bool] = True
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(

@@ -48,6 +48,11 @@ class ThermalDerating(Effect):
 
     identifier: ClassVar[str] = "thermal_derating"
     kind: ClassVar[str] = "motor"
+    rare: ClassVar[float] = -0.5
+    """Assumed."""
+    driver: ClassVar[str] = "temperature"
+    unseen: ClassVar[float] = -1.0
+    """Assumed."""
     summary: ClassVar[str] = "a motor loses torque as it warms up"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(

@@ -51,6 +51,8 @@ class TransmissionRatio(Effect):
 
     identifier: ClassVar[str] = "transmission_ratio"
     kind: ClassVar[str] = "motor"
+    rare: ClassVar[float] = -0.5
+    """Assumed: belts have the ratio of their teeth."""
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(

@@ -33,6 +33,7 @@ class ViscousFriction(Effect):
 
     identifier: ClassVar[str] = "viscous_friction"
     kind: ClassVar[str] = "joint"
+    described: ClassVar[bool] = True
     summary: ClassVar[str] = "a joint resists motion in proportion to its velocity"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(

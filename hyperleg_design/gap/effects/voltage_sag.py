@@ -61,6 +61,11 @@ class VoltageSag(Effect):
 
     identifier: ClassVar[str] = "voltage_sag"
     kind: ClassVar[str] = "robot"
+    rare: ClassVar[float] = -1.0
+    """Assumed."""
+    driver: ClassVar[str] = "voltage"
+    unseen: ClassVar[float] = -6.0
+    """Assumed."""
     summary: ClassVar[str] = "the battery's voltage drops, and with it torque limits or torques"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(

@@ -9,7 +9,6 @@ import numpy as np
 
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
-from hyperleg_design.gap.inference.samples import BLOCKS
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.channel import Channel, Scales
@@ -49,13 +48,13 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
         rules: of the inference.
     """
     samples, weight = evidence.samples, evidence.weight
-    fold = samples.fold[BLOCKS][samples.part]
+    fold = samples.fold[samples.part]
     tested = np.arange(len(fold)) < len(evidence.tests.value)
     stack = Stack.of(hypothesis.causes, weight) if hypothesis.causes else None
     before = np.zeros(len(fold))
     trace, unlisted = np.zeros(len(fold)), np.zeros(len(fold))
     changed = [not cause.standing for cause in hypothesis.causes]
-    for held in range(samples.folds(BLOCKS)):
+    for held in range(samples.folds):
         kept = (fold != held) | ~tested
         channels = tuple(_without(one, kept) for one in evidence.channels)
         left, own = np.zeros(len(fold)), np.zeros(len(fold))

@@ -44,9 +44,6 @@ class Cause:
     modelled."""
     beyond: int = 1
     """Joints in a row that its link carries, see `Mechanism.beyond`."""
-    odds: float = 0.0
-    """Log odds for it by what logs tell beside their residuals, see `telling`, and by its values,
-    see `Effect.odds`."""
     standing: bool = False
     """Whether it acts in all logs, reference logs included, not in those under test alone."""
 

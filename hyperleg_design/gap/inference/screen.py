@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.detectors import telling
 from hyperleg_design.gap.inference.endogenous import factor
 from hyperleg_design.gap.inference.fit import Cause
 
@@ -29,8 +28,6 @@ UNEXCITED = "these logs do not excite it"
 """Why an effect at a place is not judged."""
 MOST_STARTS = 18
 """Starts of an effect at a place whose traces are tried."""
-DRIVERS = {"voltage_sag": "voltage", "thermal_derating": "temperature"}
-"""Signals of `Signals` that drive an effect."""
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -110,9 +107,8 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         default=0.0,
     )
     scaled = factor(samples, effect.identifier, location, usual, values)
-    driver = DRIVERS.get(effect.identifier)
-    unseen = driver is not None and all(
-        getattr(s.signals, driver) is None for s in samples.filtered_logs
+    unseen = bool(effect.driver) and all(
+        getattr(s.signals, effect.driver) is None for s in samples.filtered_logs
     )
     return Cause(
         effect.identifier,
@@ -130,8 +126,6 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         scaled,
         unseen,
         subject.tree.beyond(location),
-        effect.odds(location, subject, values)
-        + telling.odds(effect.identifier, location, [s.signals for s in samples.filtered_logs]),
     )
 
 

@@ -395,7 +395,7 @@ class Search:
                     EFFECTS[cause.effect].odds(
                         cause.location, self.evidence.signals[0].subject, values
                     )
-                    + min(prior_odds(cause, values) - cause.odds, 0.0)
+                    + min(prior_odds(cause, values), 0.0)
                     - self.like_usual(cause, values)
                 )
                 place += 1

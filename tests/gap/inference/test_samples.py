@@ -1,8 +1,6 @@
 import diagnosed
 import pytest
 
-from hyperleg_design.gap.inference.samples import BLOCKS, LOGS
-
 
 @pytest.fixture(scope="module")
 def ready(robot_files):
@@ -12,11 +10,8 @@ def ready(robot_files):
     )
 
 
-def test_folds_deal_stretches_of_all_logs_or_whole_logs(ready):
+def test_folds_deal_stretches_of_all_logs(ready):
     samples = ready.samples
     assert samples.sessions == 2
-    assert samples.folds(LOGS) == 3
-    for fold in range(samples.folds(BLOCKS)):
-        assert set(samples.log[samples.fold[BLOCKS] == fold]) == {0, 1, 2}
-    for log in range(3):
-        assert len(set(samples.fold[LOGS][samples.log == log])) == 1
+    for fold in range(samples.folds):
+        assert set(samples.log[samples.fold == fold]) == {0, 1, 2}

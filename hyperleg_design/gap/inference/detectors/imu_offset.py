@@ -35,9 +35,6 @@ CERTAIN = 5.0
 PIECE = 1.0
 """Of the means whose scatter gives the standard error [s]."""
 LEAST_PIECES = 4
-SURE = 0.01
-"""Least standard deviation of an accelerometer's error along the vertical [m/s^2]: scales and
-gravity itself differ by as much (assumed)."""
 UPRIGHT = 0.15
 """Vertical part of an accelerometer's error over its horizontal one, below which it may be a
 vertical that leans."""
