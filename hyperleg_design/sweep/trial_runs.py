@@ -136,7 +136,7 @@ def run_trials(
     sweep, folder = result.sweep, result.folder
     state = {"sweep": sweep.digest(), "plan": wanted.digest, "batch": batch}
     chunks, target = folder / CHUNKS, folder / TRIALS
-    if _state(target) == state:
+    if trials_state(target) == state:
         return target
     if (chunks / STATE).exists() and _read_state(chunks / STATE) not in (state, None):
         raise OutputError(
@@ -320,7 +320,8 @@ def _joined(paths: Sequence[Path], state: dict[str, Any]) -> bytes:
     return stream.getvalue()
 
 
-def _state(path: Path) -> Any:
+def trials_state(path: Path) -> Any:
+    """What made a table of trials (digests of sweep and plan), or None where it cannot be read."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 

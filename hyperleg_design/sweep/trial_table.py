@@ -67,10 +67,12 @@ def design_table(sweep: Sweep, trials: pd.DataFrame, columns: Mapping[str, Any])
         columns: sample, variant, axes and measures of the sweep's own table.
 
     Returns:
-        Those columns and, for each protocol, the mean of every measure (`walk.cost_of_transport`),
-        `.low` and `.high` of the `SHOWN` ones, `.trials`, `.policy` (whether it was trained for the
-        design), `.outside` (parameters outside its trained range), `.limits` (which act), and
-        `.reason` where a design could not be simulated.
+        Those columns and, for each protocol, the mean of every measure (`walk.cost_of_transport`)
+        over the trials that did not fall, of outcomes over all; `.low` and `.high` of the `SHOWN`
+        ones, `.trials`, `.policy` (whether it was trained for the design), `.outside` (parameters
+        outside its trained range), `.limits` (which act), and `.reason` where a design could not be
+        simulated. Trials that fell are left out because height that is lost in a fall is energy
+        that is gained: their cost of transport may even be negative.
     """
     import pandas as pd
 
@@ -92,10 +94,12 @@ def _of_protocol(protocol: str, part: pd.DataFrame) -> dict[str, Any]:
         return {"reason": str(part["reason"].iloc[0]), "trials": 0}
     row: dict[str, Any] = {"trials": len(part), "reason": ""}
     known = registry.PROTOCOLS[protocol]
+    walked = part.where(~(part["fell"] > 0))
     for name in known:
         if name not in part:
             continue
-        groups = [own[name].to_numpy(float) for _, own in part.groupby("seed")]
+        rows = part if name in OUTCOMES else walked
+        groups = [own.to_numpy(float) for _, own in rows[name].groupby(part["seed"])]
         if name in SHOWN[protocol]:
             function = share if name in OUTCOMES else estimate
             interval = function(groups, resamples=_RESAMPLES)

@@ -152,3 +152,30 @@ def test_the_command_builds_the_design_of_the_row():
         else:
             np.testing.assert_allclose(built[path], value, rtol=1e-9, err_msg=path)
     assert built.variant == ablate(sweep.base, "toe_removed_matched").variant
+
+
+def test_trials_that_fell_say_nothing_of_the_cost_of_walking():
+    sweep = sweep_from_mapping(
+        {"design": "hyperleg", "evaluate": ["walk"], "axes": {"toe.mass": {"values": [0.1, 0.2]}}}
+    )
+    trials = pd.DataFrame(
+        {
+            "sample": [0, 0, 0, 1],
+            "variant": "toe",
+            "protocol": "walk",
+            "seed": 0,
+            "trained": "zero-shot",
+            "outside": "",
+            "outcome": ["arrived", "arrived", "fell", "fell"],
+            "fell": [0.0, 0.0, 1.0, 1.0],
+            "cost_of_transport": [0.3, 0.4, -2.0, -1.0],
+            "limit_share": 0.0,
+            "thermal_peak": 0.5,
+            "speed_use": 0.5,
+        }
+    )
+    columns = {"sample": [0, 1], "variant": ["toe", "toe"], "toe.mass": [0.1, 0.2]}
+    table = design_table(sweep, trials, columns)
+    assert table[COST][0] == pytest.approx(0.35)
+    assert np.isnan(table[COST][1])
+    assert table["walk.fell"].tolist() == pytest.approx([1 / 3, 1.0])

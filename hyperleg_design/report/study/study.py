@@ -14,6 +14,7 @@ from hyperleg_design.report.study import experiment as study_experiment
 from hyperleg_design.report.study import motions as motion
 from hyperleg_design.report.study import sections
 from hyperleg_design.report.study.context import FIGURES, Context, Made
+from hyperleg_design.report.study.walked import walked
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.writing import output_folder, write_text
@@ -30,6 +31,7 @@ STEPS: Mapping[str, Callable[..., Made]] = {
     "sweeps": sections.sweeps,
     "motors": sections.motors,
     "policies": study_experiment.experiment,
+    "walked designs": walked,
     "parameters": sections.made_from,
 }
 """Parts in the order of the page."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.report.page import Explorer, Page, Section, Table, render
+from hyperleg_design.report.page import Details, Explorer, Page, Section, Table, render
 from hyperleg_design.report.sweep.explorer import explorer
 from hyperleg_design.report.sweep.page import sweep_content
 from hyperleg_design.report.text import table as text_table
@@ -52,8 +52,7 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
     columns = result.columns()
     designs = design_table(sweep, trials, columns)
     objectives = objectives_of(sweep, designs)
-    shown = [f"{p}.{m}" for p in protocols for m in SHOWN[p] if f"{p}.{m}" in designs]
-    followed = sensitivities(sweep, designs, [n for n in shown if not n.endswith(".fell")])
+    followed = _followed(sweep, designs)
     fronts = front(designs, objectives) if objectives else designs.iloc[:0]
     chosen = best(designs, objectives)
     commands = [build_command(sweep, dict(row)) for _, row in chosen.iterrows()]
@@ -78,8 +77,8 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
         },
     )
     sections = [
-        Section("Policies", [_policy_text(trials), *_policy_table(sweep, designs, protocols)]),
-        Section("Measures over the parameters", [_explorer(sweep, designs, fronts, shown)]),
+        Section("Policies", [policy_text(trials), *_policy_table(sweep, designs, protocols)]),
+        Section("Measures over the parameters", [_explorer(sweep, designs, fronts, "evaluated")]),
         Section("Limits that act", [_limits(designs, protocols)]),
         Section("Which parameter each measure follows", [_sensitivity_table(followed)]),
         Section("Pareto front", _front_tables(sweep, fronts, objectives)),
@@ -99,6 +98,51 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
         "files": [str(folder / name) for name in (TRIALS, DESIGNS, SUMMARY)] + [str(target)],
         "text": best_text(sweep, chosen, objectives, commands),
     }
+
+
+def evaluated_content(
+    result: SweepResult, trials: pd.DataFrame, name: str
+) -> tuple[list[Any], pd.DataFrame]:
+    """What a page of several sweeps says of one whose designs were evaluated.
+
+    Args:
+        result: the sweep.
+        trials: of its designs.
+        name: of the explorer, unique in the page.
+
+    Returns:
+        Content of a section, and the table of the designs.
+    """
+    sweep = result.sweep
+    designs = design_table(sweep, trials, result.columns())
+    objectives = objectives_of(sweep, designs)
+    fronts = front(designs, objectives)
+    chosen = best(designs, objectives, count=1)
+    commands = [build_command(sweep, dict(row)) for _, row in chosen.iterrows()]
+    content = [
+        policy_text(trials),
+        _explorer(sweep, designs, fronts, name),
+        Details(
+            "Best designs, limits that act, and which parameter each measure follows",
+            [
+                *_best_tables(sweep, chosen, commands, objectives),
+                _limits(designs, [p for p in registry.PROTOCOLS if f"{p}.trials" in designs]),
+                _sensitivity_table(_followed(sweep, designs)),
+            ],
+        ),
+    ]
+    return content, designs
+
+
+def _shown(designs: pd.DataFrame) -> list[str]:
+    """Measures with intervals that the designs have."""
+    return [f"{p}.{m}" for p in registry.PROTOCOLS for m in SHOWN[p] if f"{p}.{m}" in designs]
+
+
+def _followed(sweep: Sweep, designs: pd.DataFrame) -> list[dict[str, Any]]:
+    """Sensitivities of the measures with intervals, falls left out."""
+    names = [name for name in _shown(designs) if not name.endswith(".fell")]
+    return sensitivities(sweep, designs, names)
 
 
 def objectives_of(sweep: Sweep, designs: pd.DataFrame) -> tuple[str, ...]:
@@ -129,7 +173,8 @@ def policies_of(trials: pd.DataFrame) -> list[dict[str, Any]]:
     return rows
 
 
-def _policy_text(trials: pd.DataFrame) -> str:
+def policy_text(trials: pd.DataFrame) -> str:
+    """Which policies ran on how many designs, and what their numbers say."""
     parts = [
         f"{row['protocol']}, {row['variant']}: {row['designs']} designs {row['trained']} "
         f"({len(row['policies'])} policies)"
@@ -138,8 +183,8 @@ def _policy_text(trials: pd.DataFrame) -> str:
     return (
         "; ".join(parts)
         + ". A zero-shot policy was trained on another design than it walks here: its numbers are "
-        "a lower bound of what a policy trained for the design reaches. Intervals are over "
-        "policies and trials."
+        "a lower bound of what a policy trained for the design reaches. Measures are over the "
+        "trials that did not fall; intervals over policies and trials."
     )
 
 
@@ -164,21 +209,19 @@ def _policy_table(sweep: Sweep, designs: pd.DataFrame, protocols: list[str]) -> 
     ]
 
 
-def _explorer(
-    sweep: Sweep, designs: pd.DataFrame, fronts: pd.DataFrame, shown: list[str]
-) -> Explorer:
+def _explorer(sweep: Sweep, designs: pd.DataFrame, fronts: pd.DataFrame, name: str) -> Explorer:
     """Every evaluated design; bars are intervals over policies and trials."""
-    names = dict.fromkeys([*shown, *(chosen.measure for chosen in sweep.trial_maps)])
-    labels = {name: registry.label(name) for name in names if name in designs}
+    names = dict.fromkeys([*_shown(designs), *(chosen.measure for chosen in sweep.trial_maps)])
+    labels = {measure: registry.label(measure) for measure in names if measure in designs}
     keys = ["sample", "variant"]
     best_rows = fronts[fronts["on_front"]] if len(fronts) else fronts
     front = designs.set_index(keys).index.isin(best_rows.set_index(keys).index)
     numeric = [axis.name for axis in sweep.axes if axis.numeric]
     maps = [chosen for chosen in sweep.trial_maps if chosen.measure in labels]
     if not maps and numeric:
-        maps = [Map(numeric[0], "", name) for name in labels]
-    table = {str(name): designs[name].to_numpy() for name in designs}
-    return explorer(sweep, table, labels, maps, front, "evaluated")
+        maps = [Map(numeric[0], "", measure) for measure in labels]
+    table = {str(column): designs[column].to_numpy() for column in designs}
+    return explorer(sweep, table, labels, maps, front, name)
 
 
 def _limits(designs: pd.DataFrame, protocols: list[str]) -> Table:

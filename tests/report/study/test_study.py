@@ -12,6 +12,7 @@ import pytest
 
 from hyperleg_design.errors import HyperlegError, OutputError
 from hyperleg_design.report.study import study
+from hyperleg_design.sweep.stored import stored_names
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +33,7 @@ def test_every_part_is_on_the_page(page):
         "RI70",
         "toe_removed_matched",
         "holds no finished one",
+        "Nothing of them was run again for this page",
     ):
         assert word in html
 
@@ -56,7 +58,8 @@ def test_tables_stand_beside_the_page(page):
     demand = json.loads((page.parent / "demand.json").read_text())
     assert set(demand) == {"walk", "stair", "squat", "hop"}
     swept = {table.parent.name for table in (page.parent / "sweeps").glob("*/designs.parquet")}
-    assert swept == {"combined", "laws", "motors", "reduction_ratios", "toe_mass"}
+    sized = {"combined", "laws", "motors", "reduction_ratios", "toe_mass"}
+    assert swept == sized | set(stored_names())
 
 
 def test_a_foreign_folder_is_refused_before_any_work(tmp_path, monkeypatch):
