@@ -97,7 +97,7 @@ def main() -> None:
     spent = {}
     for name in ("built", "kept"):
         start = time.process_time()
-        models.simulation_models(each, policy.task.physics)
+        models.simulated_robots(each, policy.task.physics)
         spent[name] = time.process_time() - start
     wall, start = time.perf_counter(), time.process_time()
     done = evaluate_designs(policy, designs, protocol, threads=chosen.threads)

@@ -28,7 +28,7 @@ from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.chunk import Chunk, Divergence, Step
 from hyperleg_design.simulation.commands import WaypointCommands
 from hyperleg_design.simulation.layout import GRAVITY, layout_of, stacked
-from hyperleg_design.simulation.model import simulation_model, simulation_models
+from hyperleg_design.simulation.model import simulated_robots, simulation_model
 from hyperleg_design.simulation.settings import Limits
 from hyperleg_design.simulation.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task, check_reward
@@ -97,16 +97,17 @@ class Environment:
         """The robots, one each."""
         self.alterations = made(alterations, self.designs[0])
         """Of each of the simulated robots."""
-        self.models: list[mujoco.MjModel] = (
-            [simulation_model(one, task.physics, self.alterations) for one in self.designs]
+        robots = (
+            [
+                (simulation_model(one, task.physics, self.alterations), layout_of(one))
+                for one in self.designs
+            ]
             if self.alterations
-            else simulation_models(self.designs, task.physics)
+            else simulated_robots(self.designs, task.physics)
         )
+        self.models: list[mujoco.MjModel] = [model for model, _ in robots]
         """MuJoCo model of each design; shared, not to be written into."""
-        distinct = {id(model): one for model, one in zip(self.models, self.designs, strict=True)}
-        # Equal designs share a model, and so a layout.
-        of_model = {key: layout_of(one) for key, one in distinct.items()}
-        self.layouts: list[Layout] = [of_model[id(model)] for model in self.models]
+        self.layouts: list[Layout] = [layout for _, layout in robots]
         """Names, order and numbers of joints, motors and pads of each design."""
         if any(alteration.edits for alteration in self.alterations):
             self.layouts = [

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
 
 KEPT = 1024
-"""Models that a process keeps, some 0.1 MB each."""
-_KEPT_MODELS: dict[str, mujoco.MjModel] = {}
+"""Models that a process keeps with their layouts, some 0.1 MB each."""
+_KEPT_ROBOTS: dict[str, tuple[mujoco.MjModel, Layout]] = {}
 PAD_SENSOR_SIZE = 6
 """Numbers a pad: force and relative velocity in the contact's frame."""
 
@@ -127,28 +127,32 @@ def simulation_model(
     return model
 
 
-def simulation_models(
+def simulated_robots(
     designs: Sequence[RobotDesign], physics: Physics | None = None
-) -> list[mujoco.MjModel]:
-    """`simulation_model` of each design without alterations; equal designs share one model.
+) -> list[tuple[mujoco.MjModel, Layout]]:
+    """`simulation_model` without alterations and `layout_of` of each design; equal designs share
+    both.
 
-    The latest `KEPT` models are kept in this process, so that a design that is evaluated again is
-    not compiled again. Nobody may write into them.
+    The latest `KEPT` are kept in this process, so that a design that is evaluated again is neither
+    compiled nor measured again. Nobody may write into them.
     """
     physics = physics or Physics()
-    models = []
+    robots = []
     for design in designs:
         key = _fingerprint(design, physics)
-        model = _KEPT_MODELS.pop(key, None) or simulation_model(design, physics)
-        _KEPT_MODELS[key] = model
-        models.append(model)
-        while len(_KEPT_MODELS) > KEPT:
-            del _KEPT_MODELS[next(iter(_KEPT_MODELS))]
-    return models
+        robot = _KEPT_ROBOTS.pop(key, None) or (
+            simulation_model(design, physics),
+            layout_of(design),
+        )
+        _KEPT_ROBOTS[key] = robot
+        robots.append(robot)
+        while len(_KEPT_ROBOTS) > KEPT:
+            del _KEPT_ROBOTS[next(iter(_KEPT_ROBOTS))]
+    return robots
 
 
 def _fingerprint(design: RobotDesign, physics: Physics) -> str:
-    """All numbers and texts that decide a model."""
+    """All numbers and texts that decide a model and a layout."""
     arrays = motor_arrays(design)  # the catalogue's constants may change under the same name
     described = (leaves(design), vars(arrays), vars(physics))
     return hashlib.sha256(pickle.dumps(described)).hexdigest()

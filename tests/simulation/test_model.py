@@ -1,3 +1,5 @@
+import dataclasses
+
 import mujoco
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from hyperleg_design.simulation.model import (
     pad_forces,
     pad_loads,
     pad_slip,
+    simulated_robots,
     simulation_model,
 )
 from hyperleg_design.simulation.settings import Physics
@@ -152,3 +155,18 @@ def test_a_robot_that_cannot_be_simulated_is_refused(change, field):
         robot = load_robot("mini_cheetah", overrides=[change])
     with pytest.raises(InputError, match=field):
         simulation_model(robot)
+
+
+def test_equal_designs_share_a_model_and_a_layout_that_are_those_of_a_design_alone(design):
+    lighter = design.with_values({"toe.mass": 0.123})
+    first, second, third = simulated_robots([design, lighter, design])
+    assert first[0] is third[0]
+    assert first[1] is third[1]
+    for one, (model, layout) in ((design, first), (lighter, second)):
+        again = simulated_robots([one])[0]
+        assert again[0] is model
+        assert again[1] is layout
+        np.testing.assert_array_equal(model.body_mass, simulation_model(one).body_mass)
+        for name, value in dataclasses.asdict(layout_of(one)).items():
+            np.testing.assert_array_equal(getattr(layout, name), value, err_msg=name)
+    assert first[1].weight != second[1].weight
