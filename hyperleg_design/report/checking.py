@@ -76,7 +76,7 @@ def checks_text(findings: list[dict[str, Any]]) -> str:
         verdict = (
             "good"
             if not entry["findings"]
-            else f"{entry['errors']} errors, {entry['warnings']} warnings"
+            else f"{_counted(entry['errors'], 'error')}, {_counted(entry['warnings'], 'warning')}"
         )
         lines.append(f"{entry['path']}: {verdict}")
         lines += [
@@ -84,3 +84,7 @@ def checks_text(findings: list[dict[str, Any]]) -> str:
             for f in entry["findings"]
         ]
     return "\n".join(lines)
+
+
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -18,6 +18,7 @@ def test_a_broken_sweep_is_found(tmp_path):
     (found,) = check_paths([str(path)])
     assert found["errors"] == 1
     assert "toe.mas" in checks_text([found])
+    assert "1 error, 0 warnings" in checks_text([found])
 
 
 def test_a_broken_design_is_found(tmp_path):
