@@ -15,9 +15,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import Policy
 from hyperleg_design.evaluation.protocol import WalkProtocol
-from hyperleg_design.evaluation.walk import evaluate_walk
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.model import simulation_model
@@ -40,13 +40,11 @@ def standing_policy() -> Policy:
     return act
 
 
-def evaluate() -> None:
+def simulate_and_measure() -> None:
     protocol = WalkProtocol(
         trials=TRIALS, time_limit=SECONDS, start=Start(joint_position=0, tilt=0)
     )
-    found = evaluate_walk(
-        standing_policy(), protocol, design=DESIGN, task=load_task("walk"), threads=1
-    )
+    found = evaluate(standing_policy(), protocol, design=DESIGN, task=load_task("walk"), threads=1)
     assert set(found.outcomes) == {"timed_out"}
 
 
@@ -71,8 +69,8 @@ def timed(work: Callable[[], None]) -> tuple[float, float]:
 
 
 def main() -> None:
-    evaluate()  # imports
-    whole, bare = timed(evaluate), timed(bare_physics)
+    simulate_and_measure()  # imports
+    whole, bare = timed(simulate_and_measure), timed(bare_physics)
     print(
         f"{TRIALS} trials of {SECONDS} s, evaluated on one thread  {whole[0]:6.2f} s, "
         f"{whole[1]:.2f} s of processor"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
 from pathlib import Path
 
 import pytest
 
 import hyperleg_design
 from hyperleg_design import cli
+from hyperleg_design.cli.usage import option_names
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
@@ -113,9 +115,53 @@ def test_bad_input_is_one_clear_line_and_exit_code_two(capsys, arguments, words)
         assert word in err + out
 
 
-def test_an_unknown_option_is_named_once(capsys):
-    _, _, err = run(capsys, "list", "--foo")
-    assert err.startswith("hyperleg: arguments: Unrecognized options: --foo")
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["list", "--foo"], "--foo: hyperleg list has no such option; see hyperleg list --help"),
+        (
+            ["analyze", "--desing", "toe"],
+            "--desing: hyperleg analyze has no such option; did you mean --design? "
+            "see hyperleg analyze --help",
+        ),
+        # --threads is an option of other verbs, and no suggestion here
+        (
+            ["analyze", "--threads", "2"],
+            "--threads: hyperleg analyze has no such option; see hyperleg analyze --help",
+        ),
+        (
+            ["gap", "diagnose", "--rboot=x"],
+            "--rboot: hyperleg gap diagnose has no such option; did you mean --robot? "
+            "see hyperleg gap diagnose --help",
+        ),
+        (
+            ["gap", "diagnos"],
+            "verb = 'diagnos': there is none of this name; did you mean diagnose? "
+            "see hyperleg gap --help",
+        ),
+        (["--foo"], "--foo: hyperleg has no such option; see hyperleg --help"),
+        (
+            ["analyze", "--variant"],
+            "Missing value for argument '--variant'. Expected 1 values; "
+            "see hyperleg analyze --help",
+        ),
+    ],
+)
+def test_what_cannot_be_parsed_is_said_in_short(capsys, arguments, message):
+    code, _, err = run(capsys, *arguments)
+    assert code == 2
+    assert err == f"hyperleg: arguments: {message}\n"
+
+
+def test_all_options_of_every_verb_are_known_to_the_error(capsys):
+    gap = {f"gap {name}": command for name, command in cli.gap.VERBS.items()}
+    for verb, command in {**cli.VERBS, **gap}.items():
+        if verb == "gap":
+            continue
+        _, out, _ = run(capsys, *verb.split(), "--help")
+        printed = set(re.findall(r"^[│ ]{1,3}(?:-h, )?(--[a-z][a-z-]*)", out, flags=re.MULTILINE))
+        assert printed <= set(option_names(command)), verb
+        assert "--help" in printed
 
 
 def test_every_verb_has_help(capsys):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import re
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +14,8 @@ import tyro
 from hyperleg_design import __version__
 from hyperleg_design.cli import design, gap, look, policies, search, validate, variants
 from hyperleg_design.cli.arguments import check_bounds
-from hyperleg_design.errors import HyperlegError, InputError
+from hyperleg_design.cli.usage import usage_error
+from hyperleg_design.errors import HyperlegError
 from hyperleg_design.robot.motors import use_folder
 
 ABOUT = (
@@ -69,10 +69,10 @@ VERBS: dict[str, Any] = {
 
 
 def _parse(arguments: list[str]) -> Any:
-    """The command that the arguments name.
+    """Parse the arguments to the command that they name.
 
     Raises:
-        InputError: the arguments are wrong; says how in one line.
+        InputError: the arguments are wrong; one line says how.
         SystemExit: help or a completion script was printed.
     """
     if arguments in ([], ["gap"]):
@@ -90,11 +90,8 @@ def _parse(arguments: list[str]) -> Any:
     except SystemExit as stop:
         if not stop.code:
             raise
-        text = re.sub(r"[╭╮╰╯│─]+|-{3,}", " ", errors.getvalue())
-        text = re.sub(r"\s+", " ", text).strip()
-        # tyro's box has a title that the first words in it repeat
-        text = re.sub(r"^(.+?) \1", r"\1", text, flags=re.IGNORECASE)
-        raise InputError("arguments", "", None, text or "see hyperleg --help") from None
+        verbs = VERBS | {"gap": gap.VERBS}
+        raise usage_error(arguments, verbs, errors.getvalue()) from None
     check_bounds(command)
     if folder := getattr(getattr(command, "verb", command), "motors", None):
         use_folder(folder)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation import rollout
 from hyperleg_design.evaluation.policy import Policy, load_policy
 from hyperleg_design.evaluation.protocol import (
     Protocol,
@@ -17,15 +18,24 @@ from hyperleg_design.evaluation.protocol import (
     protocol_from_mapping,
     protocol_mapping,
 )
-from hyperleg_design.evaluation.t_test import evaluate_t_test, evaluate_t_tests
-from hyperleg_design.evaluation.walk import evaluate_walk, evaluate_walks
+from hyperleg_design.evaluation.protocol_run import ProtocolRun
+from hyperleg_design.evaluation.result import Evaluation, evaluations_of
+from hyperleg_design.evaluation.t_test import t_test_run
+from hyperleg_design.evaluation.walk import walk_run
 from hyperleg_design.simulation.commands import WaypointCommands
+from hyperleg_design.simulation.environment import Environment
 
 if TYPE_CHECKING:
-    from hyperleg_design.evaluation.result import Evaluation
     from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.tasks import Task
+
+
+RUNS: dict[type[Protocol], Callable[[Task, Any], ProtocolRun]] = {
+    WalkProtocol: walk_run,
+    TTestProtocol: t_test_run,
+}
+"""How a task is run and measured, by the kind of protocol."""
 
 
 def evaluate(
@@ -37,7 +47,7 @@ def evaluate(
     threads: int | None = None,
     alterations: Alterations | None = None,
 ) -> Evaluation:
-    """Run a protocol on a policy: deterministic, without assist.
+    """Run all trials of a protocol with a policy and one robot: deterministic, without assist.
 
     Args:
         policy: a callable from observations `(n, k)` to actions `(n, J)`, a shipped policy's name,
@@ -45,29 +55,21 @@ def evaluate(
         protocol: a protocol, a shipped name, or a file; by default `t_test` for tasks with
             waypoints, else `walk`.
         design: the robot; an ONNX policy's own by default.
-        task: which gives observations, physics and control; an ONNX policy's own by default.
+        task: gives observations, physics and control; an ONNX policy's own by default.
         threads: of the simulation; the result does not depend on it.
         alterations: of the simulated robot, or what makes them for a design, such as
             `Overlay.alterations`.
 
+    Returns:
+        The outcome, the measures and the signals of every trial.
+
     Raises:
-        InputError: a file that cannot be used, a policy that does not fit robot, task or protocol,
-        or one whose output is not
-            finite.
+        InputError: a batch of designs, a file that cannot be used, a policy that does not fit the
+            robot, the task or the protocol, or one whose output is not finite.
     """
-    chosen = load_policy(policy) if isinstance(policy, str | Path) else policy
-    if protocol is None:
-        protocol = protocol_for(chosen, task)
-    run = load_protocol(protocol) if isinstance(protocol, str | Path) else protocol
-    if isinstance(run, TTestProtocol):
-        return evaluate_t_test(
-            chosen, run, design=design, task=task, threads=threads, alterations=alterations
-        )
-    if isinstance(run, WalkProtocol):
-        return evaluate_walk(
-            chosen, run, design=design, task=task, threads=threads, alterations=alterations
-        )
-    raise InputError("evaluate", "protocol", run.name, "expects a WalkProtocol or a TTestProtocol")
+    if design is not None and design.batch_shape:
+        raise InputError(design.name, "", None, "holds a batch of designs; use evaluate_designs")
+    return _run(policy, protocol, design, task, threads, alterations)[0]
 
 
 def evaluate_designs(
@@ -78,7 +80,9 @@ def evaluate_designs(
     task: Task | None = None,
     threads: int | None = None,
 ) -> list[Evaluation]:
-    """`evaluate` of every design of a batch, side by side; the same numbers to the last digit.
+    """Run all trials of a protocol with a policy and every design of a batch, side by side.
+
+    The numbers are those of `evaluate` of each design, to the last digit.
 
     Args:
         policy: as in `evaluate`.
@@ -88,24 +92,60 @@ def evaluate_designs(
         threads: as in `evaluate`.
 
     Returns:
-        One a design.
+        One evaluation for each design, in the order of the batch.
 
     Raises:
-        InputError: as `evaluate`; where designs of the batch cannot stand, its `bad` says which.
+        InputError: as `evaluate`; where designs of the batch cannot stand, its `bad` marks them.
     """
+    return _run(policy, protocol, designs, task, threads, None)
+
+
+def _run(
+    policy: Policy | str | Path,
+    protocol: Protocol | str | Path | None,
+    design: RobotDesign | None,
+    task: Task | None,
+    threads: int | None,
+    alterations: Alterations | None,
+) -> list[Evaluation]:
     chosen = load_policy(policy) if isinstance(policy, str | Path) else policy
-    run = protocol_for(chosen, task) if protocol is None else protocol
-    run = load_protocol(run) if isinstance(run, str | Path) else run
-    if isinstance(run, TTestProtocol):
-        return evaluate_t_tests(chosen, run, design=designs, task=task, threads=threads)
-    if isinstance(run, WalkProtocol):
-        return evaluate_walks(chosen, run, design=designs, task=task, threads=threads)
-    raise InputError("evaluate", "protocol", run.name, "expects a WalkProtocol or a TTestProtocol")
+    rules = protocol_for(chosen, task) if protocol is None else protocol
+    rules = load_protocol(rules) if isinstance(rules, str | Path) else rules
+    if type(rules) not in RUNS:
+        expected = " or ".join(kind.__name__ for kind in RUNS)
+        raise InputError("evaluate", "protocol", rules.name, f"expects a {expected}")
+    robot, task = rollout.resolved(chosen, design, task)
+    run = RUNS[type(rules)](task, rules)
+    environment = Environment(
+        robot,
+        run.task,
+        simulations=int(rules.trials) * (robot.batch_shape or (1,))[0],
+        seed=int(rules.seed),
+        threads=threads,
+        alterations=alterations,
+        common_random_numbers=True,
+    )
+    try:
+        trials = rollout.record(
+            chosen, environment, rules.time_limit, arrived=run.arrived, before_step=run.before_step
+        )
+    finally:
+        environment.close()
+    measures, motors, cycles = zip(*map(run.measure, trials), strict=True)
+    return evaluations_of(
+        chosen, environment.designs, rules, trials, list(measures), list(motors), cycles
+    )
 
 
 def protocol_for(policy: Policy, task: Task | None = None) -> Protocol:
-    """The shipped protocol that suits a task, a policy's own by default: `t_test` for waypoints,
-    else `walk`.
+    """Load the shipped protocol that suits a task.
+
+    Args:
+        policy: its own task counts where none is given.
+        task: whose commands decide.
+
+    Returns:
+        The protocol `t_test` for a task with waypoints, else `walk`.
     """
     commands = getattr(task or getattr(policy, "task", None), "commands", None)
     return load_protocol("t_test" if isinstance(commands, WaypointCommands) else "walk")

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     import mujoco
 
     from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.chunk import Divergence
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
@@ -281,36 +280,6 @@ def resolved(
     assert design is not None
     assert task is not None
     return design, task
-
-
-def one_robot(design: RobotDesign | None, several: str) -> RobotDesign | None:
-    """The design of an evaluation of one robot.
-
-    Raises:
-        InputError: a batch; names the function for `several`.
-    """
-    if design is not None and design.batch_shape:
-        raise InputError(
-            design.name, "", None, f"holds a batch of designs; use {several} for all of them"
-        )
-    return design
-
-
-def robots(design: RobotDesign, alterations: Alterations | None) -> int:
-    """Count the robots of a design.
-
-    Returns:
-        The number of robots in the batch; 1 for a single design.
-
-    Raises:
-        InputError: a batch with alterations, which are made for one robot.
-    """
-    count = (design.batch_shape or (1,))[0]
-    if count > 1 and alterations is not None:
-        raise InputError(
-            design.name, "alterations", None, "are made for one robot; evaluate each by itself"
-        )
-    return count
 
 
 def under_protocol(task: Task, protocol: Any) -> Task:

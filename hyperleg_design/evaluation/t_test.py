@@ -10,113 +10,46 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import bearing, course, rollout
 from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
-from hyperleg_design.evaluation.policy import Policy
 from hyperleg_design.evaluation.power import flows, ledger
-from hyperleg_design.evaluation.protocol import TTestProtocol, load_protocol
-from hyperleg_design.evaluation.result import Evaluation, evaluations_of
+from hyperleg_design.evaluation.protocol import TTestProtocol
+from hyperleg_design.evaluation.protocol_run import ProtocolRun
 from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
 from hyperleg_design.simulation.commands import WaypointCommands
-from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.sizing.energy import cost_of_transport
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.simulation.alteration import Alterations
     from hyperleg_design.simulation.tasks import Task
 
 
-def evaluate_t_test(
-    policy: Policy,
-    protocol: TTestProtocol | str = "t_test",
-    *,
-    design: RobotDesign | None = None,
-    task: Task | None = None,
-    threads: int | None = None,
-    alterations: Alterations | None = None,
-) -> Evaluation:
-    """Run the T-test protocol on a policy and one robot: deterministic, without assist.
+def t_test_run(task: Task, protocol: TTestProtocol) -> ProtocolRun:
+    """Say how a task is run and measured under the T-test protocol.
 
     Args:
-        policy: an `OnnxPolicy`, or any callable from observations `(n, k)` to actions `(n, J)`.
-        protocol: a protocol, a shipped name, or a file.
-        design: the robot; an ONNX policy's own by default.
-        task: which gives observations, physics and control; an ONNX policy's own by default.
-        threads: of the simulation; the result does not depend on it.
-        alterations: of the simulated robot, or what makes them for a design, such as
-            `Overlay.alterations`.
-
-    Raises:
-        InputError: another kind of protocol or task, a policy for another layout, or one whose
-        output is not finite.
-    """
-    return evaluate_t_tests(
-        policy,
-        protocol,
-        design=rollout.one_robot(design, "evaluate_t_tests"),
-        task=task,
-        threads=threads,
-        alterations=alterations,
-    )[0]
-
-
-def evaluate_t_tests(
-    policy: Policy,
-    protocol: TTestProtocol | str = "t_test",
-    *,
-    design: RobotDesign | None = None,
-    task: Task | None = None,
-    threads: int | None = None,
-    alterations: Alterations | None = None,
-) -> list[Evaluation]:
-    """`evaluate_t_test` of each design of a batch, side by side; the same numbers to the last
-    digit.
-
-    Args:
-        policy: as in `evaluate_t_test`.
-        protocol: as in `evaluate_t_test`.
-        design: a robot, or a batch of robots with the same joints, motors and pads.
-        task: as in `evaluate_t_test`.
-        threads: as in `evaluate_t_test`.
-        alterations: as in `evaluate_t_test`; of single robots only.
+        task: the policy's task.
+        protocol: the course, and what counts as an arrival on it.
 
     Returns:
-        One a design.
+        The task on the course, and the measures of `measure_t_test`.
 
     Raises:
-        InputError: as `evaluate_t_test`; where designs of the batch cannot stand, its `bad` says
-        which.
+        InputError: a task without waypoints.
     """
-    chosen = load_protocol(protocol) if isinstance(protocol, str) else protocol
-    if not isinstance(chosen, TTestProtocol):
-        raise InputError("t_test", "protocol", chosen.name, "expects a protocol of kind t_test")
-    robot, task = rollout.resolved(policy, design, task)
-    environment = Environment(
-        robot,
-        t_test_task(task, chosen),
-        simulations=int(chosen.trials) * rollout.robots(robot, alterations),
-        seed=int(chosen.seed),
-        threads=threads,
-        alterations=alterations,
-        common_random_numbers=True,
-    )
-    try:
-        trials = rollout.record(policy, environment, chosen.time_limit)
-    finally:
-        environment.close()
-    measured = [measure_t_test(trial, chosen) for trial in trials]
-    return evaluations_of(
-        policy,
-        environment.designs,
-        chosen,
-        trials,
-        [f[0] for f in measured],
-        [f[1] for f in measured],
+    return ProtocolRun(
+        t_test_task(task, protocol), lambda trial: (*measure_t_test(trial, protocol), None)
     )
 
 
 def t_test_task(task: Task, protocol: TTestProtocol) -> Task:
-    """A policy's task on the protocol's course.
+    """Put a policy's task on the protocol's course.
+
+    Args:
+        task: the policy's task, whose commands are waypoints.
+        protocol: gives the course, the distance at which a waypoint counts as reached, the speed
+            cap, and the deviation from the course at which a trial is lost.
+
+    Returns:
+        The task with the course as its only one, from the protocol's starting states.
 
     Raises:
         InputError: a task without waypoints.
@@ -144,11 +77,18 @@ def t_test_task(task: Task, protocol: TTestProtocol) -> Task:
 def measure_t_test(
     trial: Trial, protocol: TTestProtocol
 ) -> tuple[dict[str, float], MotorUse | None]:
-    """Measures of one run and the use of its motors; NaN where a trial cannot give one, all of a
-    diverged trial.
+    """Compute the measures of one run and the use of its motors.
 
-    `time`, `mean_speed` and `waypoint_*` come from arrivals; deviations, peak speed and power from
-    all that was run, so a run that ends in a fall has them up to the fall.
+    `time`, `mean_speed` and `waypoint_*` come from arrivals. Deviations, peak speed and power come
+    from all that was run, so a run that ends in a fall has them up to the fall.
+
+    Args:
+        trial: the record of the run.
+        protocol: under which it was run.
+
+    Returns:
+        The measures by name (see `measures.T_TEST`), and the use of the motors. A measure that the
+        trial cannot give is NaN. A diverged trial gives NaN for all of them, and None for the use.
     """
     waypoints = tuple(f"waypoint_{i}" for i in range(1, len(protocol.order)))
     measures = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,21 +10,18 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import bearing, course, gait, rollout
 from hyperleg_design.evaluation.landmarks import LANDMARKS, landmark_measures
-from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
-from hyperleg_design.evaluation.policy import Policy
-from hyperleg_design.evaluation.power import LEG_MEANS, CyclePower, cycle_power, flows, ledger
-from hyperleg_design.evaluation.protocol import WalkProtocol, load_protocol
-from hyperleg_design.evaluation.result import Evaluation, evaluations_of
+from hyperleg_design.evaluation.motor_use import motor_use
+from hyperleg_design.evaluation.power import LEG_MEANS, cycle_power, flows, ledger
+from hyperleg_design.evaluation.protocol import WalkProtocol
+from hyperleg_design.evaluation.protocol_run import Measured, ProtocolRun
 from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.simulation.commands import VelocityCommands
-from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.sizing.energy import cost_of_transport
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.simulation.alteration import Alterations
+    from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.tasks import Task
 
 NO_NEW_COMMAND = 10_000.0
@@ -34,110 +30,44 @@ STRIDES = 2
 """Whole strides that a steady part needs at least."""
 
 
-def evaluate_walk(
-    policy: Policy,
-    protocol: WalkProtocol | str = "walk",
-    *,
-    design: RobotDesign | None = None,
-    task: Task | None = None,
-    threads: int | None = None,
-    alterations: Alterations | None = None,
-) -> Evaluation:
-    """Run the walk protocol on a policy and one robot: deterministic, without assist.
+def walk_run(task: Task, protocol: WalkProtocol) -> ProtocolRun:
+    """Say how a task is run and measured under the walk protocol.
 
     Args:
-        policy: an `OnnxPolicy`, or any callable from observations `(n, k)` to actions `(n, J)`.
-        protocol: a protocol, a shipped name, or a file.
-        design: the robot; an ONNX policy's own by default.
-        task: which gives observations, physics and control; an ONNX policy's own by default.
-        threads: of the simulation; the result does not depend on it.
-        alterations: of the simulated robot, or what makes them for a design, such as
-            `Overlay.alterations`.
-
-    Raises:
-        InputError: another kind of protocol or task, a policy for another layout, or one whose
-        output is not finite.
-    """
-    return evaluate_walks(
-        policy,
-        protocol,
-        design=rollout.one_robot(design, "evaluate_walks"),
-        task=task,
-        threads=threads,
-        alterations=alterations,
-    )[0]
-
-
-def evaluate_walks(
-    policy: Policy,
-    protocol: WalkProtocol | str = "walk",
-    *,
-    design: RobotDesign | None = None,
-    task: Task | None = None,
-    threads: int | None = None,
-    alterations: Alterations | None = None,
-) -> list[Evaluation]:
-    """`evaluate_walk` of each design of a batch, side by side; the same numbers to the last
-    digit.
-
-    Args:
-        policy: as in `evaluate_walk`.
-        protocol: as in `evaluate_walk`.
-        design: a robot, or a batch of robots with the same joints, motors and pads.
-        task: as in `evaluate_walk`.
-        threads: as in `evaluate_walk`.
-        alterations: as in `evaluate_walk`; of single robots only.
+        task: the policy's task.
+        protocol: gives command, distance and what counts as steady.
 
     Returns:
-        One a design.
+        The task under the protocol's command, the arrival at its distance in any direction, and
+        the measures of `measure_walk`.
 
     Raises:
-        InputError: as `evaluate_walk`; where designs of the batch cannot stand, its `bad` says
-        which.
+        InputError: a task without velocity commands, or `heading_gain` for a policy that never had
+            to turn.
     """
-    chosen = load_protocol(protocol) if isinstance(protocol, str) else protocol
-    if not isinstance(chosen, WalkProtocol):
-        raise InputError("walk", "protocol", chosen.name, "expects a protocol of kind walk")
-    robot, task = rollout.resolved(policy, design, task)
-    environment = Environment(
-        robot,
-        walk_task(task, chosen),
-        simulations=int(chosen.trials) * rollout.robots(robot, alterations),
-        seed=int(chosen.seed),
-        threads=threads,
-        alterations=alterations,
-        common_random_numbers=True,
-    )
-    try:
-        trials = rollout.record(
-            policy,
-            environment,
-            chosen.time_limit,
-            arrived=lambda first, now: (
-                np.linalg.norm(now[:, :2] - first[:, :2], axis=-1) >= chosen.distance
-            ),
-            before_step=_heading_keeper(chosen.heading_gain) if chosen.heading_gain else None,
-        )
-    finally:
-        environment.close()
-    found = [measure_walk(trial, chosen) for trial in trials]
-    return evaluations_of(
-        policy,
-        environment.designs,
-        chosen,
-        trials,
-        [f[0] for f in found],
-        [f[1] for f in found],
-        [f[2] for f in found],
+    return ProtocolRun(
+        walk_task(task, protocol),
+        lambda trial: measure_walk(trial, protocol),
+        arrived=lambda first, now: (
+            np.linalg.norm(now[:, :2] - first[:, :2], axis=-1) >= protocol.distance
+        ),
+        before_step=_heading_keeper(protocol.heading_gain) if protocol.heading_gain else None,
     )
 
 
 def walk_task(task: Task, protocol: WalkProtocol) -> Task:
-    """A policy's task under the protocol's command, starting states and time.
+    """Put a policy's task under the protocol's command, starting states and time.
+
+    Args:
+        task: the policy's task, whose commands are velocities.
+        protocol: gives speed, heading control, starting states and time limit.
+
+    Returns:
+        The task with the one command of the protocol for the whole trial.
 
     Raises:
         InputError: a task without velocity commands, or `heading_gain` for a policy that never had
-        to turn.
+            to turn.
     """
     if not isinstance(task.commands, VelocityCommands):
         raise InputError(
@@ -163,15 +93,17 @@ def walk_task(task: Task, protocol: WalkProtocol) -> Task:
     return rollout.under_protocol(task, protocol).changed(commands=commands)
 
 
-def measure_walk(
-    trial: Trial, protocol: WalkProtocol
-) -> tuple[dict[str, float], MotorUse | None, CyclePower | None]:
-    """Measures of one walk, the use of its motors in steady state, and its right-leg power over the
-    gait cycle.
+def measure_walk(trial: Trial, protocol: WalkProtocol) -> Measured:
+    """Compute the measures of one walk, the use of its motors in steady state, and the power of its
+    right leg over the gait cycle.
 
     A measure that a trial cannot give is NaN: all of a diverged trial; those of the steady state
     where it fell or has fewer than `STRIDES` whole strides; those of heel, ankle or right leg where
     the robot has none.
+
+    Args:
+        trial: the record of the walk.
+        protocol: under which it was run.
 
     Returns:
         Measures by name, see `measures.WALK`; use of the motors and right-leg power, None without a
@@ -195,13 +127,15 @@ def measure_walk(
 
 
 def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tuple[int, int] | None:
-    """First and last sample of the whole strides of the left foot in the steady part; None for a
-    fall or too few strides.
+    """Find the whole strides of the left foot in the steady part of a walk.
 
     Args:
         trial: the walk.
         away: distance from the start at each sample [m], `(t,)`.
-        protocol: which says where the steady part begins and ends.
+        protocol: gives the distances at which the steady part begins and ends.
+
+    Returns:
+        The first and the last sample; None for a fall or with fewer than `STRIDES` whole strides.
     """
     beyond = np.flatnonzero(away >= protocol.steady.begin)
     if trial.outcome == rollout.FELL or not len(beyond):
@@ -212,40 +146,6 @@ def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tup
     if window is None or len(steps.within(*window).foot) < 2 * STRIDES:
         return None
     return window
-
-
-def impact_band(
-    policy: Policy,
-    time_constants: Sequence[float],
-    protocol: WalkProtocol | str = "walk",
-    *,
-    design: RobotDesign | None = None,
-    task: Task | None = None,
-) -> dict[float, Evaluation]:
-    """The walk protocol over a band of contact stiffness, because much of an impact is the
-    stiffness of the sole's contact.
-
-    Args:
-        policy: as in `evaluate_walk`.
-        time_constants: of the contact's spring and damper [s]; stiffness goes with their inverse
-            square.
-        protocol: as in `evaluate_walk`.
-        design: as in `evaluate_walk`.
-        task: as in `evaluate_walk`.
-
-    Returns:
-        Evaluations by time constant.
-    """
-    robot, task = rollout.resolved(policy, design, task)
-    return {
-        value: evaluate_walk(
-            policy,
-            protocol,
-            design=robot.with_values({"contact.time_constant": value}, "impact band"),
-            task=task,
-        )
-        for value in time_constants
-    }
 
 
 _RUN = (

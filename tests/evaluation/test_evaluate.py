@@ -18,7 +18,6 @@ from hyperleg_design.evaluation.protocol import (
     load_protocol,
 )
 from hyperleg_design.evaluation.rollout import SIGNALS
-from hyperleg_design.evaluation.walk import evaluate_walks
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.settings import Randomisation, Start
 from hyperleg_design.simulation.tasks import load_task
@@ -186,10 +185,8 @@ def test_trials_in_several_parts_are_those_of_each_design_alone(design):
 
 def test_a_batch_goes_to_the_function_for_batches(design):
     designs = design.with_values({"toe.mass": np.array([0.2, 0.4])})
-    with pytest.raises(InputError, match="evaluate_walks"):
+    with pytest.raises(InputError, match="use evaluate_designs"):
         evaluate(standing(14), SHORT, design=designs, task=load_task("walk"))
-    with pytest.raises(InputError, match="made for one robot"):
-        evaluate_walks(standing(14), SHORT, design=designs, task=load_task("walk"), alterations=[])
 
 
 def test_designs_that_cannot_stand_are_named(design):

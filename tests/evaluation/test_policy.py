@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import (
     Scripted,
     check_layout,
@@ -17,7 +18,6 @@ from hyperleg_design.evaluation.policy import (
     standing,
 )
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
-from hyperleg_design.evaluation.walk import evaluate_walk
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task
@@ -39,8 +39,8 @@ def test_a_policy_says_what_it_is(make_onnx, design):
 
 def test_a_policy_brings_robot_and_task_to_its_evaluation(make_onnx, design):
     policy = load_policy(make_onnx())
-    found = evaluate_walk(policy, SHORT)
-    same = evaluate_walk(standing(14), SHORT, design=design, task=load_task("walk"))
+    found = evaluate(policy, SHORT)
+    same = evaluate(standing(14), SHORT, design=design, task=load_task("walk"))
     assert found.policy.endswith("/small")
     assert (found.seed, found.steps) == (3, 1000)
     assert np.array_equal(found.values("distance"), same.values("distance"))
@@ -113,7 +113,7 @@ def test_nan_names_step_and_trial(make_onnx):
         InputError,
         match=r"small: action = .* is not finite in policy step 0 \(0\.00 s\) of trial 0",
     ):
-        evaluate_walk(load_policy(make_onnx(bias=float("nan"))), SHORT)
+        evaluate(load_policy(make_onnx(bias=float("nan"))), SHORT)
     actions = np.zeros((3, 14))
 
     def late(observation):

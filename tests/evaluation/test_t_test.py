@@ -9,9 +9,10 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures, rollout
+from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import standing
-from hyperleg_design.evaluation.protocol import TTestProtocol, WalkProtocol
-from hyperleg_design.evaluation.t_test import evaluate_t_test, measure_t_test, t_test_task
+from hyperleg_design.evaluation.protocol import TTestProtocol
+from hyperleg_design.evaluation.t_test import measure_t_test, t_test_task
 from hyperleg_design.simulation.tasks import load_task
 
 SPEED = 2.4
@@ -79,7 +80,7 @@ def test_every_measure_is_described_and_none_besides(run):
 
 
 def test_standing_does_not_reach_a_waypoint(design):
-    found = evaluate_t_test(
+    found = evaluate(
         standing(14),
         PROTOCOL.changed(trials=3, time_limit=15),
         design=design,
@@ -109,7 +110,7 @@ def test_simulation_and_measures_agree_on_arrivals(design):
         order=("A", "B", "C"),
         arrival=0.4,
     )
-    found = evaluate_t_test(standing(14), protocol, design=design, task=load_task("goal"))
+    found = evaluate(standing(14), protocol, design=design, task=load_task("goal"))
     times = found.values("waypoint_1")
     assert np.isfinite(times).any()
     for trial, time in zip(found.trials, times, strict=True):
@@ -119,25 +120,7 @@ def test_simulation_and_measures_agree_on_arrivals(design):
             assert time / 0.02 == pytest.approx(round(time / 0.02))
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (
-            lambda d: evaluate_t_test(standing(14), "walk", design=d, task=load_task("goal")),
-            "kind t_test",
-        ),
-        (
-            lambda d: evaluate_t_test(
-                standing(14), WalkProtocol(), design=d, task=load_task("goal")
-            ),
-            "kind t_test",
-        ),
-        (
-            lambda d: evaluate_t_test(standing(14), design=d, task=load_task("walk")),
-            "expects waypoints",
-        ),
-    ],
-)
-def test_what_does_not_fit_is_refused(design, call, message):
-    with pytest.raises(InputError, match=message):
-        call(design)
+@pytest.mark.parametrize("protocol", ["t_test", PROTOCOL])
+def test_a_task_without_waypoints_is_refused(design, protocol):
+    with pytest.raises(InputError, match="expects waypoints"):
+        evaluate(standing(14), protocol, design=design, task=load_task("walk"))

@@ -11,10 +11,11 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures, rollout
+from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import Scripted, standing
-from hyperleg_design.evaluation.protocol import Steady, TTestProtocol, WalkProtocol
+from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.evaluation.steps import foot_contacts
-from hyperleg_design.evaluation.walk import evaluate_walk, impact_band, measure_walk, walk_task
+from hyperleg_design.evaluation.walk import measure_walk, walk_task
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.environment import SMALLEST_SPLIT, Environment
 from hyperleg_design.simulation.layout import layout_of
@@ -118,7 +119,7 @@ def test_too_few_strides_are_no_steady_state(planned_trial):
 
 def test_standing_falls_and_falls_are_counted(design):
     """The default posture under the joint controller alone does not hold: an honest zero."""
-    found = evaluate_walk(standing(14), SHORT, design=design, task=load_task("walk"))
+    found = evaluate(standing(14), SHORT, design=design, task=load_task("walk"))
     assert found.outcomes == ["fell"] * 4
     assert found.values("fell").tolist() == [1] * 4
     assert np.all(found.values("distance") < 2)
@@ -133,7 +134,7 @@ def test_same_seed_same_bytes_whatever_the_threads(design):
     )  # so there are two chunks
     actions = Scripted(0.3 * np.random.default_rng(0).normal(size=(200, 14)))
     one, two = (
-        evaluate_walk(actions, protocol, design=design, task=load_task("walk"), threads=n)
+        evaluate(actions, protocol, design=design, task=load_task("walk"), threads=n)
         for n in (1, 2)
     )
     for name in measures.WALK:
@@ -143,15 +144,8 @@ def test_same_seed_same_bytes_whatever_the_threads(design):
         for a, b in zip(one.trials, two.trials, strict=True)
         for n in rollout.SIGNALS
     )
-    other = evaluate_walk(actions, protocol.changed(seed=1), design=design, task=load_task("walk"))
+    other = evaluate(actions, protocol.changed(seed=1), design=design, task=load_task("walk"))
     assert not np.array_equal(one.values("distance"), other.values("distance"))
-
-
-def test_the_band_changes_the_contact_only(design):
-    found = impact_band(standing(14), [0.02, 0.05], SHORT, design=design, task=load_task("walk"))
-    stiffness = [e.trials[0].model.geom("floor").solref[0] for e in found.values()]
-    assert stiffness == [0.02, 0.05]
-    assert [e.trials[0].design.name for e in found.values()] == [design.name] * 2
 
 
 def test_the_task_is_the_policys_under_the_protocol():
@@ -165,27 +159,17 @@ def test_the_task_is_the_policys_under_the_protocol():
     ("call", "message"),
     [
         (
-            lambda d: evaluate_walk(standing(14), "t_test", design=d, task=load_task("walk")),
-            "kind walk",
-        ),
-        (
-            lambda d: evaluate_walk(
-                standing(14), TTestProtocol(), design=d, task=load_task("walk")
-            ),
-            "kind walk",
-        ),
-        (
-            lambda d: evaluate_walk(standing(14), SHORT, design=d, task=load_task("goal")),
+            lambda d: evaluate(standing(14), SHORT, design=d, task=load_task("goal")),
             "expects velocity commands",
         ),
-        (lambda d: evaluate_walk(standing(14), SHORT, design=d), "task: is needed"),
-        (lambda d: evaluate_walk(standing(14), SHORT), "design: is needed"),
+        (lambda d: evaluate(standing(14), SHORT, design=d), "task: is needed"),
+        (lambda d: evaluate(standing(14), SHORT), "design: is needed"),
         (
-            lambda d: evaluate_walk(standing(12), SHORT, design=d, task=load_task("walk")),
+            lambda d: evaluate(standing(12), SHORT, design=d, task=load_task("walk")),
             "another robot",
         ),
         (
-            lambda d: evaluate_walk(
+            lambda d: evaluate(
                 standing(14), SHORT.changed(heading_gain=1.0), design=d, task=load_task("walk")
             ),
             "trained without turning",

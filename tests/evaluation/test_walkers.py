@@ -14,7 +14,6 @@ from hyperleg_design.evaluation.measures import WALK
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.power import power_constants
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
-from hyperleg_design.evaluation.walk import evaluate_walk
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.tasks import load_task
 
@@ -46,7 +45,7 @@ class Trot:
 
 @pytest.fixture(scope="module")
 def trotted():
-    return evaluate_walk(
+    return evaluate(
         Trot(), TROT, design=load_robot("mini_cheetah"), task=load_task("walk_any"), threads=1
     )
 
@@ -94,7 +93,7 @@ def test_a_biped_with_a_parallel_ankle_is_measured_like_hyperleg():
     posture = task.changed(
         physics=dataclasses.replace(task.physics, posture_dependent=True),
     )
-    found = evaluate_walk(standing(12), protocol, design=robot, task=posture, threads=1)
+    found = evaluate(standing(12), protocol, design=robot, task=posture, threads=1)
     (trial,) = found.trials
     assert trial.outcome == "timed_out"
     assert trial.foot_load[-1].sum() == pytest.approx(trial.layout.weight, rel=0.2)

@@ -1,21 +1,17 @@
-"""Experiments that tell look-alikes apart: the cheapest one that separates two causes, and what a
-planned motion is worth for it.
+"""Experiments that tell look-alikes apart, and the cheapest one that separates two causes.
 
-What each experiment separates is physics, which each effect states (`Effect.told_apart`); how well
-a planned trajectory of this robot does, Fisher information says (`worth`, from
-`information.distinction` on the trajectory's conditioned log).
+What each experiment separates is physics, which each effect states in `Effect.told_apart`. How well
+a planned trajectory of one robot separates two causes follows from its Fisher information; see
+`excite.design_experiment`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from hyperleg_design.gap.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
 
 Cause = tuple[str, str]
 """Effect and location."""
@@ -153,24 +149,3 @@ def as_mapping(experiment: Experiment, causes: Sequence[Cause]) -> dict[str, Any
         "minutes": experiment.minutes,
         "separates": [" at ".join(c) for c in (first, *told)],
     }
-
-
-def worth(motions: Mapping[str, Signals], pair: tuple[Cause, Cause]) -> dict[str, float]:
-    """How many standard deviations tell two causes of usual size apart on each planned motion.
-
-    Args:
-        motions: conditioned logs of planned trajectories, by name.
-        pair: two causes.
-    """
-    from hyperleg_design.gap.experiments.information import blocks_of, distinction, information
-
-    found = {}
-    for name, signals in motions.items():
-        blocks = blocks_of(signals.subject, _effects(pair))
-        gram = information(signals, blocks)
-        found[name] = distinction(gram, blocks, pair[0], [pair[1]])
-    return found
-
-
-def _effects(pair: Iterable[Cause]) -> list[str]:
-    return sorted({effect for effect, _ in pair})

@@ -1,4 +1,3 @@
-import diagnosed
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
@@ -7,7 +6,6 @@ from hyperleg_design.gap.experiments.experiment import (
     EXPERIMENTS,
     as_mapping,
     separating,
-    worth,
 )
 
 PAIRS = [
@@ -48,10 +46,3 @@ def test_one_effect_at_two_places_asks_for_one_joint_at_a_time():
         "coulomb_friction at knee",
     ]
     assert separating(causes[:1]) is None
-
-
-def test_a_motion_is_worth_more_than_rest(robot_files):
-    moving = diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
-    pair = (("coulomb_friction", "hip"), ("viscous_friction", "hip"))
-    found = worth({"waves": moving}, pair)
-    assert found["waves"] > 1
