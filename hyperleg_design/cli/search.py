@@ -39,12 +39,21 @@ class Search(Printing):
     """Folder of trainings; the shipped policies by default."""
     batch: Annotated[int, AtLeast(1)] = 8
     """Designs evaluated side by side; a killed run repeats at most those."""
+    finalists: Annotated[int, AtLeast(0)] = 3
+    """Number of the best designs that run the protocols again, with new starting states and more
+    trials, before a winner is named; 0 for none."""
+    finetune: Annotated[int, AtLeast(0)] = 0
+    """Policy steps by which each policy is trained on each finalist before its new trials; without,
+    finalists walk with the policies of the search. Needs the learning extra."""
+    workers: Annotated[int, AtLeast(1)] = 2
+    """Number of those trainings that run side by side."""
     scheduler: str = ""
     """Address of a Dask scheduler, such as tcp://host:8786; this process by default."""
 
     def run(self) -> None:
-        """Run the search or what is left of it, and print the best designs."""
-        from hyperleg_design.report.sweep.search_text import search_text
+        """Run the search or what is left of it, evaluate its finalists, and print them."""
+        from hyperleg_design.report.sweep.search_text import final_text, search_text
+        from hyperleg_design.sweep.finalists import check_fine_tuning, run_finalists
         from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.search import found_designs, run_search, search_of
         from hyperleg_design.sweep.space import load_sweep
@@ -54,6 +63,8 @@ class Search(Printing):
         protocols = self.evaluate or sweep.evaluated
         wanted = plan(sweep, protocols, seeds=self.seeds, policies=self.policies)
         search = search_of(sweep, wanted, self.objective, self.constraint)
+        if self.finetune:
+            check_fine_tuning(search)
         with cluster(self.scheduler) as executor:
             study = run_search(
                 search,
@@ -65,7 +76,19 @@ class Search(Printing):
                 executor=executor,
                 progress=not self.json,
             )
+        final = run_finalists(
+            search,
+            study,
+            self.out,
+            count=self.finalists,
+            steps=self.finetune,
+            workers=self.workers,
+            progress=not self.json,
+        )
         if self.json:
-            emit({"trials": len(study.trials), "front": found_designs(search, study)})
-        else:
-            print(search_text(search, study))
+            front = found_designs(search, study)
+            emit({"trials": len(study.trials), "front": front, "final": final.to_mapping()})
+            return
+        print(search_text(search, study))
+        if self.finalists:
+            print(final_text(search, final))

@@ -14,7 +14,7 @@ import json
 import re
 import uuid
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -135,14 +135,14 @@ def search_of(
     Args:
         sweep: the space.
         plan: protocols and policies.
-        objectives: names of measures; the sweep's own by default.
+        objectives: names of measures; the sweep's own by default, those of trials first.
         constraints: texts such as `walk.fell<=0.1`; `usual_constraints` by default.
 
     Raises:
         InputError: no objective, or a name that is no measure at hand.
     """
     protocols = [kind_of(p) for p in plan.protocols]
-    names = objectives or (*sweep.objectives, *sweep.trial_objectives)
+    names = objectives or (*sweep.trial_objectives, *sweep.objectives)
     chosen = tuple(registry.resolve(n, protocols, "--objective").name for n in names)
     if not chosen or len(set(chosen)) < len(chosen):
         raise InputError("search", "objectives", list(names), "expects different measures")
@@ -352,8 +352,7 @@ def _tell(
 ) -> None:
     import optuna
 
-    plain = {k: _plain(v) for k, v in row.items()}
-    trial.set_user_attr(ROW, plain)
+    trial.set_user_attr(ROW, plain_values(row))
     values = [float(row.get(name, np.nan)) for name in search.objectives]
     for constraint in search.constraints:
         violation = constraint.violation(float(row.get(constraint.name, np.nan)))
@@ -367,6 +366,11 @@ def _tell(
         study.tell(trial, state=optuna.trial.TrialState.FAIL)
     else:
         study.tell(trial, values)
+
+
+def plain_values(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row as JSON takes it: plain values, None for numbers that are not finite."""
+    return {str(name): _plain(value) for name, value in row.items()}
 
 
 def _plain(value: Any) -> Any:

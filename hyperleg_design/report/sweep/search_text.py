@@ -6,6 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from hyperleg_design.report.text import table
+from hyperleg_design.sweep.finalists import Final, Row, holds_constraints, value_of
 from hyperleg_design.sweep.search import REASON, Search, found_designs
 from hyperleg_design.sweep.trial_table import build_command
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def search_text(search: Search, study: optuna.Study) -> str:
-    """The front as a table, with what failed and how to build the first design."""
+    """The front as a table, with what failed."""
     states = Counter(trial.state.name.lower() for trial in study.trials)
     lines = [", ".join(f"{count} {state}" for state, count in states.items())]
     reasons = Counter(t.user_attrs[REASON] for t in study.trials if REASON in t.user_attrs)
@@ -23,21 +24,73 @@ def search_text(search: Search, study: optuna.Study) -> str:
     if not rows:
         return "\n".join([*lines, "no design holds all constraints"])
     axes = [axis.name for axis in search.sweep.axes]
-    kinds = [f"{protocol}.policy" for protocol in search.protocols]
     cells = [
         [
             row["sample"],
             row["variant"],
             *(row[name] for name in (*axes, *search.objectives)),
-            ", ".join(dict.fromkeys(str(row[k]) for k in kinds if row.get(k))),
+            _policy(search, row),
         ]
         for row in rows
     ]
     heads = ["design", "variant", *axes, *search.objectives, "policy is"]
-    note = (
-        "candidates: a zero-shot policy was trained on another design; train one for each before "
-        "you name a winner"
-    )
-    return "\n".join(
-        [*lines, table(heads, cells), note, f"build: {build_command(search.sweep, rows[0])}"]
-    )
+    note = "candidates, in the order of the first objective; their values are the best of many"
+    return "\n".join([*lines, table(heads, cells), note])
+
+
+def final_text(search: Search, final: Final) -> str:
+    """The finalists with the values that decide, the winner, and how to build it."""
+    if not final.finalists:
+        return "no finalist: no design holds all constraints"
+    cells = []
+    for finalist in final.finalists:
+        stages = [("search", finalist.searched), ("new trials", finalist.before)]
+        stages += [] if finalist.after is None else [("fine-tuned", finalist.after)]
+        for name, row in stages:
+            values = [_with_interval(row, objective) for objective in search.objectives]
+            holds = "yes" if holds_constraints(search, row) else "no"
+            cells.append([finalist.number, name, *values, holds, _policy(search, row)])
+    heads = ["design", "values of", *search.objectives, "holds constraints", "policy is"]
+    lines = [table(heads, cells)]
+    winner = final.winner()
+    if winner is None:
+        return "\n".join([*lines, "no winner: no finalist holds all constraints in its new trials"])
+    measured = "fine-tuned" if final.steps else "new trials"
+    if not search.plan.protocols:
+        lines.append(f"winner: design {winner.number}")
+    else:
+        lines.append(f"winner: design {winner.number}, by the values of {measured}")
+    if len(final.winners) > 1:
+        others = ", ".join(str(number) for number in final.winners[1:])
+        lines.append(
+            f"it is best in {search.objectives[0]}; not beaten in all objectives: {others}"
+        )
+    lines += [
+        f"its interval of {name} overlaps that of design {other.number}: they may be equal in it"
+        for name in search.objectives
+        for other in final.finalists
+        if other is not winner and _overlap(winner.decisive, other.decisive, name)
+    ]
+    if search.plan.protocols and not final.steps:
+        lines.append("its policies were trained on other designs; --finetune trains them on it")
+    return "\n".join([*lines, f"build: {build_command(search.sweep, winner.decisive)}"])
+
+
+def _policy(search: Search, row: Row) -> str:
+    """What the policies of a row's trials are to its design: specialist, conditioned, zero-shot."""
+    kinds = [row.get(f"{protocol}.policy") for protocol in search.protocols]
+    return ", ".join(dict.fromkeys(str(kind) for kind in kinds if kind))
+
+
+def _overlap(first: Row, second: Row, name: str) -> bool:
+    """Whether the intervals of a measure overlap; False where it has none."""
+    ends = [
+        (value_of(row, f"{name}.low"), value_of(row, f"{name}.high")) for row in (first, second)
+    ]
+    return ends[0][0] <= ends[1][1] and ends[1][0] <= ends[0][1]
+
+
+def _with_interval(row: Row, name: str) -> str:
+    """A measure, with its interval where it has one."""
+    value, low, high = (value_of(row, f"{name}{end}") for end in ("", ".low", ".high"))
+    return f"{value:.4g}" + (f" ({low:.4g} to {high:.4g})" if low == low and high == high else "")
