@@ -48,7 +48,14 @@ class InputError(HyperlegError):
 
 
 def shown(value: object) -> str:
-    """A value as messages show it: one line, short however large or nested the value is."""
+    """Write a value as messages show it: on one line, and short however large or nested it is.
+
+    Args:
+        value: any value.
+
+    Returns:
+        At most 120 characters.
+    """
     if hasattr(value, "tolist"):  # numpy's, as Python's
         value = value.tolist()
     try:
@@ -59,8 +66,14 @@ def shown(value: object) -> str:
 
 
 def in_short(error: Exception, width: int = 100) -> str:
-    """What a library says of an error: one line, cut where it is longer than `width` characters,
-    between words unless one is very long.
+    """Shorten the message of another library to one line.
+
+    Args:
+        error: the exception.
+        width: most characters; the text is cut between words unless one is very long.
+
+    Returns:
+        The text.
     """
     text = " ".join(str(error).split())
     cut = textwrap.shorten(text, width, placeholder=" ...")

@@ -13,7 +13,14 @@ PACKAGES = ("hyperleg-design", "numpy", "mujoco", "pin", "cvxpy")
 
 
 def versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
-    """Installed version of each package; `missing` where it is not installed."""
+    """List the versions of packages.
+
+    Args:
+        packages: their names.
+
+    Returns:
+        The installed version of each; `missing` where it is not installed.
+    """
     installed = {}
     for name in packages:
         try:
@@ -25,8 +32,13 @@ def versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
 
 @cache
 def git_commit(folder: Path | None = None) -> str:
-    """Commit of the checkout that holds the content folders, `-dirty` with local changes; empty
-    outside a checkout.
+    """Find the commit of the checkout that holds the content folders.
+
+    Args:
+        folder: of the checkout; that of the content by default.
+
+    Returns:
+        The short hash, with `-dirty` for local changes; empty outside of a checkout.
     """
     folder = folder or resources.home()
     if not (folder / ".git").exists():

@@ -16,7 +16,11 @@ CONTENT = ("descriptions", "motors", "sweeps", "sim")
 
 
 def home() -> Path:
-    """Folder that holds the content folders of `CONTENT`."""
+    """Find the folder that holds the content folders of `CONTENT`.
+
+    Raises:
+        InputError: `HYPERLEG_HOME` is set and names no such folder.
+    """
     chosen = os.environ.get("HYPERLEG_HOME")
     if chosen:
         if not (Path(chosen) / "descriptions").is_dir():
@@ -35,20 +39,33 @@ def _own_home() -> Path:
 
 
 def content_folder(kind: str) -> Path:
-    """Content folder of a kind named in `CONTENT`."""
+    """Find a content folder.
+
+    Args:
+        kind: one of `CONTENT`.
+
+    Returns:
+        Its path.
+
+    Raises:
+        ValueError: another kind.
+    """
     if kind not in CONTENT:
         raise ValueError(f"no content folder {kind!r}; there are {', '.join(CONTENT)}")
     return home() / kind
 
 
 def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path:
-    """Path of a content file given by a user: a path as it stands, or the bare name of a shipped
+    """Find a content file that a user names: a path as it stands, or the bare name of a shipped
     file.
 
     Args:
         kind: content folder, one of `CONTENT`.
         name: path to a file, or a name such as `hyperleg`.
         suffix: ending of shipped files.
+
+    Returns:
+        The path of the file.
 
     Raises:
         InputError: neither exists; the message lists what is shipped.
@@ -68,17 +85,39 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path
 
 
 def names(kind: str, suffix: str = ".yaml") -> list[str]:
-    """Names of the shipped files of a kind, sorted."""
+    """List the shipped files of a kind.
+
+    Args:
+        kind: content folder, one of `CONTENT`.
+        suffix: ending of the files.
+
+    Returns:
+        Their names without the ending, sorted.
+    """
     return sorted(p.name[: -len(suffix)] for p in content_folder(kind).glob(f"*{suffix}"))
 
 
 def sim_names(what: str) -> list[str]:
-    """Names of the shipped files `sim/WHAT_NAME.yaml`, such as tasks, presets and protocols."""
+    """List the shipped files `sim/WHAT_NAME.yaml`.
+
+    Args:
+        what: kind of file, such as `task`, `preset` or `protocol`.
+
+    Returns:
+        The names, without kind and ending.
+    """
     return [n.removeprefix(f"{what}_") for n in names("sim") if n.startswith(f"{what}_")]
 
 
 def find_sim(what: str, name: str | os.PathLike[str]) -> Path:
-    """Path of a task, preset or protocol: the name of a shipped one, or a file.
+    """Find the file of a task, preset or protocol.
+
+    Args:
+        what: kind of file, such as `task`.
+        name: of a shipped one, or a path.
+
+    Returns:
+        The path of the file.
 
     Raises:
         InputError: neither; the message lists what is shipped.

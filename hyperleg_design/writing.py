@@ -22,6 +22,13 @@ MADE = "made by hyperleg; these files are replaced when it is written again:"
 def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
     """Write a file atomically: a temporary file beside it, flushed, then renamed over it.
 
+    Args:
+        path: of the file.
+        content: its bytes.
+
+    Returns:
+        The path.
+
     Raises:
         OutputError: the disk is full or the place cannot be written; the old file, if any, is
         untouched.
@@ -52,12 +59,27 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> Path:
-    """Write text as UTF-8; otherwise as `write_bytes`."""
+    """Write text as UTF-8, atomically as `write_bytes` does.
+
+    Args:
+        path: of the file.
+        text: its content.
+
+    Returns:
+        The path.
+    """
     return write_bytes(path, text.encode())
 
 
 def write_json(path: str | os.PathLike[str], content: object) -> Path:
-    """Write a value as indented JSON; otherwise as `write_text`.
+    """Write a value as indented JSON, atomically as `write_bytes` does.
+
+    Args:
+        path: of the file.
+        content: what `json.dumps` can write.
+
+    Returns:
+        The path.
 
     Raises:
         OutputError: as `write_bytes`, or the content holds a number that is not finite, which JSON
@@ -73,7 +95,13 @@ def write_json(path: str | os.PathLike[str], content: object) -> Path:
 
 
 def check_output_folder(folder: str | os.PathLike[str]) -> Path:
-    """A folder that may be written: missing, empty, or one of ours (it holds `MARKER`).
+    """Check that a folder may be written: it is missing, empty, or one of ours (it holds `MARKER`).
+
+    Args:
+        folder: to be written.
+
+    Returns:
+        Its absolute path.
 
     Raises:
         OutputError: it is a file, or a folder with somebody else's content.
@@ -105,6 +133,9 @@ def output_folder(folder: str | os.PathLike[str], keep: Sequence[str] = ()) -> I
     Args:
         folder: to be written.
         keep: patterns of files of ours that stay when they are not written anew.
+
+    Yields:
+        The temporary folder to write to.
 
     Raises:
         OutputError: the target is not ours, or cannot be written.

@@ -20,7 +20,14 @@ class AtLeast:
     """Whether the value must be larger than `low`."""
 
     def admits(self, value: float) -> bool:
-        """Whether a finite value satisfies the bound."""
+        """Decide whether a value satisfies the bound.
+
+        Args:
+            value: the option's value.
+
+        Returns:
+            True for a finite value on or above the bound (above it, where the bound is exclusive).
+        """
         return math.isfinite(value) and (value > self.low if self.exclusive else value >= self.low)
 
     @property
@@ -30,7 +37,14 @@ class AtLeast:
 
 
 def option(field: str) -> str:
-    """A field's name as a user types it, such as `--only-make`."""
+    """Write a field's name as a user types it.
+
+    Args:
+        field: name of the field, such as `only_make`.
+
+    Returns:
+        The option, such as `--only-make`.
+    """
     return "--" + field.replace("_", "-")
 
 

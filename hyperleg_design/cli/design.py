@@ -46,7 +46,7 @@ class List(Printing):
     parameters, or all (without measures and parameters)."""
 
     def run(self) -> None:
-        """Print the list."""
+        """Print what is shipped, as a list or as JSON."""
         from hyperleg_design.report import listing
 
         entries = listing.listing(self.kind)
@@ -95,7 +95,11 @@ class Check(Printing):
     """Files, or names of shipped designs."""
 
     def run(self) -> None:
-        """Check the files, print what is wrong, and exit with 2 where there is an error."""
+        """Check the files, print what is wrong, and exit with 2 where there is an error.
+
+        Raises:
+            SystemExit: with code 2, if a file has an error.
+        """
         from hyperleg_design.report import checking
 
         findings = checking.check_paths(self.paths)
@@ -299,7 +303,7 @@ class Version(Printing):
     """Versions of this package and of what it builds on."""
 
     def run(self) -> None:
-        """Print the versions."""
+        """Print the versions of this package and of the libraries that it builds on."""
         from importlib.metadata import version
 
         about = {"hyperleg-design": __version__, "content": str(resources.home())}

@@ -30,7 +30,11 @@ class Check(Printing):
     """Folder to write check.json and the logs as Parquet to."""
 
     def run(self) -> None:
-        """Check the logs and print what they can show."""
+        """Check the logs and print what they can show.
+
+        Raises:
+            SystemExit: with code 2, if a log cannot be used.
+        """
         from hyperleg_design.gap.checks.checking import check_sources
         from hyperleg_design.report.gap.text import checks_text
 

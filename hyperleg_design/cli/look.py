@@ -41,7 +41,11 @@ class View(Printing):
     """Build the page, and end instead of serving it."""
 
     def run(self) -> None:
-        """Serve the page."""
+        """Build the page and serve it until the user stops it.
+
+        Raises:
+            InputError: both a recording and a policy, or a port or design that cannot be used.
+        """
         from hyperleg_design.report.viewer import viewer
         from hyperleg_design.report.viewer.walk import walk_of_file, walk_of_policy
 
@@ -111,7 +115,11 @@ class Video(Printing):
     """Frames a second."""
 
     def run(self) -> None:
-        """Simulate where needed, draw, and write."""
+        """Simulate where needed, draw the frames, and write the video.
+
+        Raises:
+            InputError: options that do not fit the source.
+        """
         from hyperleg_design.evaluation.protocol import TTestProtocol
         from hyperleg_design.report.pictures.motion import t_test_motion, walk_motion
         from hyperleg_design.report.pictures.replay import replay

@@ -22,7 +22,11 @@ class Printing:
 
 
 def emit(content: object) -> None:
-    """Print as JSON; a dataclass becomes a mapping of its fields."""
+    """Print a value as JSON; a dataclass becomes a mapping of its fields.
+
+    Args:
+        content: what is printed.
+    """
     print(json_module.dumps(content, indent=2, allow_nan=False, default=_plain))
 
 
@@ -36,7 +40,14 @@ def _plain(value: Any) -> Any:
 
 
 def require(*modules: str) -> None:
-    """Raise one clear error where the learning extra is not installed."""
+    """Check that packages of the extra `learning` are installed.
+
+    Args:
+        modules: names of the modules.
+
+    Raises:
+        InputError: one is missing; states how to install it.
+    """
     import importlib.util
 
     missing = [m for m in modules if importlib.util.find_spec(m) is None]

@@ -48,7 +48,13 @@ class Train:
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
 
     def run(self) -> None:
-        """Replace this process by the training."""
+        """Replace this process by the training.
+
+        Raises:
+            InputError: torch or rsl_rl is missing, or the training cannot begin.
+            SystemExit: with the exit code of a training with an overlay, which runs in this
+                process.
+        """
         from hyperleg_design.learning import launch
 
         require("torch", "rsl_rl")
@@ -100,7 +106,11 @@ class Campaign(Printing):
     """Folder to pack into: policies, learning curves and what was trained."""
 
     def run(self) -> None:
-        """Run it, print its state, or pack it."""
+        """Run the campaign, print its state, or pack its policies.
+
+        Raises:
+            SystemExit: with code 3, if the campaign was stopped before it was done.
+        """
         from hyperleg_design.evaluation.shipped import pack, pack_text
         from hyperleg_design.learning.campaign import (
             campaign_status,
@@ -161,7 +171,11 @@ class Evaluate(Printing):
     """Folder to write all trials to as a LeRobot dataset (v3.0); none by default."""
 
     def run(self) -> None:
-        """Evaluate the policies, write the tables, and print the means."""
+        """Evaluate the policies, write the tables, and print the means.
+
+        Raises:
+            InputError: no policy, the same policy twice, or options that do not fit together.
+        """
         from hyperleg_design.evaluation.evaluate import evaluate_many
         from hyperleg_design.evaluation.result import swapped, write_results
         from hyperleg_design.evaluation.shipped import check_different, find_policy
@@ -254,7 +268,7 @@ class Robustness(Printing):
     """Processes side by side."""
 
     def run(self) -> None:
-        """Evaluate and draw."""
+        """Evaluate the policies under changed conditions, and write the page with its curves."""
         from hyperleg_design.report.walks.robustness_page import run_robustness
 
         points = run_robustness(

@@ -37,7 +37,11 @@ class Validate(Printing):
     """List the cases instead."""
 
     def run(self) -> None:
-        """Run the benchmark or what is left of it, and print its table."""
+        """Run the benchmark or what is left of it, and print its table.
+
+        Raises:
+            InputError: no such folder of data, or an unknown case.
+        """
         from hyperleg_design.validation.benchmark.runner import chosen_cases, run_benchmark
         from hyperleg_design.validation.real.cases import data_folder
 

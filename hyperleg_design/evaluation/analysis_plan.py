@@ -100,7 +100,14 @@ def load_plan(name: str | Path = "analysis_plan") -> AnalysisPlan:
 
 
 def plan_from_mapping(data: Mapping[str, Any], where: str) -> AnalysisPlan:
-    """A plan from nested mappings as YAML gives them.
+    """Build an analysis plan from nested mappings, as YAML gives them.
+
+    Args:
+        data: fields of the plan by name.
+        where: name of the file, for error messages.
+
+    Returns:
+        The validated plan.
 
     Raises:
         InputError: unknown or missing field, a measure that the protocol does not have, an outcome

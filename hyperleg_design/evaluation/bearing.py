@@ -13,23 +13,40 @@ VIBRATION = 15.0
 
 
 def headings(orientation: Any) -> np.ndarray:
-    """Cosine and sine of the yaw of quaternions w x y z, `(..., 4)` -> `(..., 2)`."""
+    """Compute the directions in which bodies point on the floor.
+
+    Args:
+        orientation: quaternions w x y z, world from body, `(..., 4)`.
+
+    Returns:
+        Cosine and sine of the yaw, `(..., 2)`.
+    """
     w, x, y, z = np.moveaxis(np.asarray(orientation, float), -1, 0)
     forward = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z)], -1)
     return np.asarray(forward / np.maximum(np.linalg.norm(forward, axis=-1, keepdims=True), 1e-9))
 
 
 def tilt(orientation: Any) -> np.ndarray:
-    """Angle between the body's and the world's vertical [rad], quaternions w x y z `(..., 4)` ->
-    `(...)`.
+    """Compute the angle between a body's vertical axis and the world's.
+
+    Args:
+        orientation: quaternions w x y z, world from body, `(..., 4)`.
+
+    Returns:
+        The angle [rad], `(...)`.
     """
     _, x, y, _ = np.moveaxis(np.asarray(orientation, float), -1, 0)
     return np.arccos(np.clip(1 - 2 * (x * x + y * y), -1.0, 1.0))
 
 
 def turned(heading: Any) -> float:
-    """Angle turned between the first and the last heading, counterclockwise, whole turns counted
-    [rad], `(t, 2)`.
+    """Compute the angle between the first and the last heading, whole turns included.
+
+    Args:
+        heading: cosine and sine of the yaw at each sample, `(t, 2)`.
+
+    Returns:
+        The angle, counterclockwise positive [rad].
     """
     heading = np.asarray(heading, float)
     angle = np.unwrap(np.arctan2(heading[:, 1], heading[:, 0]))
@@ -86,7 +103,16 @@ def stop_measures(
 
 
 def vibration(joint_velocity: Any, time_step: float, above: float = VIBRATION) -> np.ndarray:
-    """Root mean square of the joints' velocities above a frequency [rad/s], `(t, J)` -> `(J,)`."""
+    """Compute how much the joints vibrate above a frequency.
+
+    Args:
+        joint_velocity: joint velocities at even time steps [rad/s], `(t, J)`.
+        time_step: time between samples [s].
+        above: cut-off of the high-pass filter [Hz].
+
+    Returns:
+        Root mean square of the filtered velocities [rad/s], `(J,)`.
+    """
     from scipy.signal import butter, sosfiltfilt
 
     velocity = np.asarray(joint_velocity, float)

@@ -74,7 +74,14 @@ class Finding:
 
 
 def walk_findings(evaluations: Sequence[Evaluation]) -> list[Finding]:
-    """Each demand against the mean over all walks of some evaluations under one protocol."""
+    """Compare the mean over all walks of some evaluations with each demand on a believable walk.
+
+    Args:
+        evaluations: of walks, all under one protocol, whose commanded speed is a demand, too.
+
+    Returns:
+        One finding for each demand.
+    """
     speed = evaluations[0].protocol.speed
     near = Demand(
         "steady_speed",

@@ -26,15 +26,28 @@ def segment_distances(points: Any, course: Any) -> np.ndarray:
 
 
 def course_deviation(points: Any, course: Any) -> np.ndarray:
-    """Distance of points from the nearest point of any leg of the course [m], `(..., 2)` ->
-    `(...)`.
+    """Compute the distance of points from the nearest leg of a course.
+
+    Args:
+        points: `(..., 2)` [m].
+        course: waypoints of the course in order, `(k, 2)` [m].
+
+    Returns:
+        The distances, `(...)` [m].
     """
     return np.asarray(segment_distances(points, course).min(-1))
 
 
 def leg_deviation(points: Any, course: Any, leg: Any) -> np.ndarray:
-    """Distance of points from the leg that is being run [m], `(t, 2)` and indices `(t,)` ->
-    `(t,)`.
+    """Compute the distance of points from the leg of a course that is being run.
+
+    Args:
+        points: positions at each sample, `(t, 2)` [m].
+        course: waypoints of the course in order, `(k, 2)` [m].
+        leg: index of the leg being run at each sample, `(t,)`.
+
+    Returns:
+        The distances, `(t,)` [m].
     """
     return np.asarray(
         np.take_along_axis(segment_distances(points, course), np.asarray(leg, int)[:, None], 1)[
@@ -44,12 +57,26 @@ def leg_deviation(points: Any, course: Any, leg: Any) -> np.ndarray:
 
 
 def course_length(course: Any) -> float:
-    """Sum of the legs' lengths [m]."""
+    """Compute the length of a course.
+
+    Args:
+        course: waypoints in order, `(k, 2)` [m].
+
+    Returns:
+        Sum of the lengths of the legs [m].
+    """
     return path_length(course)
 
 
 def path_length(points: Any) -> float:
-    """Length of the way through points [m], `(t, 2)`."""
+    """Compute the length of the straight lines through points.
+
+    Args:
+        points: in order, `(t, 2)` [m].
+
+    Returns:
+        The length [m].
+    """
     return float(np.linalg.norm(np.diff(np.asarray(points, float), axis=0), axis=-1).sum())
 
 
@@ -80,8 +107,15 @@ def arrivals(points: Any, course: Any, radius: float) -> np.ndarray:
 
 
 def legs_run(reached: Any, samples: int) -> np.ndarray:
-    """Leg being run at each sample, from the samples at which waypoints were reached (-1: never),
-    `(samples,)`.
+    """Find the leg that is being run at each sample.
+
+    Args:
+        reached: samples at which the waypoints after the start were reached, `(waypoints,)`; -1 for
+            never.
+        samples: number of samples.
+
+    Returns:
+        Index of the leg at each sample, `(samples,)`.
     """
     reached = np.asarray(reached, int)
     changes = reached[:-1][reached[:-1] >= 0]
@@ -89,13 +123,15 @@ def legs_run(reached: Any, samples: int) -> np.ndarray:
 
 
 def crossing_time(distance: Any, length: float, time_step: float) -> float:
-    """Time at which a distance first reaches a length, linear between samples [s]; NaN where it
-    never does.
+    """Compute the time at which a distance first reaches a length, linearly between samples.
 
     Args:
         distance: of each sample, `(t,)` [m].
         length: [m]
         time_step: between samples [s].
+
+    Returns:
+        The time [s]; NaN where the length is never reached.
     """
     distance = np.asarray(distance, float)
     beyond = np.flatnonzero(distance >= length)
@@ -108,12 +144,15 @@ def crossing_time(distance: Any, length: float, time_step: float) -> float:
 
 
 def in_start_frame(position: Any, start: Any, heading: Any) -> np.ndarray:
-    """World points in the frame of the start, x ahead, y to the left [m].
+    """Transform points of the world into the frame of the start, with x ahead and y to the left.
 
     Args:
         position: `(..., 2)` [m].
         start: origin, `(2,)` [m].
         heading: cosine and sine of the yaw at the start, `(2,)`.
+
+    Returns:
+        The points in the frame of the start, `(..., 2)` [m].
     """
     offset = np.asarray(position, float) - np.asarray(start, float)
     cosine, sine = np.asarray(heading, float)

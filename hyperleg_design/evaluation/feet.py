@@ -11,8 +11,14 @@ if TYPE_CHECKING:
 
 
 def foot_places(trial: Trial, samples: np.ndarray) -> np.ndarray:
-    """Middle of each foot's sole pads on the floor at some samples, `(k,)` -> `(k, F feet, 2)`
-    [m].
+    """Compute where the feet stand on the floor at some samples of a trial.
+
+    Args:
+        trial: the recorded trial.
+        samples: indices of the samples, `(k,)`.
+
+    Returns:
+        Mean position of the sole pads of each of the F feet in the world, x and y, `(k, F, 2)` [m].
     """
     import mujoco
 

@@ -46,14 +46,27 @@ class FootPad:
         return self.modulus * self.area / self.thickness
 
     def damping(self, mass: float) -> float:
-        """Damping with a given mass on the pad [Ns/m]."""
+        """Compute the damping of the pad under a mass.
+
+        Args:
+            mass: that the pad carries [kg].
+
+        Returns:
+            The damping [Ns/m].
+        """
         return float(2 * self.damping_ratio * np.sqrt(self.stiffness * mass))
 
     def time_constant(self, mass: float) -> float:
-        """Time constant of the contact that stands for it with a mass behind it [s].
+        """Compute the time constant of MuJoCo's contact that stands for this pad.
+
+        Args:
+            mass: that the pad carries [kg].
+
+        Returns:
+            The time constant [s].
 
         Raises:
-            InputError: no mass.
+            InputError: a mass that is not positive.
         """
         if not mass > 0:
             raise InputError("foot pad", "mass", mass, "expects a positive mass [kg]")
@@ -61,12 +74,15 @@ class FootPad:
 
 
 def pad_of_contact(design: Design, mass: float, time_constant: float | None = None) -> FootPad:
-    """The foot pad that a design's contact settings stand for.
+    """Compute the foot pad that a design's contact settings stand for.
 
     Args:
-        design: which gives pads, damping ratio and time constant.
+        design: gives pads, damping ratio and time constant.
         mass: behind the contact [kg].
         time_constant: instead of the design's [s].
+
+    Returns:
+        The pad with its elastic modulus, thickness, area and damping ratio.
 
     Raises:
         InputError: no mass.
@@ -82,7 +98,14 @@ def pad_of_contact(design: Design, mass: float, time_constant: float | None = No
 
 
 def heel_area(design: Design) -> float:
-    """Circles of the sole pads behind the ankle of one foot [m^2]."""
+    """Compute the area of the sole pads behind the ankle of one foot.
+
+    Args:
+        design: gives the pads, each a circle.
+
+    Returns:
+        The area [m^2].
+    """
     layout = layout_of(design)
     count = int(np.sum((layout.pad_foot == 0) & (layout.pad_position[:, 0] < 0)))
     return float(count * np.pi * design.contact.pad_radius**2)

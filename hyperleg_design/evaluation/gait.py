@@ -40,7 +40,15 @@ class Steps:
         return len(self.touchdown)
 
     def within(self, first: int, last: int) -> Steps:
-        """Those with `first <= touchdown < last`."""
+        """Select the steps whose touchdown lies between two samples.
+
+        Args:
+            first: first sample that counts.
+            last: first sample that does not count any more.
+
+        Returns:
+            The steps with `first <= touchdown < last`.
+        """
         kept = (self.touchdown >= first) & (self.touchdown < last)
         return Steps(**{name: values[kept] for name, values in vars(self).items()})
 
@@ -81,13 +89,16 @@ def _fill_short(values: np.ndarray, kind: bool, shortest: int) -> None:
 
 
 def find_steps(feet: np.ndarray, heel: np.ndarray, forefoot: np.ndarray, time_step: float) -> Steps:
-    """Steps from the contacts of whole feet, heels and forefeet.
+    """Find the steps in the contacts of whole feet, heels and forefeet.
 
     Args:
         feet: whether each foot stands, `(t, F)`.
         heel: whether its heel is loaded, `(t, F)`.
         forefoot: whether the rest of it is, `(t, F)`.
         time_step: between samples [s].
+
+    Returns:
+        The steps of all feet, in the order of their touchdown.
     """
     rows = []
     for foot in range(feet.shape[1]):
@@ -110,8 +121,16 @@ def find_steps(feet: np.ndarray, heel: np.ndarray, forefoot: np.ndarray, time_st
 
 
 def whole_strides(steps: Steps, first: int, last: int, foot: int = 0) -> tuple[int, int] | None:
-    """The longest stretch of whole strides of one foot between two samples, as `(first, last)`;
-    None where there is none.
+    """Find the longest stretch of whole strides of one foot between two samples.
+
+    Args:
+        steps: steps of all feet.
+        first: first sample that counts.
+        last: last sample that counts.
+        foot: index of the foot.
+
+    Returns:
+        Samples of the first and the last touchdown; None without two touchdowns.
     """
     downs = steps.touchdown[
         (steps.foot == foot) & (steps.touchdown >= first) & (steps.touchdown <= last)
@@ -120,14 +139,28 @@ def whole_strides(steps: Steps, first: int, last: int, foot: int = 0) -> tuple[i
 
 
 def strides(steps: Steps, foot: int) -> tuple[np.ndarray, np.ndarray]:
-    """First sample and sample after the last of each stride of a foot, `(k,)` each."""
+    """List the strides of one foot.
+
+    Args:
+        steps: steps of all feet.
+        foot: index of the foot.
+
+    Returns:
+        The first sample of each stride, and the sample after its last, `(k,)` each.
+    """
     downs = steps.touchdown[steps.foot == foot]
     return downs[:-1], downs[1:]
 
 
 def cadence(steps: Steps, time_step: float) -> float:
-    """Steps over time, between the first and the last touchdown [1/s]; NaN where there is no time
-    between.
+    """Compute the number of steps over time, between the first and the last touchdown.
+
+    Args:
+        steps: steps of all feet.
+        time_step: time between samples [s].
+
+    Returns:
+        The cadence [1/s]; NaN where there is no time between the touchdowns.
     """
     if len(steps) < 2 or steps.touchdown[-1] == steps.touchdown[0]:
         return np.nan
@@ -135,15 +168,26 @@ def cadence(steps: Steps, time_step: float) -> float:
 
 
 def alternation(steps: Steps) -> float:
-    """Share of steps made by the other foot than the one before [-]; 1 for walking, 0 for hopping
-    on one leg.
+    """Compute the share of steps that another foot makes than the one before.
+
+    Args:
+        steps: steps of all feet.
+
+    Returns:
+        The share [-]: 1 for walking, 0 for hopping on one leg, NaN with fewer than two steps.
     """
     return float(np.mean(np.diff(steps.foot) != 0)) if len(steps) > 1 else np.nan
 
 
 def event_shares(steps: Steps) -> dict[str, float]:
-    """Means over whole strides of all feet [-]: `duty_factor` (toe-off over stride) and `heel_off`
-    (heel-off over stride).
+    """Compute when in a stride the heel and the toe leave the floor.
+
+    Args:
+        steps: steps of all feet.
+
+    Returns:
+        Means over the whole strides of all feet [-]: `duty_factor`, toe-off over stride, and
+        `heel_off`, heel-off over stride. NaN without a whole stride.
     """
     duty, heel = [], []
     for foot in np.unique(steps.foot):
@@ -159,8 +203,13 @@ def event_shares(steps: Steps) -> dict[str, float]:
 
 
 def support_shares(feet: np.ndarray) -> dict[str, float]:
-    """Shares of time [-] with two feet, one foot and none on the floor, from `(t, F)`:
-    `double_support`, `single_support`, `flight`.
+    """Compute the shares of time with two feet, one foot and no foot on the floor.
+
+    Args:
+        feet: whether each foot stands at each sample, `(t, F)`.
+
+    Returns:
+        `double_support`, `single_support` and `flight` [-]; NaN without samples.
     """
     standing = feet.sum(-1)
     names = ("flight", "single_support", "double_support")
@@ -202,12 +251,11 @@ def step_vectors(steps: Steps, places: np.ndarray) -> tuple[np.ndarray, np.ndarr
 def slip_per_step(
     steps: Steps, pad_load: np.ndarray, pad_slip: np.ndarray, pad_foot: np.ndarray, time_step: float
 ) -> np.ndarray:
-    """Way that the foot slides over the floor in each whole contact [m], `(k,)`; NaN where the
-    record ends before toe-off.
+    """Compute how far the foot slides over the floor in each whole contact.
 
-    The integral of the pads' sliding speed, their mean weighted by load: the length of the way, to
-    and fro. A step of the simulation moves with the velocity at its end, so the speed with which a
-    foot meets the floor, before any force could brake it, is not slip.
+    This is the integral of the pads' sliding speed, their mean weighted by load: the length of the
+    way, to and fro. A step of the simulation moves with the velocity at its end, so the speed with
+    which a foot meets the floor, before any force could brake it, is not slip.
 
     Args:
         steps: k steps.
@@ -215,6 +263,9 @@ def slip_per_step(
         pad_slip: sliding speed of each touching pad [m/s], `(t, P)`.
         pad_foot: foot of each pad, `(P,)`.
         time_step: between samples [s].
+
+    Returns:
+        The way of each step [m], `(k,)`; NaN where the record ends before toe-off.
     """
     found = np.full(len(steps), np.nan)
     for foot in np.unique(steps.foot):

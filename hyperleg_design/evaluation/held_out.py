@@ -60,6 +60,10 @@ def check_held_out(
         protocol: of walks, as `evaluate` takes it.
         threads: of the simulation; the result does not depend on it.
 
+    Returns:
+        The walks of each policy on each held-out design, and their comparisons with the first
+        policy.
+
     Raises:
         InputError: no policy, or as in `evaluate_designs`.
     """
@@ -91,6 +95,10 @@ def check_held_out(
 
 def compared(first: pd.DataFrame, other: pd.DataFrame) -> dict[str, float]:
     """Compare two policies' rows of the same designs in the same order.
+
+    Args:
+        first: rows of the policy that is judged, one for each design.
+        other: rows of the policy that it is compared with.
 
     Returns:
         As the columns of `HeldOutCheck.comparisons`; NaN where fewer than two designs count.

@@ -34,7 +34,7 @@ class Impacts:
 
 
 def low_pass(force: Any, time_step: float, cutoff: float, order: int) -> np.ndarray:
-    """Forces without what is faster than a cut-off, and without delay.
+    """Filter forces with a low-pass filter that causes no delay.
 
     Args:
         force: `(t, ...)` [N].
@@ -42,6 +42,9 @@ def low_pass(force: Any, time_step: float, cutoff: float, order: int) -> np.ndar
         cutoff: frequency at which both passes together leave half the amplitude [Hz]; 0 for no
             filter.
         order: of both passes together, even.
+
+    Returns:
+        The filtered forces, `(t, ...)` [N].
 
     Raises:
         InputError: a cut-off past half the sampling rate.

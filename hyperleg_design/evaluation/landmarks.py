@@ -113,11 +113,14 @@ def landmark_measures(trial: Trial, steps: Steps, events: Events) -> dict[str, f
 
 
 def in_order(heel: np.ndarray, forefoot: np.ndarray) -> bool:
-    """Whether a contact has heel strike, foot flat, heel off and toe off in that order.
+    """Decide whether a contact has heel strike, foot flat, heel off and toe off in this order.
 
     Args:
         heel: whether the heel is loaded, at each sample of the contact, `(t,)`.
         forefoot: whether the rest of the foot is, `(t,)`.
+
+    Returns:
+        True if the order is that of a human step.
     """
     heels, fores = np.flatnonzero(heel), np.flatnonzero(forefoot)
     if not len(heels) or not len(fores):
@@ -126,12 +129,16 @@ def in_order(heel: np.ndarray, forefoot: np.ndarray) -> bool:
 
 
 def force_humps(force: np.ndarray, depth: float = HUMP_DEPTH) -> np.ndarray:
-    """Heights of the humps of a force, in order: maxima that stand out from the lower ground on
-    both sides by a depth (`scipy.signal.find_peaks`, prominence).
+    """Find the humps of a force: maxima that stand out from the lower values on both sides.
+
+    They are found by their prominence (`scipy.signal.find_peaks`).
 
     Args:
         force: over one contact [body weights], `(t,)`.
         depth: least prominence [body weights].
+
+    Returns:
+        Heights of the humps in order of time [body weights], `(humps,)`.
     """
     from scipy.signal import find_peaks
 

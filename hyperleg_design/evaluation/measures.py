@@ -232,7 +232,13 @@ so on, the times of arrival [s]."""
 
 
 def measure_of(name: str) -> Measure:
-    """A measure of either protocol by name; times of arrival at waypoints included.
+    """Look up a measure of either protocol.
+
+    Args:
+        name: of the measure; `waypoint_1` and so on are times of arrival.
+
+    Returns:
+        The measure with unit, meaning and direction.
 
     Raises:
         KeyError: no such measure.

@@ -42,7 +42,17 @@ class MotorUse:
 
 
 def motor_use(trial: Trial, first: int = 0, last: int | None = None) -> MotorUse:
-    """Use of the motors between two samples; heat from the start of the trial on."""
+    """Compute how the motors are used between two samples.
+
+    Args:
+        trial: the recorded trial.
+        first: first sample that counts.
+        last: first sample that does not count any more; all by default.
+
+    Returns:
+        Torque, speed, and use of the limits of each motor. Heat is averaged from the start of the
+        trial on, because a winding remembers it.
+    """
     limbs, own = len(trial.layout.limbs), trial.layout.leg_motors
     envelope = motor_envelope(trial.design)
     rated = np.tile(motor_arrays(trial.design).rated_torque[:own], limbs)
@@ -67,7 +77,16 @@ def motor_use(trial: Trial, first: int = 0, last: int | None = None) -> MotorUse
 
 
 def at_limit(envelope: MotorEnvelope, motor_torque: Any, motor_velocity: Any) -> np.ndarray:
-    """Whether operating points lie on the edge of the envelope, `(..., motors)`."""
+    """Decide whether operating points lie on the edge of the envelope.
+
+    Args:
+        envelope: of the motors.
+        motor_torque: `(..., motors)` [Nm].
+        motor_velocity: `(..., motors)` [rad/s].
+
+    Returns:
+        True on the edge, `(..., motors)`.
+    """
     torque = np.asarray(motor_torque, float)
     lower, upper = torque_limits(envelope, motor_velocity)
     slack = AT_LIMIT * envelope.peak_torque

@@ -95,12 +95,16 @@ def training_means(
 def planned_analysis(
     plan: AnalysisPlan, tables: Mapping[str, pd.DataFrame | None]
 ) -> list[PlannedRow]:
-    """All outcomes of a plan: the primary ones, then the secondary ones with Holm's correction.
+    """Analyse all outcomes of a plan: the primary ones, then the secondary ones with Holm's
+    correction.
 
     Args:
         plan: what is compared.
         tables: trials by protocol, `walk` and `t_test`; None or missing where there are none, whose
             outcomes are rows that say so and still count in the correction.
+
+    Returns:
+        One row for each outcome, in the order of the plan.
     """
     primary = [_row(plan, outcome, tables, plan.level, True) for outcome in plan.primary]
     strictest = plan.level / max(len(plan.secondary), 1)
@@ -166,8 +170,16 @@ def _row(
 def welch(
     first: Sequence[float] | np.ndarray, second: Sequence[float] | np.ndarray
 ) -> tuple[float, float, int]:
-    """Difference of means, its standard error, and Welch's degrees of freedom rounded down; NaN and
-    zero where a side has fewer than two values.
+    """Compare two means by Welch's method.
+
+    Args:
+        first: values of one side, `(n,)`.
+        second: values of the other side, `(m,)`.
+
+    Returns:
+        Difference of the means, its standard error, and Welch's degrees of freedom rounded down.
+        The standard error is NaN and the degrees of freedom are zero if a side has fewer than two
+        values.
     """
     x, y = np.asarray(first, float), np.asarray(second, float)
     mean = float(x.mean() - y.mean()) if len(x) and len(y) else np.nan

@@ -20,12 +20,15 @@ FEWEST_POINTS = 5
 
 
 def p_value(mean: float, standard_error: float, freedom: int) -> float:
-    """Two-sided p of a difference of zero, by Student's t; NaN without degrees of freedom.
+    """Compute the two-sided p value of a difference of zero, by Student's t.
 
     Args:
         mean: difference that was measured.
         standard_error: of it.
         freedom: degrees of freedom.
+
+    Returns:
+        The p value [-]; NaN without degrees of freedom.
     """
     from scipy.stats import t
 
@@ -37,13 +40,15 @@ def p_value(mean: float, standard_error: float, freedom: int) -> float:
 
 
 def interval_reach(standard_error: float, freedom: int, level: float) -> float:
-    """Half the width of the interval of 1 - level around a difference; NaN without degrees of
-    freedom.
+    """Compute half the width of the interval of 1 - level around a difference.
 
     Args:
         standard_error: of the difference.
         freedom: degrees of freedom.
         level: of the two-sided test that leaves zero outside of this interval where it rejects.
+
+    Returns:
+        Half the width, in the unit of the standard error; NaN without degrees of freedom.
     """
     from scipy.stats import t
 
@@ -53,10 +58,16 @@ def interval_reach(standard_error: float, freedom: int, level: float) -> float:
 
 
 def holm(p_values: Sequence[float]) -> np.ndarray:
-    """Corrects p values for their number by Holm's step-down method, `(m,)`.
+    """Correct p values for their number by Holm's step-down method.
 
-    The i-th smallest becomes max over j <= i of (m - j + 1) p_j, at most 1 (Holm, 1979); NaN stays
+    The i-th smallest becomes max over j <= i of (m - j + 1) p_j, at most 1 (Holm, 1979). NaN stays
     NaN and counts in m, because the comparison was planned.
+
+    Args:
+        p_values: m values, NaN for comparisons that could not be made.
+
+    Returns:
+        The corrected values in the same order, `(m,)`.
     """
     values = np.asarray(p_values, float)
     measured = np.flatnonzero(np.isfinite(values))
@@ -70,10 +81,10 @@ def holm(p_values: Sequence[float]) -> np.ndarray:
 def equivalent(
     mean: float, standard_error: float, freedom: int, margin: float, level: float
 ) -> bool:
-    """Whether a difference is inside plus and minus a margin, by two one-sided tests.
+    """Decide by two one-sided tests whether a difference lies inside plus and minus a margin.
 
-    Both reject at the level exactly where the interval of level 1 - 2 level lies within the margin
-    (Schuirmann, 1987).
+    Both tests reject at the level exactly where the interval of level 1 - 2 level lies within the
+    margin (Schuirmann, 1987).
 
     Args:
         mean: difference that was measured.
@@ -81,6 +92,9 @@ def equivalent(
         freedom: degrees of freedom.
         margin: in the difference's unit, positive.
         level: of each of the two tests.
+
+    Returns:
+        True if both tests reject; False without degrees of freedom.
     """
     from scipy.stats import t
 
@@ -91,16 +105,19 @@ def equivalent(
 
 
 def smallest_detectable(standard_error: float, freedom: int, level: float, power: float) -> float:
-    """True difference that a two-sided test would have found with some power.
+    """Compute the true difference that a two-sided test would find with a given probability.
 
-    (t_{1 - level / 2} + t_{power}) standard errors, the usual approximation to the noncentral t;
-    NaN without degrees of freedom.
+    It is (t_{1 - level / 2} + t_{power}) standard errors, the usual approximation to the noncentral
+    t.
 
     Args:
         standard_error: of the difference.
         freedom: degrees of freedom.
         level: of the test.
         power: probability to find it.
+
+    Returns:
+        The difference, in the unit of the standard error; NaN without degrees of freedom.
     """
     from scipy.stats import t
 
@@ -122,15 +139,18 @@ class Plateau:
 
 
 def plateau(steps: Any, reward: Any, rule: PlateauRule) -> Plateau:
-    """Whether a training's reward has stopped rising over its last share of steps.
+    """Decide whether a training's reward has stopped rising over its last share of steps.
 
-    A line is fitted to means of that part's blocks, twice `FEWEST_POINTS` at most, because
-    neighbouring iterations are not independent; its slope is tested against zero, one-sided.
+    A line is fitted to means of blocks of that part, twice `FEWEST_POINTS` at most, because
+    neighbouring iterations are not independent. A one-sided test compares its slope with zero.
 
     Args:
         steps: policy steps, rising `(k,)`.
         reward: mean reward at each, `(k,)`.
         rule: what counts as a plateau.
+
+    Returns:
+        The slope, its p value, and whether it counts as a plateau.
 
     Raises:
         InputError: other lengths, or too few points in the last share.

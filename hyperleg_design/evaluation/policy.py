@@ -123,7 +123,14 @@ def load_policy(name: str | Path) -> OnnxPolicy:
 
 
 def standing(joints: int) -> Policy:
-    """Policy that holds the default posture: all actions zero."""
+    """Make a policy that holds the default posture.
+
+    Args:
+        joints: number of joints.
+
+    Returns:
+        A callable that returns zeros `(n, joints)` for observations `(n, k)`.
+    """
     return lambda observation: np.zeros((len(observation), joints))
 
 
@@ -137,7 +144,11 @@ class Scripted:
     """Next row."""
 
     def reset(self, trials: int) -> None:
-        """Begin the script anew for all trials."""
+        """Begin the script anew for all trials.
+
+        Args:
+            trials: number of trials; the script is the same for all of them.
+        """
         self.step = 0
 
     def __call__(self, observation: np.ndarray) -> np.ndarray:
@@ -148,14 +159,25 @@ class Scripted:
 
 
 def policy_name(policy: Policy) -> str:
-    """Name of a policy for messages and tables."""
+    """Name a policy for messages and tables.
+
+    Args:
+        policy: any policy.
+
+    Returns:
+        Its attribute `name`, else the name of the function or class.
+    """
     return str(
         getattr(policy, "name", None) or getattr(policy, "__name__", type(policy).__name__)
     ).replace("<lambda>", "policy")
 
 
 def check_layout(policy: Policy, environment: Environment) -> None:
-    """Whether a policy that knows its layout was made for this robot and task.
+    """Check that a policy that knows its layout was made for this robot and task.
+
+    Args:
+        policy: an ONNX policy; any other callable passes.
+        environment: gives the columns of the observation and the joints.
 
     Raises:
         InputError: names the first number that is another one.
@@ -185,7 +207,7 @@ def checked_action(
     running: np.ndarray,
     size: int,
 ) -> np.ndarray:
-    """Actions of a policy for the trials that still run, zero for the others, `(n, size)`.
+    """Compute the actions of a policy for the trials that still run.
 
     Args:
         policy: the policy.
@@ -194,6 +216,9 @@ def checked_action(
         duration: of a policy step [s].
         running: trials that count, `(n,)`.
         size: numbers in an action.
+
+    Returns:
+        The actions, `(n, size)`; zero for trials that have ended.
 
     Raises:
         InputError: wrong shape, or values that are not finite; names step and trial.

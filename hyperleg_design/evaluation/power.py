@@ -43,7 +43,16 @@ FLOWS = (
 
 
 def ledger(trial: Trial, first: int = 0, last: int | None = None) -> EnergyLedger:
-    """Ledger of all motors between two samples, `(t, K)`."""
+    """Compute the energy ledger of all motors between two samples.
+
+    Args:
+        trial: the recorded trial.
+        first: first sample that counts.
+        last: first sample that does not count any more; all by default.
+
+    Returns:
+        Power of each of the K motors at each sample [W], `(t, K)`.
+    """
     part = slice(first, last)
     constants = power_constants(trial)
     electrical = trial.design.electrical_section
@@ -58,7 +67,14 @@ def ledger(trial: Trial, first: int = 0, last: int | None = None) -> EnergyLedge
 
 
 def power_constants(trial: Trial) -> np.ndarray:
-    """Joule heat over squared torque of all motors of a trial, as simulated [W/Nm^2], `(K,)`."""
+    """Look up the power constants of all motors as they were simulated.
+
+    Args:
+        trial: the recorded trial.
+
+    Returns:
+        Joule heat over squared torque [W/Nm^2], `(K,)`.
+    """
     if trial.power_constant is not None:
         return trial.power_constant
     layout = trial.layout
@@ -68,7 +84,14 @@ def power_constants(trial: Trial) -> np.ndarray:
 
 
 def flows(entries: EnergyLedger) -> dict[str, float]:
-    """Mean power of the whole robot in each of `FLOWS` [W]; `motor_side` is the paper's total."""
+    """Compute the mean power of the whole robot.
+
+    Args:
+        entries: of all motors.
+
+    Returns:
+        Power in each of `FLOWS` [W]; `motor_side` is the total that the paper prints.
+    """
     total = entries.mean_power().total()
     return {name: float(getattr(total, name)) for name in FLOWS}
 
@@ -93,8 +116,13 @@ class CyclePower:
     `joule` add up."""
 
     def of_group(self, group: str) -> np.ndarray:
-        """Mechanical power of a part of `GROUPS` [W], `(strides, points)`; zero for a toe that is
-        not there.
+        """Sum the mechanical power of one part of the leg.
+
+        Args:
+            group: one of `GROUPS`.
+
+        Returns:
+            The power [W], `(strides, points)`; zero for a toe that the robot does not have.
         """
         kept = [i for i, joint in enumerate(self.joints) if joint in GROUPS[group]]
         return np.asarray(self.mechanical[..., kept].sum(-1))
@@ -103,13 +131,16 @@ class CyclePower:
 def cycle_power(
     trial: Trial, steps: Steps, foot: int = 1, points: int = CYCLE_POINTS
 ) -> CyclePower:
-    """Power of one leg over its strides.
+    """Compute the power of one leg over its strides.
 
     Args:
         trial: the trial.
         steps: those whose strides count.
         foot: 0 left, 1 right (the paper's Fig. 6).
         points: of the normalised cycle.
+
+    Returns:
+        Power of joints and motors over the normalised cycle, and their means over time.
     """
     layout = trial.layout
     joints, motors = (
@@ -131,12 +162,15 @@ def cycle_power(
 
 
 def leg_means(joints: Sequence[str], mechanical: np.ndarray, joule: np.ndarray) -> dict[str, float]:
-    """Mean powers of one leg [W], see `CyclePower.means`; NaN without samples.
+    """Compute the mean powers of one leg.
 
     Args:
         joints: names without the side, `(q,)`.
         mechanical: given to each joint [W], `(t, q)`.
         joule: heat of each motor [W], `(t, m)`.
+
+    Returns:
+        Means by name [W], see `CyclePower.means`; NaN without samples.
     """
     if not len(mechanical):
         return dict.fromkeys(LEG_MEANS, np.nan)

@@ -104,7 +104,13 @@ class Protocol(Checked):
                 raise InputError(self.name, name, value, "expects a whole number")
 
     def changed(self: P, **fields: Any) -> P:
-        """A copy with other fields.
+        """Copy the protocol with other values of some fields.
+
+        Args:
+            fields: new values by name.
+
+        Returns:
+            The validated copy.
 
         Raises:
             InputError: a field that makes no sense.
@@ -225,7 +231,14 @@ def load_protocol(name: str | Path) -> Protocol:
 
 
 def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:
-    """A protocol from nested mappings as YAML gives them; `kind` is `walk` or `t_test`.
+    """Build a protocol from nested mappings, as YAML gives them.
+
+    Args:
+        data: fields by name; `kind` is `walk` or `t_test`.
+        where: name of the file, for error messages.
+
+    Returns:
+        The validated protocol.
 
     Raises:
         InputError: unknown or missing field, or a value that makes no sense, such as a waypoint
@@ -268,7 +281,14 @@ def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:
 
 
 def protocol_mapping(protocol: Protocol) -> dict[str, Any]:
-    """A protocol such that `protocol_from_mapping` gives it back, every value written out."""
+    """Write a protocol out as nested mappings, with every value.
+
+    Args:
+        protocol: the protocol.
+
+    Returns:
+        A mapping from which `protocol_from_mapping` builds the same protocol.
+    """
     kind = next(k for k, cls in _KINDS.items() if type(protocol) is cls)
     mapping: dict[str, Any] = {"kind": kind, "name": protocol.name}
     for item in dataclasses.fields(protocol):

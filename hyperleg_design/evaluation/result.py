@@ -80,15 +80,27 @@ class Evaluation:
     """All signals, of some trials where others were let go by `light`."""
 
     def light(self, kept: int = 1) -> Evaluation:
-        """A copy that keeps the signals of `kept` trials only, of trials that arrived first; the
-        signals of one trial fill some 4 MB.
+        """Copy the evaluation without the signals of most trials; those of one trial fill some 4
+        MB.
+
+        Args:
+            kept: number of trials whose signals are kept, those that arrived first.
+
+        Returns:
+            The copy.
         """
         return dataclasses.replace(
             self, trials=sorted(self.trials, key=lambda trial: trial.outcome != ARRIVED)[:kept]
         )
 
     def values(self, measure: str) -> np.ndarray:
-        """A measure in all trials, `(n,)`.
+        """Collect a measure of all trials.
+
+        Args:
+            measure: its name.
+
+        Returns:
+            The values, `(n,)`; NaN where a trial gives none.
 
         Raises:
             InputError: no such measure.
@@ -109,7 +121,20 @@ def evaluation_of(
     motors: list[MotorUse | None],
     cycles: Sequence[CyclePower | None] = (),
 ) -> Evaluation:
-    """An `Evaluation` with what the policy says of itself."""
+    """Put the results of one design together with what the policy's file states about itself.
+
+    Args:
+        policy: the policy that was run.
+        design: the robot.
+        protocol: under which the trials were run.
+        trials: their records.
+        measures: of each trial, by name.
+        motors: use of the motors in each trial.
+        cycles: power over the gait cycle of each trial, for walks.
+
+    Returns:
+        The evaluation.
+    """
     known = policy if isinstance(policy, OnnxPolicy) else None
     return Evaluation(
         policy=policy_name(policy),
@@ -134,8 +159,14 @@ def evaluation_of(
 
 
 def swapped(evaluation: Evaluation, swap: str) -> Evaluation:
-    """An evaluation whose name says that the robot was swapped, and that the policy was not trained
-    for that.
+    """Mark an evaluation as one of a swapped robot, for which the policy was not trained.
+
+    Args:
+        evaluation: as it was measured.
+        swap: what was swapped, for the name.
+
+    Returns:
+        A copy with another name and with the training marked as zero-shot.
     """
     return dataclasses.replace(
         evaluation,
@@ -153,7 +184,20 @@ def evaluations_of(
     motors: list[MotorUse | None],
     cycles: Sequence[CyclePower | None] = (),
 ) -> list[Evaluation]:
-    """`evaluation_of` of designs whose trials follow each other, equally many of each."""
+    """Put the results of several designs together, whose trials follow each other.
+
+    Args:
+        policy: the policy that was run.
+        designs: the robots, with equally many trials each.
+        protocol: under which the trials were run.
+        trials: records of all trials, design by design.
+        measures: of each trial, by name.
+        motors: use of the motors in each trial.
+        cycles: power over the gait cycle of each trial, for walks.
+
+    Returns:
+        One evaluation for each design.
+    """
     each = len(trials) // len(designs)
     parts = [slice(i * each, (i + 1) * each) for i in range(len(designs))]
     return [
@@ -165,9 +209,15 @@ def evaluations_of(
 
 
 def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
-    """One row a trial: policy, variant, design, training seed, training steps, whether it was
-    trained for this design, parameters outside its trained range, protocol, trial, outcome, end
-    time, all measures.
+    """Tabulate all trials.
+
+    Args:
+        evaluations: whose trials are listed.
+
+    Returns:
+        One row for each trial: policy, variant, design, training seed, training steps, whether it
+        was trained for this design, parameters outside of its trained range, protocol, trial,
+        outcome, end time, and all measures.
     """
     import pandas as pd
 
@@ -193,8 +243,14 @@ def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
 
 
 def motor_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
-    """One row a motor and trial: policy, variant, training seed, trial, motor, and the fields of
-    `MotorUse`.
+    """Tabulate the use of all motors.
+
+    Args:
+        evaluations: whose motors are listed.
+
+    Returns:
+        One row for each motor and trial: policy, variant, training seed, trial, motor, and the
+        fields of `MotorUse`.
     """
     import pandas as pd
 
@@ -223,11 +279,15 @@ def motor_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
 
 
 def cycle_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
-    """One row a policy, joint or motor, and point of the gait cycle: mean and standard deviation
-    over all strides [W].
+    """Tabulate the power over the gait cycle.
 
-    Columns: policy, variant, training seed, kind (`mechanical` of joints, `joule` of motors), part,
-    share of the cycle, mean, deviation, strides.
+    Args:
+        evaluations: of walks.
+
+    Returns:
+        One row for each policy, joint or motor, and point of the cycle. The columns are policy,
+        variant, training seed, kind (`mechanical` for joints, `joule` for motors), part, share of
+        the cycle, mean and deviation over all strides [W], and the number of strides.
     """
     import pandas as pd
 
@@ -261,11 +321,18 @@ def cycle_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
 
 
 def write_results(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]) -> Path:
-    """Write evaluations as a folder: `trials.parquet`, `motors.parquet`, `cycles.parquet`,
-    `paths.parquet`, `evaluation.json`.
+    """Write evaluations to a folder.
 
-    `evaluation.json` holds the protocols, what each policy says of itself, versions and commit; no
-    date.
+    The files are `trials.parquet`, `motors.parquet`, `cycles.parquet`, `paths.parquet` and
+    `evaluation.json`. The last one holds the protocols, what each policy states about itself,
+    versions and commit, and no date.
+
+    Args:
+        folder: to be written; a folder of ours is replaced.
+        evaluations: what is written.
+
+    Returns:
+        The folder.
 
     Raises:
         OutputError: the folder is somebody else's, or cannot be written; nothing half-written is
@@ -335,10 +402,16 @@ def _path(trial: Trial) -> np.ndarray:
 
 
 def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
-    """A measure of the rows of a trial table, one array a training seed; checkpoints of a seed are
-    pooled.
+    """Group a measure of a trial table by training seed; checkpoints of a seed are pooled.
 
-    Policies that do not say their seed count as a seed each.
+    Policies that do not state their seed count as a seed each.
+
+    Args:
+        table: as `trial_table` makes it.
+        measure: name of its column.
+
+    Returns:
+        One array of values for each seed.
 
     Raises:
         InputError: no such column.
@@ -347,10 +420,16 @@ def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
 
 
 def by_checkpoint(table: pd.DataFrame, measure: str) -> dict[str, list[np.ndarray]]:
-    """A measure of the rows of a trial table by training seed, one array a checkpoint, as
-    `statistics` takes them.
+    """Group a measure of a trial table by training seed and checkpoint, as `statistics` takes it.
 
-    Policies that do not say their seed count as a seed each.
+    Policies that do not state their seed count as a seed each.
+
+    Args:
+        table: as `trial_table` makes it.
+        measure: name of its column.
+
+    Returns:
+        For each seed, one array of values for each checkpoint.
 
     Raises:
         InputError: no such column.

@@ -143,7 +143,14 @@ class CurvePoint:
 
 
 def conditions_of(names: Sequence[str], protocol: Protocol) -> list[str]:
-    """Conditions to vary: those named, or all that a protocol has.
+    """Choose the conditions that are varied.
+
+    Args:
+        names: of conditions; empty for all that the protocol has.
+        protocol: under which the policies run.
+
+    Returns:
+        The names of the conditions.
 
     Raises:
         InputError: no such condition, or one that the protocol does not have.
@@ -216,8 +223,16 @@ def robustness(
 
 
 def curves(table: pd.DataFrame, kind: str = "walk") -> list[CurvePoint]:
-    """Curves of a table of `robustness`: of the share that arrived, all trials count; of other
-    measures, those that arrived.
+    """Compute curves over the levels of each condition from a table of `robustness`.
+
+    For the share that arrived, all trials count; for other measures, only those that arrived.
+
+    Args:
+        table: one row for each trial, with condition and level.
+        kind: of protocol, `walk` or `t_test`.
+
+    Returns:
+        One point for each condition, level, variant and measure.
     """
     points = []
     for (name, level, variant), part in table.groupby(["condition", "level", "variant"], sort=True):

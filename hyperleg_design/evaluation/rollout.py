@@ -161,10 +161,13 @@ def record(
     Args:
         policy: from observations of the group `policy` to actions.
         environment: without assist; its episodes must not time out before the limit.
-        time_limit: [s]
+        time_limit: longest duration of a trial [s].
         arrived: from first and latest pelvis positions `(n, 3)` to whether each trial is done; a
             trial may also end by itself.
         before_step: called before each policy step, to set commands.
+
+    Returns:
+        The record of each trial, in the order of the simulations.
 
     Raises:
         InputError: a policy for another layout, or whose output has a wrong shape or is not finite.
@@ -262,7 +265,15 @@ def _power_constant(environment: Environment, simulation: int) -> np.ndarray | N
 def resolved(
     policy: Policy, design: RobotDesign | None, task: Task | None
 ) -> tuple[RobotDesign, Task]:
-    """Robot and task of an evaluation: those given, else an ONNX policy's own.
+    """Choose the robot and the task of an evaluation.
+
+    Args:
+        policy: an ONNX policy has a robot and a task of its own.
+        design: the robot; the policy's own by default.
+        task: the policy's own by default.
+
+    Returns:
+        The robot and the task.
 
     Raises:
         InputError: a plain callable without either.
@@ -283,11 +294,27 @@ def resolved(
 
 
 def under_protocol(task: Task, protocol: Any) -> Task:
-    """A task with a protocol's starting states, differences between robots and time."""
+    """Put a task under the starting states, differences between robots and time of a protocol.
+
+    Args:
+        task: the policy's task.
+        protocol: of either kind.
+
+    Returns:
+        The changed task; its episodes last twice the protocol's time limit, so that none ends
+        first.
+    """
     limits = dataclasses.replace(task.limits, duration=2 * protocol.time_limit)
     return task.changed(start=protocol.start, randomisation=protocol.randomisation, limits=limits)
 
 
 def outcome_measures(trial: Trial) -> dict[str, float]:
-    """`fell`, `lost`, `timed_out` and `diverged`, each 0 or 1."""
+    """State how a trial ended, as measures.
+
+    Args:
+        trial: the recorded trial.
+
+    Returns:
+        `fell`, `lost`, `timed_out` and `diverged`, each 0 or 1.
+    """
     return {name: float(trial.outcome == name) for name in (FELL, LOST, TIMED_OUT, DIVERGED)}

@@ -93,12 +93,14 @@ def shipped_folder() -> Path:
 
 
 def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> list[Shipped]:
-    """Policies of all finished trainings of a folder, by group, design and seed, the last policy of
-    each training first.
+    """List the policies of all finished trainings of a folder.
 
     Args:
         folder: of trainings; the shipped ones by default.
         late: also the late policies.
+
+    Returns:
+        The policies by group, design and seed, the last policy of each training first.
 
     Raises:
         InputError: a folder that was asked for and is not there.
@@ -127,7 +129,11 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
 
 
 def check_different(paths: Iterable[str | Path], where: str = "policies") -> None:
-    """Whether no two files hold the same policy, which would count one training twice.
+    """Check that no two files hold the same policy, which would count one training twice.
+
+    Args:
+        paths: of ONNX files.
+        where: what the error names as the place.
 
     Raises:
         InputError: two files with the same content.
@@ -149,13 +155,16 @@ def check_different(paths: Iterable[str | Path], where: str = "policies") -> Non
 def policies_for(
     group: str, variant: str, seeds: int, folder: str | Path | None = None
 ) -> list[Shipped]:
-    """Last policies of the first trainings of a task and toe layout, one a seed.
+    """List the last policies of the first trainings of a task and toe layout.
 
     Args:
         group: of the campaign, such as `walk`.
         variant: ablation of the design.
         seeds: most trainings.
         folder: of trainings; the shipped ones by default.
+
+    Returns:
+        One policy for each seed.
 
     Raises:
         InputError: there is none.
@@ -174,7 +183,13 @@ def policies_for(
 
 
 def find_policy(name: str | Path) -> Path:
-    """File of a policy: an ONNX file, or the name of a shipped training, whose last policy it is.
+    """Find the file of a policy.
+
+    Args:
+        name: an ONNX file, or the name of a shipped training, whose last policy is meant.
+
+    Returns:
+        The path of the ONNX file.
 
     Raises:
         InputError: neither; lists what is shipped.
@@ -210,11 +225,17 @@ def _briefly(policies: Sequence[Shipped]) -> str:
 
 
 def learning_curve(training: str | Path, rows: int = CURVE_ROWS) -> list[dict[str, float]]:
-    """Learning curve of a training's folder: rows of `CURVE`, means over stretches of equal length
-    where there are more.
+    """Read the learning curve of a training.
 
-    Numbers that were not measured (no step, so no speed) are left out of means; a row may lack
-    some. A line cut off by a kill is passed over. Empty where there is none.
+    Numbers that were not measured (no step, so no speed) are left out of means. A line that was cut
+    off when the training was killed is skipped.
+
+    Args:
+        training: its folder.
+        rows: most rows; longer records are averaged over stretches of equal length.
+
+    Returns:
+        Rows of the columns `CURVE`, some of which a row may lack; empty where there is no record.
     """
     lines = []
     path = Path(training) / PROGRESS
@@ -278,7 +299,14 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
 
 
 def pack_text(packed: Iterable[Packed]) -> str:
-    """What was packed, for a terminal: a line a training, and a sum."""
+    """Describe what was packed, for a terminal.
+
+    Args:
+        packed: trainings.
+
+    Returns:
+        One line for each training, and a sum.
+    """
     packed = list(packed)
     lines = [
         f"{p.training:<34} {p.policies} policies, {p.size / 1e6:.1f} MB"

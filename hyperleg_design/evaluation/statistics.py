@@ -76,8 +76,13 @@ class Estimate:
         return self.seeds > 1
 
     def against(self, value: float) -> str:
-        """Verdict on a number from elsewhere, such as the paper's: inside the interval it
-        agrees.
+        """Compare the estimate with a number from elsewhere, such as the paper's.
+
+        Args:
+            value: the number.
+
+        Returns:
+            A verdict: inside the interval it agrees.
         """
         if not np.isfinite(self.mean):
             return NOTHING_MEASURED
@@ -86,7 +91,14 @@ class Estimate:
         return AGREES if self.low <= value <= self.high else DIFFERS
 
     def text(self, digits: int = 3) -> str:
-        """Mean and interval for a person, with what it rests on."""
+        """Write mean and interval for a person, with the numbers of seeds and trials.
+
+        Args:
+            digits: significant digits.
+
+        Returns:
+            One line of text.
+        """
         if not np.isfinite(self.mean):
             return f"not measured ({self.missing} trials)"
         base = (
@@ -133,13 +145,16 @@ class Difference:
 def estimate(
     groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES, seed: int = 0
 ) -> Estimate:
-    """Mean over seeds and trials.
+    """Estimate the mean over seeds and trials with its interval.
 
     Args:
         groups: one array a seed; NaN where nothing could be measured.
         level: of the interval.
         resamples: of the bootstrap.
         seed: of its random numbers.
+
+    Returns:
+        The mean, its interval, and the numbers of seeds and trials that it rests on.
 
     Raises:
         InputError: no group, or a level or number of resamples that makes no sense.
@@ -160,7 +175,7 @@ def estimate(
 def share(
     groups: Groups, *, level: float = LEVEL, resamples: int = RESAMPLES, seed: int = 0
 ) -> Estimate:
-    """Share of trials in which something happened, such as a fall.
+    """Estimate the share of trials in which something happened, such as a fall.
 
     The interval is that of `estimate`, at least as wide as Clopper and Pearson's of all trials
     together (which is not empty where it never happened), and inside 0 .. 1.
@@ -170,6 +185,9 @@ def share(
         level: of the interval.
         resamples: of the bootstrap.
         seed: of its random numbers.
+
+    Returns:
+        The share, its interval, and the numbers of seeds and trials that it rests on.
     """
     from scipy.stats import beta
 
@@ -268,12 +286,16 @@ def difference(
 
 
 def hedges_g(first: Any, second: Any) -> float:
-    """Difference of means over the pooled standard deviation, times 1 - 3 / (4 (n + m) - 9); NaN
-    without spread or with too few.
+    """Compute Hedges' g, the difference of two means over their pooled standard deviation.
+
+    It is corrected for few values by the factor 1 - 3 / (4 (n + m) - 9).
 
     Args:
         first: `(n,)`
         second: `(m,)`
+
+    Returns:
+        The effect size [-]; NaN without spread or with fewer than two values on a side.
     """
     x, y = np.asarray(first, float), np.asarray(second, float)
     freedom = len(x) + len(y) - 2
@@ -286,8 +308,14 @@ def hedges_g(first: Any, second: Any) -> float:
 
 
 def cliffs_delta(first: Any, second: Any) -> float:
-    """Share of pairs with first > second less that with first < second, `(n,)`, `(m,)` -> -1 ..
-    1.
+    """Compute Cliff's delta: the share of pairs with first > second minus that with first < second.
+
+    Args:
+        first: `(n,)`
+        second: `(m,)`
+
+    Returns:
+        The effect size, -1 .. 1 [-].
     """
     x, y = np.asarray(first, float), np.asarray(second, float)
     return float(np.mean(np.sign(x[:, None] - y[None, :])))

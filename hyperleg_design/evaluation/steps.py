@@ -30,8 +30,16 @@ class Contacts:
 
 
 def foot_contacts(trial: Trial, events: Events) -> Contacts:
-    """Contacts by the thresholds of a protocol, in body weights; gaps and short contacts are filled
-    for whole feet only.
+    """Find the contacts of feet, heels and forefeet by the thresholds of a protocol.
+
+    Gaps and short contacts are filled for whole feet only.
+
+    Args:
+        trial: the recorded trial.
+        events: thresholds in body weights, and the shortest contact and gap.
+
+    Returns:
+        The contacts at each sample.
     """
     on, off = events.touchdown_load * trial.layout.weight, events.lift_load * trial.layout.weight
     behind = trial.layout.pad_position[:, 0] < 0
@@ -54,13 +62,30 @@ def foot_contacts(trial: Trial, events: Events) -> Contacts:
 
 
 def measured_steps(trial: Trial, events: Events) -> gait.Steps:
-    """All steps of a trial."""
+    """Find all steps of a trial.
+
+    Args:
+        trial: the recorded trial.
+        events: thresholds of the protocol.
+
+    Returns:
+        The steps of all feet.
+    """
     contacts = foot_contacts(trial, events)
     return gait.find_steps(contacts.feet, contacts.heel, contacts.forefoot, trial.time_step)
 
 
 def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[str, float]:
-    """Means over the touchdowns of all feet: `grf_peak` and the others of `Impacts`."""
+    """Compute the means of the impacts over the touchdowns of all feet.
+
+    Args:
+        trial: the recorded trial.
+        steps: whose touchdowns count.
+        settings: of filter and window.
+
+    Returns:
+        `grf_peak` and the other fields of `Impacts`; NaN without a touchdown.
+    """
     filtered = low_pass(trial.foot_load, trial.time_step, settings.cutoff, int(settings.order))
     each = [
         impacts(
@@ -88,7 +113,17 @@ def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[s
 def step_measures(
     trial: Trial, steps: gait.Steps, window: tuple[int, int], events: Events
 ) -> dict[str, float]:
-    """Gait measures of some steps and the stretch of samples that they lie in."""
+    """Compute the gait measures of some steps.
+
+    Args:
+        trial: the recorded trial.
+        steps: that count.
+        window: first and last sample of the stretch that they lie in.
+        events: thresholds of the protocol.
+
+    Returns:
+        The measures by name.
+    """
     contacts = foot_contacts(trial, events)
     slip = gait.slip_per_step(
         steps, trial.pad_load, trial.pad_slip, trial.layout.pad_foot, trial.time_step
@@ -117,7 +152,14 @@ def step_measures(
 
 
 def has_heels(layout: Layout) -> bool:
-    """Whether every foot has pads behind its first link's joint and pads before it."""
+    """Decide whether every foot has pads both behind and before the joint of its first link.
+
+    Args:
+        layout: of the robot.
+
+    Returns:
+        True if all feet have a heel and a forefoot.
+    """
     behind = layout.pad_position[:, 0] < 0
     return all(
         0 < behind[layout.pad_foot == foot].sum() < np.sum(layout.pad_foot == foot)
@@ -126,11 +168,19 @@ def has_heels(layout: Layout) -> bool:
 
 
 def flat_drift(trial: Trial, steps: gait.Steps, contacts: Contacts) -> np.ndarray:
-    """How far each foot has moved over the floor between first and last standing flat in a contact
-    [m], `(k,)`; NaN where it never is.
+    """Compute how far each foot moves over the floor while it stands flat.
 
-    Straight and without landing and push-off, where the foot turns about its edges; what one would
-    see of sliding.
+    The distance is the straight line between the first and the last sample at which heel and
+    forefoot both stand. Landing and push-off, where the foot turns about its edges, do not count.
+    This is the sliding that an observer would see.
+
+    Args:
+        trial: the recorded trial.
+        steps: k steps.
+        contacts: of feet, heels and forefeet.
+
+    Returns:
+        The distance of each step [m], `(k,)`; NaN where the foot never stands flat.
     """
     found = np.full(len(steps), np.nan)
     flat = contacts.heel & contacts.forefoot
@@ -145,6 +195,13 @@ def flat_drift(trial: Trial, steps: gait.Steps, contacts: Contacts) -> np.ndarra
 
 
 def mean_of(values: np.ndarray) -> float:
-    """Mean of what could be measured; NaN where nothing could."""
+    """Average what could be measured.
+
+    Args:
+        values: `(k,)`, NaN where nothing could be measured.
+
+    Returns:
+        The mean; NaN if all values are missing.
+    """
     values = values[np.isfinite(values)]
     return float(values.mean()) if len(values) else np.nan

@@ -55,7 +55,16 @@ class TrainingFit:
 
 
 def training_fit(policy: Policy, design: RobotDesign) -> TrainingFit:
-    """Compare the design that a policy was trained on, or its ranges, with one robot."""
+    """Compare the design that a policy was trained on, or its ranges, with one robot.
+
+    Args:
+        policy: an ONNX policy knows the design, or the ranges of designs, that it was trained on.
+        design: the robot that it is evaluated on.
+
+    Returns:
+        Whether the policy is a specialist for this robot, conditioned on designs like it, or was
+        not trained for it (zero-shot), and the parameters that differ.
+    """
     if not isinstance(policy, OnnxPolicy):
         return TrainingFit(UNKNOWN)
     trained, own = leaves(policy.design), leaves(design)

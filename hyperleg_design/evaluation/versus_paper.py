@@ -111,10 +111,18 @@ def _row(
 
 
 def change_verdict(difference: Difference, change: float) -> str:
-    """Verdict on a printed relative change: it agrees inside an interval of ours that leaves zero
-    out.
+    """Compare a measured difference with a relative change that the paper prints.
 
-    With zero inside too, ours can be told neither from the printed change nor from none.
+    The two agree if the printed change lies inside our interval and this interval leaves out zero.
+    If zero lies inside, too, our result can be told neither from the printed change nor from no
+    change.
+
+    Args:
+        difference: as measured.
+        change: as printed, relative [-].
+
+    Returns:
+        The verdict.
     """
     if difference.verdict in (statistics.NOTHING_MEASURED, TOO_FEW_SEEDS):
         return _plain(difference.verdict)
