@@ -26,7 +26,14 @@ DESCRIPTION = {
 
 
 def states(variant: str) -> tuple[str, bool]:
-    """What a toe layout is: `toe.joint`, and whether the toe's motor is installed."""
+    """State what a toe layout is.
+
+    Args:
+        variant: name of the layout, such as `toe_locked`.
+
+    Returns:
+        The value of `toe.joint`, and whether the motor of the toe is installed.
+    """
     if variant == "toe":
         return "active", True
     return "passive" if variant == PASSIVE else "locked", variant == "toe_locked"

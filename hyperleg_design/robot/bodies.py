@@ -23,7 +23,15 @@ class Inertial:
 
 
 def shifted(mass: Any, offset: np.ndarray) -> np.ndarray:
-    """Inertia of a point mass about a point `offset` away, `(..., 3, 3)`."""
+    """Compute the inertia of a point mass about another point.
+
+    Args:
+        mass: `(...)` [kg].
+        offset: from the one point to the other, `(..., 3)` [m].
+
+    Returns:
+        The inertia, `(..., 3, 3)` [kg m^2].
+    """
     squared = np.sum(offset**2, -1)[..., None, None] * np.eye(3)
     return np.asarray(mass)[..., None, None] * (
         squared - offset[..., :, None] * offset[..., None, :]

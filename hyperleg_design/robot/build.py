@@ -80,8 +80,13 @@ def build(design: RobotDesign, out: str | Path) -> Path:
 
 
 def design_yaml(design: RobotDesign) -> str:
-    """The resolved design as YAML with label and source of each value; `load_design` reads it back
-    as the same design.
+    """Write the resolved design as YAML, with label and source of each value.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        The text; `load_design` reads it back as the same design.
     """
     head = (
         "# A resolved design: every value, with label and source. `hyperleg build --design "
@@ -98,7 +103,14 @@ def design_yaml(design: RobotDesign) -> str:
 
 
 def masses_csv(rows: list[MassRow]) -> str:
-    """The mass table as CSV in SI units and full precision."""
+    """Write the mass table as CSV, in SI units and full precision.
+
+    Args:
+        rows: of the table.
+
+    Returns:
+        The text, with a line of headings.
+    """
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -117,7 +129,15 @@ def masses_csv(rows: list[MassRow]) -> str:
 
 
 def masses_markdown(design: RobotDesign, rows: list[MassRow]) -> str:
-    """The mass table to read, in kilograms, millimetres and gram square metres."""
+    """Write the mass table for people, in kilograms, millimetres and gram square metres.
+
+    Args:
+        design: names the robot in the text.
+        rows: of the table.
+
+    Returns:
+        A Markdown text.
+    """
     cells = [
         ["part", "pieces", "mass [kg]", "centre of mass x, y, z [mm]", "principal inertia [g m²]"]
     ]

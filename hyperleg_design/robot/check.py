@@ -22,7 +22,13 @@ XML = (".urdf", ".xml", ".mjcf")
 
 
 def kind_of(path: str | Path) -> str:
-    """What a file holds: one of `KINDS`, or `unknown`; a bare name is a shipped design.
+    """Find out what a file holds.
+
+    Args:
+        path: of the file; a bare name is a shipped design.
+
+    Returns:
+        One of `KINDS`, or `unknown`.
 
     Raises:
         InputError: there is no such file, or it cannot be read or parsed.
@@ -104,7 +110,15 @@ def _unreachable(motor: Motor, path: Path) -> list[Finding]:
 
 
 def finding_of(error: InputError, severity: str = "error") -> Finding:
-    """An input error as a finding."""
+    """Turn an input error into a finding.
+
+    Args:
+        error: the error.
+        severity: `error` or `warning`.
+
+    Returns:
+        The finding, with the place, the value and the remedy of the error.
+    """
     if error.value is None:
         return Finding(severity, error.place, error.remedy, "correct it there")
     return Finding(severity, error.place, f"is {shown(error.value)}", error.remedy)

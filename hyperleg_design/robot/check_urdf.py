@@ -82,7 +82,13 @@ def check_urdf(source: str | Path) -> list[Finding]:
 
 
 def parse_xml(source: str | Path) -> tuple[Any, list[Finding]]:
-    """Root element of an XML file or text, or None and the error of its syntax.
+    """Parse an XML file or text.
+
+    Args:
+        source: path of the file, or the text itself, which begins with `<`.
+
+    Returns:
+        The root element and no findings, or None and the error of its syntax.
 
     Raises:
         InputError: the file cannot be read.
@@ -229,7 +235,15 @@ def _tree(links: list[Any], joints: list[Any]) -> list[Finding]:
 
 
 def numbers(text: str | None, count: int) -> np.ndarray | None:
-    """`count` finite numbers of an attribute, or None."""
+    """Parse the numbers of an attribute.
+
+    Args:
+        text: of the attribute; None where it is missing.
+        count: how many numbers are expected.
+
+    Returns:
+        `(count,)`; None if there are more or fewer, or one is not finite.
+    """
     try:
         values = np.array([float(v) for v in (text or "").split()])
     except ValueError:

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def check_design(design: HyperLeg) -> None:
-    """Raise the first misfit found.
+    """Check that the numbers of a design fit together, and report the first that does not.
+
+    Args:
+        design: a robot or batch.
 
     Raises:
         InputError: names the field, its value and what would be right.
@@ -144,7 +147,14 @@ def _check_batch(design: HyperLeg, where: str) -> None:
 
 
 def leg_length(design: HyperLeg) -> Any:
-    """Hip-pitch axis to sole, standing straight [m]."""
+    """Compute the distance from the hip-pitch axis to the sole of a straight leg.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The length [m], `(...)`.
+    """
     return design.thigh.length + design.shank.length + design.foot.ankle_height
 
 

@@ -35,17 +35,29 @@ class RobotDesign:
 
     @property
     def copies(self) -> tuple[str, ...]:
-        """Names of the copies of the limb; one empty name where the robot is written out whole."""
+        """Names of the copies of the limb; one empty name where the robot is written out whole.
+
+        Raises:
+            NotImplementedError: in this class; each family of designs has its own answer.
+        """
         raise NotImplementedError
 
     @property
     def joint_sections(self) -> Mapping[str, Any]:
-        """Sections of the joints of one limb that move, by name, from the base outward."""
+        """Sections of the joints of one limb that move, by name, from the base outward.
+
+        Raises:
+            NotImplementedError: in this class; each family of designs has its own answer.
+        """
         raise NotImplementedError
 
     @property
     def actuator_sections(self) -> Mapping[str, Any]:
-        """Sections of the motors of one limb that are installed, by name."""
+        """Sections of the motors of one limb that are installed, by name.
+
+        Raises:
+            NotImplementedError: in this class; each family of designs has its own answer.
+        """
         raise NotImplementedError
 
     @property
@@ -107,12 +119,15 @@ class RobotDesign:
     def with_values(
         self, values: Mapping[str, Any], where: str = "override", label: str = "user"
     ) -> Self:
-        """A copy with leaves replaced by dotted path.
+        """Copy the design with other values of some leaves.
 
         Args:
             values: numbers, texts, or arrays of either with the batch in front.
             where: what to name in errors.
             label: origin of the new values.
+
+        Returns:
+            The validated copy.
 
         Raises:
             InputError: unknown path, or a value or combination that makes no sense.
@@ -138,7 +153,13 @@ class RobotDesign:
             ) from None
 
     def take(self, index: int) -> Self:
-        """One robot of a batch; values keep their origins.
+        """Take one robot of a batch; its values keep their origins.
+
+        Args:
+            index: of the robot.
+
+        Returns:
+            The single robot.
 
         Raises:
             IndexError: the batch is not that long.
@@ -152,7 +173,7 @@ class RobotDesign:
         return parameters.with_values(self, plain, f"{self.name}[{index}]")
 
     def rows(self, index: np.ndarray) -> Self:
-        """A batch of the robots with these numbers, which may repeat.
+        """Make a batch of the robots with these numbers, which may repeat.
 
         All its number leaves are arrays with the batch in front, whichever differ, so that what is
         computed of a robot does not depend on what others of the batch differ in, to the last
@@ -160,6 +181,9 @@ class RobotDesign:
 
         Args:
             index: `(n,)`, of robots of a batch; zeros for copies of a single robot.
+
+        Returns:
+            The batch of n robots.
         """
         cls: Any = type(self)
         values: dict[str, Any] = {}
@@ -195,5 +219,13 @@ class RobotDesign:
 
 
 def prefixed(copy: str, name: str) -> str:
-    """Name of a joint, motor or link of one copy of the limb, such as `left_knee`."""
+    """Name a joint, motor or link of one copy of the limb.
+
+    Args:
+        copy: name of the copy, such as `left`; empty where the robot is described as a whole.
+        name: within the limb, such as `knee`.
+
+    Returns:
+        The full name, such as `left_knee`.
+    """
     return f"{copy}_{name}" if copy else name

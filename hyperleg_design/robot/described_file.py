@@ -77,11 +77,14 @@ class FileRobot:
 
 
 def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
-    """Read a URDF or MJCF.
+    """Read a robot from a URDF or MJCF file.
 
     Args:
         path: the file.
         meshes: whether the meshes that a URDF names must be there.
+
+    Returns:
+        Its links and joints, with the limits that the file states.
 
     Raises:
         InputError: it cannot be read, has two roots, a loop or repeated names, a mesh is missing,
@@ -111,7 +114,14 @@ def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
 
 
 def fit_name(name: str) -> str:
-    """A name of the file as dotted paths take it: letters, digits and underscores."""
+    """Turn a name of the file into one that dotted paths take: letters, digits and underscores.
+
+    Args:
+        name: as the file has it.
+
+    Returns:
+        The changed name.
+    """
     fit = re.sub(r"\W", "_", name)
     return fit if fit[:1].isalpha() else f"n_{fit}"
 

@@ -19,7 +19,14 @@ TEMPLATE = "robot.urdf.xacro"
 
 
 def tree_mapping(tree: Tree) -> dict[str, Any]:
-    """The tree as plain mappings, the input of the xacro template."""
+    """Write a kinematic tree as plain mappings, the input of the xacro template.
+
+    Args:
+        tree: the robot.
+
+    Returns:
+        `links` and `joints`, each by name.
+    """
     return {
         "links": {link.name: _link(link) for link in tree.links},
         "joints": {joint.name: _joint(joint) for joint in tree.joints},
@@ -27,7 +34,14 @@ def tree_mapping(tree: Tree) -> dict[str, Any]:
 
 
 def tree_yaml(tree: Tree) -> str:
-    """`tree_mapping` as YAML, numbers in full precision."""
+    """Write a kinematic tree as YAML, with numbers in full precision.
+
+    Args:
+        tree: the robot.
+
+    Returns:
+        The text of `tree_mapping`.
+    """
     return yaml.dump(
         tree_mapping(tree),
         Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper),

@@ -45,15 +45,18 @@ class Design(HyperLeg):
     def with_values(
         self, values: Mapping[str, Any], where: str = "override", label: str = "user"
     ) -> Self:
-        """A copy with leaves replaced by dotted path.
+        """Copy the design with other values of some leaves.
 
-        A printed sum of masses (`masses.expected_total`, `masses.expected_leg`) lapses where a mass
-        in it is replaced.
+        A printed sum of masses (`masses.expected_total`, `masses.expected_leg`) is no longer
+        checked where a mass in it is replaced.
 
         Args:
             values: numbers, texts, or arrays of either with the batch in front.
             where: what to name in errors.
             label: origin of the new values.
+
+        Returns:
+            The validated copy.
 
         Raises:
             InputError: unknown path, or a value or combination that makes no sense.
@@ -124,7 +127,15 @@ def changed(
     overrides: Mapping[str, Any] | Iterable[str] = (),
     overlays: Iterable[str | Path] = (),
 ) -> Design:
-    """A design with other values, as `load_design` takes them.
+    """Copy a design with other values, given in the forms that `load_design` takes.
+
+    Args:
+        design: a robot or batch.
+        overrides: values by dotted path, or texts `path=value`.
+        overlays: files with some leaves of a design, applied before the overrides.
+
+    Returns:
+        The validated copy.
 
     Raises:
         InputError: names file, field, value and remedy.
@@ -137,7 +148,14 @@ def changed(
 
 
 def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:
-    """A whole design from what `Design.to_mapping` gives, as policies and results carry it.
+    """Build a whole design from what `Design.to_mapping` gives, as policies and results carry it.
+
+    Args:
+        data: sections by name.
+        where: file, for error messages.
+
+    Returns:
+        The validated design.
 
     Raises:
         InputError: no mapping, an unknown or missing field, or a value that makes no sense.
@@ -182,7 +200,13 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
 
 
 def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, Any]:
-    """Overrides as a mapping; texts are `path=value` with the value in YAML.
+    """Parse overrides into a mapping.
+
+    Args:
+        overrides: values by dotted path, or texts `path=value` with the value in YAML.
+
+    Returns:
+        Values by dotted path.
 
     Raises:
         InputError: a text without `=`, or a value that is not YAML.
@@ -246,7 +270,15 @@ def _overlaid(design: Design, data: Mapping[str, Any], where: str) -> Design:
 def leaf_values(
     data: Mapping[str, Any], cls: type, where: str
 ) -> tuple[dict[str, Any], dict[str, Origin]]:
-    """Values and origins of nested leaves by dotted path, as a file with some of them holds.
+    """Collect the values and origins of nested leaves, as a file with some of them holds.
+
+    Args:
+        data: nested mappings.
+        cls: dataclass of the design, which knows all leaves.
+        where: file, for error messages.
+
+    Returns:
+        Values, and origins, both by dotted path.
 
     Raises:
         InputError: a leaf that is neither a value nor `{value, label, source}`.

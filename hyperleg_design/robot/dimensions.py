@@ -14,21 +14,42 @@ if TYPE_CHECKING:
 
 
 def total_mass(design: RobotDesign) -> Any:
-    """Mass of the robot [kg], `(...)`."""
+    """Compute the mass of the robot.
+
+    Args:
+        design: a robot or batch, of any family.
+
+    Returns:
+        The mass [kg], `(...)`.
+    """
     if isinstance(design, TreeDesign):
         return tree_limb.limb_masses(design).total
     return masses.mass_table(cast("Design", design)).total
 
 
 def limb_mass(design: RobotDesign) -> Any:
-    """Mass of one limb: of one leg, or of all but the root link [kg], `(...)`."""
+    """Compute the mass of one limb: of one leg, or of all but the root link.
+
+    Args:
+        design: a robot or batch, of any family.
+
+    Returns:
+        The mass [kg], `(...)`.
+    """
     if isinstance(design, TreeDesign):
         return tree_limb.limb_masses(design).limb
     return masses.mass_table(cast("Design", design)).leg
 
 
 def standing_height(design: RobotDesign) -> Any:
-    """Base's origin above the floor in the zero posture [m], `(...)`."""
+    """Compute the height of the base's origin above the floor in the zero posture.
+
+    Args:
+        design: a robot or batch, of any family.
+
+    Returns:
+        The height [m], `(...)`.
+    """
     if isinstance(design, TreeDesign):
         return tree_limb.standing_height(design)
     return leg_length(cast("Design", design))

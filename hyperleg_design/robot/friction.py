@@ -39,7 +39,14 @@ _LAWS: dict[str, Law] = {}
 
 
 def friction_law(name: str) -> Callable[[Law], Law]:
-    """Register a law of friction under the name that `friction.law` uses."""
+    """Register a law of friction under the name that `friction.law` uses.
+
+    Args:
+        name: of the law.
+
+    Returns:
+        A decorator for the function that computes Coulomb and viscous friction.
+    """
 
     def register(law: Law) -> Law:
         _LAWS[name] = law
@@ -79,13 +86,27 @@ def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
 
 @friction_law("declared")
 def declared(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]:
-    """The declared friction, whatever motors and reductions."""
+    """Keep the declared friction, whatever motors and reductions.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Coulomb friction [Nm] and viscous friction [Nms/rad] of each joint, `(..., joints)`.
+    """
     return _declared(design, "coulomb"), _declared(design, "viscous")
 
 
 @friction_law("reflected")
 def reflected(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]:
-    """The motors' share reflected through the reductions; see the module."""
+    """Reflect the motors' share of the friction through the reductions; see the module.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Coulomb friction [Nm] and viscous friction [Nms/rad] of each joint, `(..., joints)`.
+    """
     share = np.expand_dims(design.friction.motor_share, -1)
     matrix, reference = gear.absolute_reductions(design)
     peak, reference_peak = gear.peak_torques(design)

@@ -68,7 +68,14 @@ _LAWS: dict[str, Law] = {}
 
 
 def gear_law(name: str) -> Callable[[Law], Law]:
-    """Register a law of gears under the name that `gears.law` uses."""
+    """Register a law of gears under the name that `gears.law` uses.
+
+    Args:
+        name: of the law.
+
+    Returns:
+        A decorator for the function that computes the changes.
+    """
 
     def register(law: Law) -> Law:
         _LAWS[name] = law
@@ -78,7 +85,13 @@ def gear_law(name: str) -> Callable[[Law], Law]:
 
 
 def gear_change(design: HyperLeg | TreeDesign) -> GearChange:
-    """Changes against the reference build by the design's law.
+    """Compute the changes against the reference build by the design's law.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Changes of inertia, mass and loss.
 
     Raises:
         InputError: no such law.
@@ -95,13 +108,28 @@ def gear_change(design: HyperLeg | TreeDesign) -> GearChange:
 
 @gear_law("declared")
 def declared(design: HyperLeg | TreeDesign) -> GearChange:
-    """No change, whatever the reductions."""
+    """Change nothing, whatever the reductions.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        No change.
+    """
     return GearChange()
 
 
 @gear_law("catalogue")
 def catalogue(design: HyperLeg | TreeDesign) -> GearChange:
-    """Similar gears and stages for other torques, and equal stages in series; see the module."""
+    """Scale similar gears and stages to other torques, and put equal stages in series; see the
+    module.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Changes of rotor inertia, mass of stages, and loss.
+    """
     gears = design.gears
     matrix, reference = absolute_reductions(design)
     peak, reference_peak = peak_torques(design)
@@ -132,8 +160,13 @@ def catalogue(design: HyperLeg | TreeDesign) -> GearChange:
 
 
 def rotor_inertia(design: RobotDesign) -> np.ndarray:
-    """Inertia that turns with each motor, the rotor and the change of its gear, `(..., motors)`
-    [kg m^2]; of HyperLeg's seven.
+    """Compute the inertia that turns with each motor: the rotor and the change of its gear.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The inertia [kg m^2], `(..., motors)`; for HyperLeg, of all seven motors.
     """
     rotors = motors.motor_arrays(design).rotor_inertia
     change = gear_change(cast("HyperLeg | TreeDesign", design))
@@ -141,8 +174,13 @@ def rotor_inertia(design: RobotDesign) -> np.ndarray:
 
 
 def absolute_reductions(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]:
-    """|M| of the design and of its reference build in the design's posture, each `(..., joints,
-    motors)` [-], of HyperLeg `(..., 7, 7)`.
+    """Compute |M| of the design and of its reference build, in the posture of the design.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The two matrices [-], each `(..., joints, motors)`; for HyperLeg `(..., 7, 7)`.
     """
     if isinstance(design, TreeDesign):
         matrix = np.abs(transmission.joint_from_motor(design))
@@ -155,8 +193,14 @@ def absolute_reductions(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.n
 
 
 def peak_torques(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]:
-    """Peak torque of the motors of a limb, of the design and of its reference build [Nm], each
-    `(..., motors)`; HyperLeg's toe motor counts where it is not installed.
+    """Compute the peak torques of the motors of a limb.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Those of the design and those of its reference build [Nm], each `(..., motors)`. The motor
+        of HyperLeg's toe counts where it is not installed, too.
     """
 
     def peak(names: list[Any]) -> np.ndarray:
@@ -170,26 +214,58 @@ def peak_torques(design: HyperLeg | TreeDesign) -> tuple[np.ndarray, np.ndarray]
 
 
 def installed(design: HyperLeg | TreeDesign) -> np.ndarray:
-    """1 for each motor that is there, 0 for a toe motor that is not, `(motors,)`."""
+    """State which motors of a limb are there.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        1 for each motor that is there, 0 for a toe motor that is not, `(motors,)`.
+    """
     there = np.ones(len(design.every_actuator))
     there[len(transmission.motor_names(design)) :] = 0.0
     return there
 
 
 def actuator_parts(design: HyperLeg | TreeDesign, part: str) -> list[Any]:
-    """`motor` or `gear` of each motor of a limb."""
+    """Collect one field of the actuators of a limb.
+
+    Args:
+        design: a robot or batch.
+        part: `motor` or `gear`.
+
+    Returns:
+        The value for each motor.
+    """
     return [getattr(actuator, part) for actuator in design.every_actuator]
 
 
 def reference_parts(design: HyperLeg | TreeDesign, part: str) -> list[Any]:
-    """`motor` or `gear` of the reference build for each motor of a limb."""
+    """Collect one field of the reference build's actuators of a limb.
+
+    Args:
+        design: a robot or batch.
+        part: `motor` or `gear`.
+
+    Returns:
+        The value for each motor.
+    """
     if isinstance(design, TreeDesign):
         return [getattr(design.reference_sections[n], part) for n in design.actuator_sections]
     return [reference_part(design, actuator, part) for actuator in ACTUATOR_OF_MOTOR]
 
 
 def reference_part(design: HyperLeg, actuator: str, part: str) -> Any:
-    """`motor` or `gear` of the reference build for an actuator of the design."""
+    """Look up one field of the reference build for an actuator of the design.
+
+    Args:
+        design: a robot or batch.
+        actuator: name of the actuator in the design.
+        part: `motor` or `gear`.
+
+    Returns:
+        The value.
+    """
     return getattr(design.reference, f"{_REFERENCE_OF_ACTUATOR.get(actuator, actuator)}_{part}")
 
 

@@ -81,7 +81,15 @@ def import_robot(
 
 
 def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """What the design's file would hold.
+    """Write what the file of the imported design would hold.
+
+    Args:
+        robot: as its URDF or MJCF describes it.
+        data: of the actuation file: motors, gears and which joints they drive.
+        where: the actuation file, for error messages.
+
+    Returns:
+        Sections by name, as `robot_from_mapping` takes them.
 
     Raises:
         InputError: an unknown field, or a pattern that matches no joint.

@@ -92,5 +92,15 @@ class Tree:
         return tuple(j for j in self.joints if not j.fixed)
 
     def link(self, name: str) -> Link:
-        """Find a link by its name."""
+        """Find a link by its name.
+
+        Args:
+            name: of the link.
+
+        Returns:
+            The link.
+
+        Raises:
+            StopIteration: there is none of this name.
+        """
         return next(link for link in self.links if link.name == name)

@@ -89,7 +89,21 @@ class FourBar:
         crank_start: float,
         field: str,
     ) -> FourBar:
-        """The four-bar whose ratio is `at_rest` when assembled and `at_turn` at the lever's `turn`.
+        """Find the four-bar linkage with two given ratios: when assembled, and at one turn of the
+        lever.
+
+        Args:
+            at_rest: ratio when assembled [-].
+            at_turn: ratio at `turn` [-].
+            turn: of the lever [rad].
+            crank: length of the crank [m].
+            ground: distance of the two axes [m].
+            turns: range of the lever's turn that must be reached [rad].
+            crank_start: angle of the crank when assembled [rad].
+            field: parameter that the error names.
+
+        Returns:
+            The linkage.
 
         Raises:
             InputError: no four-bar with these bars does that, all the way between `turns`.
@@ -180,7 +194,13 @@ class LinkageModel:
 
     @classmethod
     def of(cls, design: Design) -> LinkageModel:
-        """The linkage of one robot (not a batch), calibrated to its two postures.
+        """Calibrate the linkage of one robot to the reductions of its two postures.
+
+        Args:
+            design: one robot, not a batch.
+
+        Returns:
+            The linkage.
 
         Raises:
             InputError: a batch, or reductions that no such linkage gives.
@@ -277,8 +297,13 @@ class LinkageModel:
         return np.concatenate([position, np.zeros((*position.shape[:-1], 1))], -1)
 
     def motor_position(self, position: np.ndarray) -> np.ndarray:
-        """Motor angles [rad] `(..., motors)` at joint angles [rad] `(..., joints)`; zero at
-        zero.
+        """Compute the motor angles at joint angles; they are zero at zero.
+
+        Args:
+            position: joint angles [rad], `(..., joints)`.
+
+        Returns:
+            Motor angles [rad], `(..., motors)`.
         """
         q = self._padded(position)
         knee, pitch, roll = q[..., 3], q[..., 4], self.ankle_roll / self.knee * q[..., 5]
@@ -293,8 +318,13 @@ class LinkageModel:
         ]
 
     def joint_from_motor(self, position: np.ndarray) -> np.ndarray:
-        """M at joint angles, the transposed gradient of `motor_position`, `(..., joints)` -> `(...,
-        joints, motors)` [-].
+        """Compute M at joint angles, the transposed gradient of `motor_position`.
+
+        Args:
+            position: joint angles [rad], `(..., joints)`.
+
+        Returns:
+            M [-], `(..., joints, motors)`.
         """
         q = self._padded(position)
         matrix = np.zeros((*q.shape[:-1], 7, 7))
@@ -311,8 +341,13 @@ class LinkageModel:
         return matrix[..., : self.joints, : self.motors]
 
     def walking_posture(self, design: Design) -> np.ndarray:
-        """Joint angles at which the walking reductions hold [rad] `(joints,)`; those that do not
-        matter are zero.
+        """State the joint angles at which the walking reductions hold.
+
+        Args:
+            design: the robot.
+
+        Returns:
+            Joint angles [rad], `(joints,)`; those on which the reductions do not depend are zero.
         """
         q = np.zeros(7)
         q[4] = np.deg2rad(design.transmission.linkage.walking_ankle_pitch_deg)

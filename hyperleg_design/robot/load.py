@@ -63,7 +63,15 @@ def changed_robot(
     overrides: Mapping[str, Any] | Iterable[str] = (),
     overlays: Iterable[str | Path] = (),
 ) -> RobotDesign:
-    """A design of any family with other values, as `load_robot` takes them.
+    """Copy a design of any family with other values, given in the forms that `load_robot` takes.
+
+    Args:
+        design: a robot or batch.
+        overrides: values by dotted path, or texts `path=value`.
+        overlays: files with some leaves of a design, applied before the overrides.
+
+    Returns:
+        The validated copy.
 
     Raises:
         InputError: names file, field, value and remedy.
@@ -79,11 +87,14 @@ def changed_robot(
 
 
 def walker(design: RobotDesign, what: str) -> Design:
-    """The design, where it is of HyperLeg's family.
+    """Check that a design is of HyperLeg's family.
 
     Args:
         design: a robot of any family.
         what: that needs one, for the error.
+
+    Returns:
+        The same design.
 
     Raises:
         InputError: it is of another family.
@@ -99,7 +110,14 @@ def walker(design: RobotDesign, what: str) -> Design:
 
 
 def robot_from_mapping(data: Mapping[str, Any], where: str) -> RobotDesign:
-    """A design of any family from what its `to_mapping` gives.
+    """Build a design of any family from what its `to_mapping` gives.
+
+    Args:
+        data: sections by name.
+        where: file, for error messages.
+
+    Returns:
+        The validated design.
 
     Raises:
         InputError: no mapping, an unknown or missing field, or a value that makes no sense.
@@ -110,7 +128,13 @@ def robot_from_mapping(data: Mapping[str, Any], where: str) -> RobotDesign:
 
 
 def family_of(path: Path) -> str:
-    """Family of the design in a file, that of its base where it has one.
+    """Find the family of the design in a file; where the file has a base, that of the base.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        One of `FAMILIES`.
 
     Raises:
         InputError: an unknown family, or a base that leads back to itself.

@@ -45,7 +45,13 @@ class MassRow:
 
 
 def mass_rows(design: RobotDesign) -> list[MassRow]:
-    """Rows of the mass table: segments, leg and robot in the zero posture, then links.
+    """Compute the rows of the mass table.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        Rows of segments, leg and robot in the zero posture, then of links.
 
     Raises:
         InputError: a batch of designs.

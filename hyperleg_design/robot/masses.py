@@ -76,7 +76,14 @@ _LAWS: dict[str, Law] = {}
 
 
 def mass_law(name: str) -> Callable[[Law], Law]:
-    """Register a law of masses under the name that `masses.law` uses."""
+    """Register a law of masses under the name that `masses.law` uses.
+
+    Args:
+        name: of the law.
+
+    Returns:
+        A decorator for the function that computes the mass table.
+    """
 
     def register(law: Law) -> Law:
         _LAWS[name] = law
@@ -109,12 +116,28 @@ def mass_table(design: HyperLeg) -> MassTable:
 
 
 def built_mass(design: Any, actuator: Any) -> Any:
-    """Mass of an actuator as the design builds it [kg]."""
+    """Compute the mass of an actuator as the design builds it.
+
+    Args:
+        design: gives the mass of gears per torque.
+        actuator: section of the design with motor and gear.
+
+    Returns:
+        The mass [kg], `(...)`.
+    """
     return actuator_mass(actuator.motor, actuator.gear, design.masses.gear_mass_per_torque)
 
 
 def reference_mass(design: HyperLeg, name: str) -> Any:
-    """Mass of an actuator in the reference build [kg]; `name` as in `Actuators`."""
+    """Compute the mass of an actuator in the reference build.
+
+    Args:
+        design: a robot or batch.
+        name: of the actuator, a field of `Actuators`.
+
+    Returns:
+        The mass [kg], `(...)`.
+    """
     part = _REFERENCE_PART[name]
     motor, gear = (
         getattr(design.reference, f"{part}_motor"),
@@ -125,8 +148,14 @@ def reference_mass(design: HyperLeg, name: str) -> Any:
 
 @mass_law("components")
 def components(design: HyperLeg) -> MassTable:
-    """Declared masses, corrected for other actuators, places and lengths than the reference
-    build's.
+    """Correct the declared masses for actuators, places and lengths that differ from the reference
+    build.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The mass table.
     """
     housed: list[HousedMass] = []
     load: dict[str, Any] = dict.fromkeys(SEGMENTS, 0.0)
@@ -149,8 +178,14 @@ def components(design: HyperLeg) -> MassTable:
 
 @mass_law("fixed")
 def fixed(design: HyperLeg) -> MassTable:
-    """The declared masses, whatever motors and lengths; a missing toe motor still counts, ballast
-    as declared.
+    """Keep the declared masses, whatever motors and lengths; a toe motor that is not installed
+    still counts, and ballast is as declared.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The mass table.
     """
     lost = 0.0 if design.actuators.toe_installed else reference_mass(design, "toe")
     return _table(design, _moved(design, "toe", lost, design.masses.thigh_ballast), None)
@@ -204,7 +239,11 @@ def _table(
 
 
 def check_masses(design: HyperLeg, where: str) -> None:
-    """Whether the masses add up and stay positive.
+    """Check that the masses add up and stay positive.
+
+    Args:
+        design: a robot or batch.
+        where: file, for error messages.
 
     Raises:
         InputError: a segment lighter than what it carries, or a sum other than the printed one.
@@ -241,7 +280,11 @@ def check_masses(design: HyperLeg, where: str) -> None:
 
 
 def check_printed(design: HyperLeg, where: str) -> None:
-    """Whether the declared masses add up to the printed sums, where a file gives those.
+    """Check that the declared masses add up to the printed sums, where a file states them.
+
+    Args:
+        design: a robot or batch.
+        where: file, for error messages.
 
     Raises:
         InputError: they do not.
@@ -266,8 +309,14 @@ def check_printed(design: HyperLeg, where: str) -> None:
 
 
 def lapsed(design: HyperLeg, values: Iterable[str]) -> dict[str, float]:
-    """Printed sums that no longer hold when these leaves are replaced, each set to 0, which means
-    no check.
+    """List the printed sums that no longer hold when some leaves are replaced.
+
+    Args:
+        design: a robot or batch.
+        values: dotted paths of the leaves.
+
+    Returns:
+        Paths of the sums, each with the value 0, which means no check.
     """
     leg = {f"{segment}.mass" for segment in SEGMENTS[1:]}
     parts = {"masses.expected_leg": leg, "masses.expected_total": leg | {"pelvis.mass"}}

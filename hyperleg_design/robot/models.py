@@ -51,7 +51,14 @@ class RigidBodyModel:
         return 6 if self.floating else 0
 
     def mass_matrix(self, q: np.ndarray) -> np.ndarray:
-        """Joint-space inertia with rotors, `(nv, nv)` (CRBA)."""
+        """Compute the joint-space inertia with rotors (CRBA).
+
+        Args:
+            q: configuration in Pinocchio's coordinates, `(nq,)`.
+
+        Returns:
+            The symmetric matrix, `(nv, nv)`.
+        """
         import pinocchio as pin
 
         matrix = np.array(pin.crba(self.model, self.data, q))
@@ -59,26 +66,59 @@ class RigidBodyModel:
         return upper + np.triu(matrix, 1).T + self.reflected
 
     def inverse_dynamics(self, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        """Generalised forces with rotors, without contacts or friction, `(nv,)` (RNEA)."""
+        """Compute the generalised forces of a motion with rotors, without contacts or friction
+        (RNEA).
+
+        Args:
+            q: configuration, `(nq,)`.
+            v: velocity, `(nv,)`.
+            a: acceleration, `(nv,)`.
+
+        Returns:
+            The forces [N, Nm], `(nv,)`.
+        """
         import pinocchio as pin
 
         return np.array(pin.rnea(self.model, self.data, q, v, a)) + self.reflected @ a
 
     def center_of_mass(self, q: np.ndarray) -> np.ndarray:
-        """Position of the centre of mass in the world [m], `(3,)`."""
+        """Compute the position of the centre of mass in the world.
+
+        Args:
+            q: configuration, `(nq,)`.
+
+        Returns:
+            `(3,)` [m].
+        """
         import pinocchio as pin
 
         return np.array(pin.centerOfMass(self.model, self.data, q))
 
     def frame_position(self, q: np.ndarray, link: str) -> np.ndarray:
-        """Origin of a link in the world [m], `(3,)`."""
+        """Compute the position of a link's origin in the world.
+
+        Args:
+            q: configuration, `(nq,)`.
+            link: name of the link.
+
+        Returns:
+            `(3,)` [m].
+        """
         import pinocchio as pin
 
         pin.framesForwardKinematics(self.model, self.data, q)
         return np.array(self.data.oMf[self.model.getFrameId(link)].translation)
 
     def frame_jacobian(self, q: np.ndarray, link: str) -> np.ndarray:
-        """Velocity of a link's origin (linear, then angular, world axes) over `v`, `(6, nv)`."""
+        """Compute the Jacobian of a link's origin in world axes.
+
+        Args:
+            q: configuration, `(nq,)`.
+            link: name of the link.
+
+        Returns:
+            Linear, then angular velocity over `v`, `(6, nv)`.
+        """
         import pinocchio as pin
 
         return np.array(
@@ -99,8 +139,16 @@ class RigidBodyModel:
     def to_mujoco(
         self, q: np.ndarray, v: np.ndarray | None = None, a: np.ndarray | None = None
     ) -> tuple[np.ndarray, ...]:
-        """Convert a state to MuJoCo's coordinates: quaternion with w first, linear velocity and
-        acceleration of the base in the world.
+        """Convert a state to MuJoCo's coordinates: the quaternion begins with w, and the base's
+        linear velocity and acceleration are in world axes.
+
+        Args:
+            q: configuration in Pinocchio's coordinates, `(nq,)`.
+            v: velocity, `(nv,)`; may be left out.
+            a: acceleration, `(nv,)`; may be left out, and needs `v`.
+
+        Returns:
+            `qpos`, and `qvel` and `qacc` where `v` and `a` are given.
         """
         state = [q.copy()]
         if self.floating:
@@ -119,7 +167,14 @@ class RigidBodyModel:
 
 
 def quaternion_matrix(xyzw: np.ndarray) -> np.ndarray:
-    """Rotation matrix of a unit quaternion x y z w, `(3, 3)`."""
+    """Convert a unit quaternion to a rotation matrix.
+
+    Args:
+        xyzw: the quaternion, with w last, `(4,)`.
+
+    Returns:
+        `(3, 3)`.
+    """
     x, y, z, w = xyzw
     return np.array(
         [
@@ -131,7 +186,15 @@ def quaternion_matrix(xyzw: np.ndarray) -> np.ndarray:
 
 
 def leg_reflected_inertia(design: RobotDesign, posture: str | None = None) -> np.ndarray:
-    """M diag(J) M^T of one leg, `(..., joints, joints)` [kg m^2]."""
+    """Compute the reflected inertia of one leg, M diag(J) M^T.
+
+    Args:
+        design: a robot or batch.
+        posture: `walking` or `standing`; the design's own by default.
+
+    Returns:
+        `(..., joints, joints)` [kg m^2].
+    """
     rotors = rotor_inertia(design)[..., : len(transmission.motor_names(design))]
     return transmission.reflected_inertia(transmission.joint_from_motor(design, posture), rotors)
 

@@ -132,8 +132,14 @@ class Motor:
         return self._value("resistance") * (2.0 if self.resistance_convention == "phase" else 1.0)
 
     def power_constant(self, constants: str = "paper") -> float:
-        """Joule heat over squared torque, Cp [W/Nm^2]; a preset's value where the motor has that
-        preset.
+        """Compute the power constant Cp, Joule heat over squared torque.
+
+        Args:
+            constants: name of the preset of constants, as in `no_load_speed`; a preset states Cp
+                itself.
+
+        Returns:
+            Cp [W/Nm^2].
         """
         preset = self.presets.get(constants)
         if preset is not None:
@@ -143,11 +149,14 @@ class Motor:
         )
 
     def no_load_speed(self, constants: str = "paper") -> float:
-        """Speed without load at the nominal voltage [rad/s].
+        """Look up the speed without load at the nominal voltage.
 
         Args:
             constants: name of the preset of constants, `paper` or `vendor`; a motor that lacks the
                 preset uses the vendor's constants.
+
+        Returns:
+            The speed [rad/s].
         """
         preset = self.presets.get(constants)
         return (
@@ -157,20 +166,37 @@ class Motor:
         )
 
     def peak_torque(self, constants: str = "paper") -> float:
-        """Largest torque of the motor, for a short time [Nm].
+        """Look up the largest torque of the motor, which it gives for a short time.
 
         Args:
             constants: name of the preset of constants, as in `no_load_speed`.
+
+        Returns:
+            The torque [Nm].
         """
         preset = self.presets.get(constants)
         return preset["peak_torque"].value if preset is not None else self._value("peak_torque")
 
     def stall_torque(self, constants: str = "paper") -> float:
-        """Where the DC-motor line meets zero speed, omega_0 / Cp [Nm]."""
+        """Compute the torque at which the line of the DC motor meets zero speed, omega_0 / Cp.
+
+        Args:
+            constants: name of the preset of constants, as in `no_load_speed`.
+
+        Returns:
+            The torque [Nm].
+        """
         return self.no_load_speed(constants) / self.power_constant(constants)
 
     def corner_speed(self, constants: str = "paper") -> float:
-        """Speed up to which the peak torque is there [rad/s]; 0 where the line never reaches it."""
+        """Compute the speed up to which the peak torque is available.
+
+        Args:
+            constants: name of the preset of constants, as in `no_load_speed`.
+
+        Returns:
+            The speed [rad/s]; 0 where the line is below the peak torque at any speed.
+        """
         return max(
             0.0,
             self.no_load_speed(constants)
@@ -178,11 +204,26 @@ class Motor:
         )
 
     def motor_constant(self, constants: str = "paper") -> float:
-        """Torque over the root of the heat, Km = Cp^-1/2 [Nm/W^1/2]."""
+        """Compute the motor constant Km = Cp^-1/2, torque over the root of the heat.
+
+        Args:
+            constants: name of the preset of constants, as in `no_load_speed`.
+
+        Returns:
+            Km [Nm/W^1/2].
+        """
         return self.power_constant(constants) ** -0.5
 
     def rated_heat(self, constants: str = "paper") -> float:
-        """Joule heat that the motor carries for ever, Cp tau_rated^2 [W]."""
+        """Compute the Joule heat at the rated torque, Cp tau_rated^2, which the motor carries for
+        ever.
+
+        Args:
+            constants: name of the preset of constants, as in `no_load_speed`.
+
+        Returns:
+            The heat [W].
+        """
         return self.power_constant(constants) * self.rated_torque**2
 
     def peak_duty(self) -> float:
@@ -190,7 +231,14 @@ class Motor:
         return min(1.0, (self.rated_torque / self._value("peak_torque")) ** 2)
 
     def peak_power(self, constants: str = "paper") -> float:
-        """Largest mechanical power inside the envelope [W]."""
+        """Compute the largest mechanical power inside the envelope.
+
+        Args:
+            constants: name of the preset of constants, as in `no_load_speed`.
+
+        Returns:
+            The power [W].
+        """
         speed = max(self.corner_speed(constants), self.no_load_speed(constants) / 2)
         return speed * min(
             self.peak_torque(constants),
@@ -222,6 +270,9 @@ class MotorArrays:
 
 def load_motor(path: Path) -> Motor:
     """Read one file of the motor catalogue.
+
+    Args:
+        path: of the motor's YAML file.
 
     Returns:
         The motor, in SI units.
@@ -355,6 +406,9 @@ def _joined(shipped: Path, folders: str) -> dict[str, Motor]:
 def use_folder(folder: str | Path) -> None:
     """Add the motors of a folder to the catalogue of this process and of those that it starts.
 
+    Args:
+        folder: with one YAML file for each motor.
+
     Raises:
         InputError: as `catalogue`.
     """
@@ -412,7 +466,11 @@ def _motor_at(path: Path, written: int) -> Motor:
 
 
 def check_names(design: HyperLeg, where: str) -> None:
-    """Whether all motors that a design names are in the catalogue.
+    """Check that all motors that a design names are in the catalogue.
+
+    Args:
+        design: a robot or batch.
+        where: file, for error messages.
 
     Raises:
         InputError: one is not.
@@ -427,7 +485,15 @@ def check_names(design: HyperLeg, where: str) -> None:
 
 
 def gather(names: Any, value: Any) -> np.ndarray:
-    """`value(motor)` for one name or an array of names, in the array's shape."""
+    """Collect a number of one or several motors.
+
+    Args:
+        names: one name, or an array of names, `(...)`.
+        value: function from a `Motor` to the number.
+
+    Returns:
+        The numbers, `(...)`.
+    """
     if isinstance(names, str):
         return np.asarray(value(find_motor(names)), float)
     unique, inverse = np.unique(np.asarray(names), return_inverse=True)
@@ -437,8 +503,18 @@ def gather(names: Any, value: Any) -> np.ndarray:
 
 
 def motor_arrays(design: RobotDesign) -> MotorArrays:
-    """Constants of the motors of one limb of a design or batch, each `(..., motors)`; of HyperLeg's
-    seven, whether the toe's is installed or not.
+    """Collect the constants of the motors of one limb.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Constants, each `(..., motors)`; for HyperLeg of all seven motors, whether that of the toe
+        is installed or not.
+
+    Raises:
+        InputError: the kind of constants differs within a batch, or a motor is not in the
+            catalogue.
     """
     electrical = design.electrical_section
     kind = electrical.constants

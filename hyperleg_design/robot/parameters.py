@@ -73,19 +73,44 @@ def number(
     size: int = 0,
     default: Any = dataclasses.MISSING,
 ) -> Any:
-    """A dataclass field for a number, or a vector of `size` numbers, inside `[low, high]`."""
+    """Make a dataclass field for a number, or for a vector of numbers, with bounds.
+
+    Args:
+        unit: of the number; empty without one.
+        low: smallest value that is allowed.
+        high: largest value that is allowed.
+        size: length of the vector; 0 for a single number.
+        default: of the field; required by default.
+
+    Returns:
+        The field.
+    """
     return _field(Rule("number", unit, low, high, size), default)
 
 
 def text(*choices: str, default: Any = dataclasses.MISSING, varies: bool = False) -> Any:
-    """A dataclass field for a text, one of `choices` where given; `varies` lets the designs of a
-    batch differ in it.
+    """Make a dataclass field for a text.
+
+    Args:
+        choices: values that are allowed; any text where none are given.
+        default: of the field; required by default.
+        varies: whether the designs of a batch may differ in it.
+
+    Returns:
+        The field.
     """
     return _field(Rule("text", choices=choices, varies=varies), default)
 
 
 def flag(default: Any = dataclasses.MISSING) -> Any:
-    """A dataclass field for true or false."""
+    """Make a dataclass field for true or false.
+
+    Args:
+        default: of the field; required by default.
+
+    Returns:
+        The field.
+    """
     return _field(Rule("flag", varies=False), default)
 
 
@@ -100,13 +125,27 @@ def _field(rule: Rule, default: Any) -> Any:
 
 
 def rule_of(field: dataclasses.Field[Any]) -> Rule:
-    """Rule of a leaf made by `number`, `text` or `flag`."""
+    """Look up the rule of a leaf that `number`, `text` or `flag` made.
+
+    Args:
+        field: of a dataclass.
+
+    Returns:
+        The rule.
+    """
     rule: Rule = field.metadata["rule"]
     return rule
 
 
 def is_leaf(field: dataclasses.Field[Any]) -> bool:
-    """Whether a dataclass field is a leaf (a section otherwise)."""
+    """Decide whether a dataclass field is a leaf, not a section.
+
+    Args:
+        field: of a dataclass.
+
+    Returns:
+        True for a leaf.
+    """
     return "rule" in field.metadata
 
 
@@ -128,7 +167,13 @@ def _section_types(cls: Any) -> Mapping[str, type]:
 
 
 def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
-    """A value brought into the form of its rule.
+    """Bring a value into the form of its rule.
+
+    Args:
+        value: as a file or a user gives it.
+        rule: of the leaf.
+        where: file or option, for error messages.
+        path: dotted path of the leaf.
 
     Returns:
         A float, text or bool; a read-only array for vectors and batches.
@@ -214,7 +259,13 @@ def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
 
 
 def check_all(instance: Any, where: str, path: str = "") -> None:
-    """Check and normalise every leaf of a dataclass in place; meant for `__post_init__`."""
+    """Check and normalise every leaf of a dataclass in place; meant for `__post_init__`.
+
+    Args:
+        instance: the dataclass.
+        where: file or option, for error messages.
+        path: dotted path of the instance in that file.
+    """
     for field in dataclasses.fields(instance):
         if is_leaf(field):
             name = f"{path}.{field.name}" if path else field.name
@@ -236,6 +287,9 @@ def from_mapping(
         where: file or option, for messages.
         path: dotted path of `data` in that file.
         origins: filled with the origin of each leaf, by dotted path.
+
+    Returns:
+        The validated dataclass.
 
     Raises:
         InputError: unknown or missing field, or a leaf that breaks its rule.
@@ -285,7 +339,19 @@ def from_mapping(
 
 
 def labelled(data: Any, where: str, path: str) -> tuple[Any, Origin]:
-    """Value and origin of a leaf, plain or `{value, label, source}`."""
+    """Split a leaf into its value and its origin.
+
+    Args:
+        data: a plain value, or a mapping `{value, label, source}`.
+        where: file, for error messages.
+        path: dotted path of the leaf.
+
+    Returns:
+        The value and its origin; that of a plain value is the user.
+
+    Raises:
+        InputError: a mapping with other keys, or with a label that does not exist.
+    """
     if not isinstance(data, Mapping):
         return data, Origin("user")
     extra = [k for k in data if k not in ("value", "label", "source", "confidence")]
@@ -300,7 +366,15 @@ def labelled(data: Any, where: str, path: str) -> tuple[Any, Origin]:
 
 
 def unknown(name: str, known: list[str]) -> str:
-    """Remedy for a name that does not exist: the nearest one, or all."""
+    """Write the remedy for a name that does not exist: the nearest name, or all of them.
+
+    Args:
+        name: that was given.
+        known: names that exist.
+
+    Returns:
+        The text.
+    """
     near = difflib.get_close_matches(name[:100], known, n=1)
     return (
         f"no such field; did you mean {near[0]}?"
@@ -310,7 +384,14 @@ def unknown(name: str, known: list[str]) -> str:
 
 
 def some(names: Iterable[str]) -> str:
-    """Names in one line: all, or where there are many, the sections they lie in."""
+    """Write names in one line: all, or the sections they lie in where there are many.
+
+    Args:
+        names: dotted paths.
+
+    Returns:
+        The text.
+    """
     names = list(names)
     if len(names) <= MOST_NAMES:
         return ", ".join(names)
@@ -321,7 +402,15 @@ def some(names: Iterable[str]) -> str:
 
 
 def leaves(instance: Any, path: str = "") -> dict[str, Any]:
-    """All leaves of a dataclass by dotted path, in order of declaration."""
+    """Collect all leaves of a dataclass.
+
+    Args:
+        instance: the dataclass.
+        path: dotted path of the instance, put before those of its leaves.
+
+    Returns:
+        Values by dotted path, in the order of declaration.
+    """
     values: dict[str, Any] = {}
     for field in dataclasses.fields(instance):
         name = f"{path}.{field.name}" if path else field.name
@@ -335,7 +424,15 @@ def leaves(instance: Any, path: str = "") -> dict[str, Any]:
 
 @cache
 def rules(cls: type, path: str = "") -> Mapping[str, Rule]:
-    """Rules of all leaves of a dataclass by dotted path."""
+    """Collect the rules of all leaves of a dataclass.
+
+    Args:
+        cls: the dataclass.
+        path: dotted path of the class, put before those of its leaves.
+
+    Returns:
+        Rules by dotted path.
+    """
     rules_by_path: dict[str, Rule] = {}
     sections = section_types(cls)
     for field in dataclasses.fields(cls):
@@ -350,7 +447,7 @@ def rules(cls: type, path: str = "") -> Mapping[str, Rule]:
 def with_values(
     instance: T, values: Mapping[str, Any], where: str, prefix: str = "", **others: Any
 ) -> T:
-    """A copy with leaves replaced by dotted path; values may be batches.
+    """Copy a dataclass with other values of some leaves; values may be batches.
 
     Args:
         instance: the dataclass.
@@ -358,6 +455,9 @@ def with_values(
         where: what to name in errors.
         prefix: dotted path of `instance`, with a dot behind.
         others: fields that are neither leaves nor sections.
+
+    Returns:
+        The validated copy.
 
     Raises:
         InputError: a path that names no leaf, or a value that breaks its rule.

@@ -13,18 +13,29 @@ Pose = tuple[np.ndarray, np.ndarray]
 
 
 def axis_rotation(axis: np.ndarray, angle: float) -> np.ndarray:
-    """Rotation by an angle [rad] about a unit axis, `(3, 3)` (Rodrigues)."""
+    """Compute the rotation by an angle about an axis (Rodrigues).
+
+    Args:
+        axis: unit vector, `(3,)`.
+        angle: [rad].
+
+    Returns:
+        The rotation matrix, `(3, 3)`.
+    """
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 def link_poses(tree: Tree, angles: Mapping[str, float] | None = None) -> dict[str, Pose]:
-    """Pose of every link in the base's frame.
+    """Compute the pose of every link in the frame of the base.
 
     Args:
         tree: the robot.
         angles: joint angles [rad] by joint name; zero where not named.
+
+    Returns:
+        Rotation `(3, 3)` and position `(3,)` [m] of each link, by name.
 
     Raises:
         KeyError: an angle for a joint that the tree does not move.
@@ -54,13 +65,26 @@ def _turned(joint: TreeJoint, rotation: np.ndarray, position: np.ndarray, angle:
 
 
 def default_angles(tree: Tree) -> dict[str, float]:
-    """The default posture [rad], by joint name."""
+    """Collect the angles of the default posture.
+
+    Args:
+        tree: the robot.
+
+    Returns:
+        Angles [rad] by joint name.
+    """
     return {joint.name: joint.default for joint in tree.moving}
 
 
 def lowest_point(tree: Tree, poses: Mapping[str, Pose]) -> float:
-    """Height of the lowest pad in the base's frame [m]; of the lowest link's origin where there
-    are no pads.
+    """Find the height of the lowest pad.
+
+    Args:
+        tree: the robot.
+        poses: of all links, in the frame of the base.
+
+    Returns:
+        The height in the frame of the base [m]; without pads, that of the lowest link's origin.
     """
     heights = [
         float((poses[link.name][0] @ np.array(pad.position) + poses[link.name][1])[2]) - pad.size[0]

@@ -36,8 +36,14 @@ M_KNEE, M_ANKLE_LEFT, M_ANKLE_RIGHT, M_TOE = 3, 4, 5, 6
 
 
 def gear_ratios(design: HyperLeg) -> np.ndarray:
-    """Gears over those of the reference build, below the hip; the gears themselves at the hip [-],
-    `(..., 7)`.
+    """Compute the gears below the hip over those of the reference build; at the hip, the gears
+    themselves.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The ratios [-], `(..., 7)`.
     """
     reference = {"knee": "knee_gear", "ankle": "ankle_gear", "toe": "toe_gear"}
     parts = []
@@ -50,11 +56,14 @@ def gear_ratios(design: HyperLeg) -> np.ndarray:
 
 
 def full_joint_from_motor(design: HyperLeg, posture: str | None = None) -> np.ndarray:
-    """M of the leg with all joints and motors, `(..., 7, 7)` [-].
+    """Compute M of the leg with all joints and motors.
 
     Args:
         design: a robot or batch.
         posture: `walking` or `standing`; the design's own by default.
+
+    Returns:
+        M [-], `(..., 7, 7)`.
 
     Raises:
         InputError: no such posture.
@@ -68,8 +77,16 @@ def full_joint_from_motor(design: HyperLeg, posture: str | None = None) -> np.nd
 
 
 def reference_joint_from_motor(design: HyperLeg, posture: str | None = None) -> np.ndarray:
-    """M of the reference build, for which friction and gears are declared, `(..., 7, 7)` [-]; a
-    reduction that the reference build leaves open is the design's own.
+    """Compute M of the reference build, for which friction and gears are declared.
+
+    A reduction that the reference build leaves open is the design's own.
+
+    Args:
+        design: a robot or batch.
+        posture: `walking` or `standing`; the design's own by default.
+
+    Returns:
+        M [-], `(..., 7, 7)`.
     """
     posture = posture or design.transmission.posture
     own = getattr(design.transmission, posture)
@@ -106,15 +123,26 @@ def _matrix(printed: Any, scale: LinkageScale, gears: np.ndarray) -> np.ndarray:
 
 
 def joint_names(design: RobotDesign) -> tuple[str, ...]:
-    """Joints of one limb that move; HyperLeg's are `JOINTS`, without the toe where that is
-    locked.
+    """List the joints of one limb that move.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Names without the limb's; for HyperLeg `JOINTS`, without the toe where that is locked.
     """
     return tuple(design.joint_sections)
 
 
 def motor_names(design: RobotDesign) -> tuple[str, ...]:
-    """Motors of one limb that are there; HyperLeg's are `MOTORS`, without the toe's where that is
-    not installed.
+    """List the motors of one limb that are there.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Names without the limb's; for HyperLeg `MOTORS`, without the toe's where that is not
+        installed.
     """
     return tuple(design.actuator_sections)
 
@@ -141,23 +169,48 @@ def joint_from_motor(design: RobotDesign, posture: str | None = None) -> np.ndar
 
 
 def joint_torque(matrix: np.ndarray, motor_torque: np.ndarray) -> np.ndarray:
-    """M tau_motor, `(..., motors)` -> `(..., joints)` [Nm]."""
+    """Compute joint torques from motor torques, M tau_motor.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        motor_torque: [Nm], `(..., motors)`.
+
+    Returns:
+        Joint torques [Nm], `(..., joints)`.
+    """
     return np.einsum("...jm,...m->...j", matrix, motor_torque)
 
 
 def motor_velocity(matrix: np.ndarray, joint_velocity: np.ndarray) -> np.ndarray:
-    """M^T q_dot, `(..., joints)` -> `(..., motors)` [rad/s]."""
+    """Compute motor velocities from joint velocities, M^T q_dot.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        joint_velocity: [rad/s], `(..., joints)`.
+
+    Returns:
+        Motor velocities [rad/s], `(..., motors)`.
+    """
     return np.einsum("...jm,...j->...m", matrix, joint_velocity)
 
 
 def motor_torque(
     matrix: np.ndarray, torque: np.ndarray, power_constant: np.ndarray | None = None
 ) -> np.ndarray:
-    """Motor torques that give the joint torques, `(..., joints)` -> `(..., motors)` [Nm].
+    """Compute motor torques that give the joint torques.
 
     A joint that no motor moves, such as a passive toe, is left to its spring: its torque has no
-    effect. Where motors outnumber joints, those of least Joule heat, given `power_constant`
-    [W/Nm^2] `(..., motors)` (equal ones by default): tau = C^-1 M^T (M C^-1 M^T)^-1 tau_joint.
+    effect. Where motors outnumber joints, the motor torques are those of least Joule heat: tau =
+    C^-1 M^T (M C^-1 M^T)^-1 tau_joint.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        torque: joint torques [Nm], `(..., joints)`.
+        power_constant: C, Joule heat over squared torque [W/Nm^2], `(..., motors)`; equal ones by
+            default.
+
+    Returns:
+        Motor torques [Nm], `(..., motors)`.
     """
     moved = driven_rows(matrix)
     if not moved.all():
@@ -176,19 +229,39 @@ def motor_torque(
 
 
 def driven_rows(matrix: np.ndarray) -> np.ndarray:
-    """Whether any motor moves each joint, in any robot of the batch, `(joints,)`."""
+    """Find the joints that any motor moves, in any robot of the batch.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+
+    Returns:
+        True for each such joint, `(joints,)`.
+    """
     reached = np.any(matrix != 0, -1)
     return np.asarray(reached.reshape(-1, reached.shape[-1]).any(0))
 
 
 def reflected_inertia(matrix: np.ndarray, rotor_inertia: np.ndarray) -> np.ndarray:
-    """M diag(J) M^T, `(..., joints, joints)` [kg m^2], from rotor inertias `(..., motors)`."""
+    """Compute the inertia of the rotors at the joints, M diag(J) M^T.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        rotor_inertia: J [kg m^2], `(..., motors)`.
+
+    Returns:
+        The reflected inertia [kg m^2], `(..., joints, joints)`.
+    """
     return (matrix * np.asarray(rotor_inertia)[..., None, :]) @ np.swapaxes(matrix, -1, -2)
 
 
 def derate(design: RobotDesign) -> np.ndarray:
-    """Fraction of the summed peak torque counted on at each joint that moves, `(..., joints)`
-    [-].
+    """Collect the fraction of the summed peak torque that is counted on at each joint that moves.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The fractions [-], `(..., joints)`.
     """
     if isinstance(design, TreeDesign):
         return tree_limb.of_joints(design, "derate")
@@ -231,7 +304,11 @@ def single_joint_speed(design: RobotDesign, posture: str = "walking") -> np.ndar
 
 
 def check_invertible(design: HyperLeg, where: str) -> None:
-    """Whether motors reach every joint.
+    """Check that the motors reach every joint.
+
+    Args:
+        design: a robot or batch.
+        where: file, for error messages.
 
     Raises:
         InputError: M is singular, or a conditioning no gearbox has.

@@ -27,7 +27,13 @@ SIGN = {"left": 1.0, "right": -1.0}
 
 
 def build_tree(design: RobotDesign) -> Tree:
-    """The tree of one robot.
+    """Build the kinematic tree of one robot.
+
+    Args:
+        design: one robot, of any family.
+
+    Returns:
+        The tree.
 
     Raises:
         InputError: a batch of designs.

@@ -18,8 +18,15 @@ opposite."""
 
 
 def tree_of(design: TreeDesign) -> Tree:
-    """The tree of one robot; a mirrored copy has mirrored axes, so that equal angles are mirrored
-    postures.
+    """Build the kinematic tree of a robot whose design describes its own tree.
+
+    A mirrored copy of the limb has mirrored axes, so that equal angles are mirrored postures.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        The tree.
     """
     root = str(design.trunk.link)
     masses = tree_limb.limb_masses(design).links

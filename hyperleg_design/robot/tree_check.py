@@ -23,14 +23,16 @@ LARGEST_CONDITION = 1e6
 def ordered(
     joints: Mapping[str, tuple[str, str]], links: Iterable[str], root: str, where: str
 ) -> list[str]:
-    """Joints with parents before children, depth first, in the order given where that leaves a
-    choice.
+    """Order the joints with parents before children, depth first, and in the given order otherwise.
 
     Args:
         joints: parent and child link of each joint, by name.
         links: names of all links.
         root: the link that nothing carries.
         where: file, for errors.
+
+    Returns:
+        Names of the joints.
 
     Raises:
         InputError: a link that is not there, is carried twice, or hangs on nothing; a loop.
@@ -92,7 +94,10 @@ def _unknown_link(name: str, links: list[str]) -> str:
 
 
 def check_tree_design(design: TreeDesign) -> None:
-    """Raise the first misfit found.
+    """Check that a design that describes its own tree is a robot, and report the first misfit.
+
+    Args:
+        design: a robot or batch.
 
     Raises:
         InputError: names the field, its value and what would be right.

@@ -116,12 +116,28 @@ class TreeDesign(RobotDesign):
         return self._named("pads")
 
     def ratio(self, motor: str, joint: str) -> Any:
-        """Reduction from a motor's gear to a joint [-]; zero where it does not drive it."""
+        """Look up the reduction from a motor's gear to a joint.
+
+        Args:
+            motor: name of the motor.
+            joint: name of the joint.
+
+        Returns:
+            The reduction [-]; zero where the motor does not drive the joint.
+        """
         return getattr(getattr(getattr(self, "transmission"), motor, None), joint, 0.0)  # noqa: B009
 
 
 def named_class(name: str, parts: Mapping[str, type]) -> type:
-    """A dataclass with one section of a class for each name."""
+    """Make a dataclass with one section for each name.
+
+    Args:
+        name: of the class.
+        parts: class of each section, by name.
+
+    Returns:
+        The dataclass; the same one for the same arguments.
+    """
     return _named_class(name, tuple(parts.items()))
 
 
@@ -131,7 +147,14 @@ def _named_class(name: str, parts: tuple[tuple[str, type], ...]) -> type:
 
 
 def ratios_class(joints: tuple[str, ...]) -> type:
-    """A dataclass with a reduction for each joint that a motor drives."""
+    """Make a dataclass with a reduction for each joint that a motor drives.
+
+    Args:
+        joints: names of the joints.
+
+    Returns:
+        The dataclass; the same one for the same joints.
+    """
     return _ratios_class(joints)
 
 

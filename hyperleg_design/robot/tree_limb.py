@@ -23,14 +23,29 @@ Frame = tuple[np.ndarray, np.ndarray]
 
 
 def axis_rotation(axis: Any, angle: Any) -> np.ndarray:
-    """Rotation by angles [rad] `(...)` about unit axes `(..., 3)` (Rodrigues), `(..., 3, 3)`."""
+    """Compute rotations by angles about axes (Rodrigues).
+
+    Args:
+        axis: unit vectors, `(..., 3)`.
+        angle: [rad], `(...)`.
+
+    Returns:
+        Rotation matrices, `(..., 3, 3)`.
+    """
     axis, angle = np.asarray(axis, float), np.asarray(angle, float)[..., None, None]
     cross = skew(axis)
     return np.asarray(np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross))
 
 
 def skew(vector: np.ndarray) -> np.ndarray:
-    """The matrix of a cross product, `(..., 3)` -> `(..., 3, 3)`."""
+    """Compute the matrix of a cross product.
+
+    Args:
+        vector: `(..., 3)`.
+
+    Returns:
+        `(..., 3, 3)`, such that the matrix times b is the vector times b (cross product).
+    """
     x, y, z = np.moveaxis(vector, -1, 0)
     zero = np.zeros_like(x)
     return np.stack(
@@ -39,29 +54,54 @@ def skew(vector: np.ndarray) -> np.ndarray:
 
 
 def turned(turn_deg: Any) -> np.ndarray:
-    """Rotation of roll, pitch, yaw [deg] `(..., 3)` as in URDF, Rz Ry Rx, `(..., 3, 3)`."""
+    """Compute the rotation Rz Ry Rx of roll, pitch and yaw, as in URDF.
+
+    Args:
+        turn_deg: roll, pitch, yaw [deg], `(..., 3)`.
+
+    Returns:
+        Rotation matrices, `(..., 3, 3)`.
+    """
     roll, pitch, yaw = np.moveaxis(np.deg2rad(np.asarray(turn_deg, float)), -1, 0)
     x, y, z = np.eye(3)
     return axis_rotation(z, yaw) @ axis_rotation(y, pitch) @ axis_rotation(x, roll)
 
 
 def default_position(design: TreeDesign) -> np.ndarray:
-    """The default posture of one limb [rad], `(..., joints)`."""
+    """Collect the default posture of one limb.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Joint angles [rad], `(..., joints)`.
+    """
     return of_joints(design, "default_deg") * np.pi / 180
 
 
 def of_joints(design: TreeDesign, field: str) -> np.ndarray:
-    """A number of each joint that moves, `(..., joints)`."""
+    """Collect a number of each joint that moves.
+
+    Args:
+        design: a robot or batch.
+        field: name of the number.
+
+    Returns:
+        The numbers, `(..., joints)`.
+    """
     values = [np.asarray(getattr(j, field), float) for j in design.joint_sections.values()]
     return np.stack(np.broadcast_arrays(*values), -1)
 
 
 def link_frames(design: TreeDesign, position: np.ndarray | None = None) -> dict[str, Frame]:
-    """Frames of the root link and of one unmirrored limb's links.
+    """Compute the frames of the root link and of the links of one unmirrored limb.
 
     Args:
         design: a robot or batch.
         position: joint angles [rad], `(..., joints)`; zero by default.
+
+    Returns:
+        Rotation and position in the root's frame, by name of the link.
     """
     moving = list(design.joint_sections)
     frames: dict[str, Frame] = {str(design.trunk.link): (np.eye(3), np.zeros(3))}
@@ -76,7 +116,15 @@ def link_frames(design: TreeDesign, position: np.ndarray | None = None) -> dict[
 
 
 def ancestors(design: TreeDesign, link: str) -> list[str]:
-    """Joints between the root link and a link, from the root."""
+    """List the joints between the root link and a link.
+
+    Args:
+        design: a robot or batch.
+        link: name of the link.
+
+    Returns:
+        Names of the joints, from the root.
+    """
     parents = {joint.child: name for name, joint in design.all_joints.items()}
     chain: list[str] = []
     while link in parents:
@@ -86,7 +134,15 @@ def ancestors(design: TreeDesign, link: str) -> list[str]:
 
 
 def descendants(design: TreeDesign, joint: str) -> list[str]:
-    """Names of all links that a joint moves."""
+    """List all links that a joint moves.
+
+    Args:
+        design: a robot or batch.
+        joint: name of the joint.
+
+    Returns:
+        Names of the links.
+    """
     return [
         other.child
         for other in design.all_joints.values()
@@ -95,11 +151,14 @@ def descendants(design: TreeDesign, joint: str) -> list[str]:
 
 
 def joint_from_motor(design: TreeDesign, position: np.ndarray | None = None) -> np.ndarray:
-    """M of one limb, `(..., joints, motors)` [-].
+    """Compute M of one limb.
 
     Args:
         design: a robot or batch.
         position: joint angles [rad], `(..., joints)`; the default posture by default.
+
+    Returns:
+        M [-], `(..., joints, motors)`.
 
     Raises:
         InfeasibleError: a rod does not reach in this posture.
@@ -144,7 +203,14 @@ class RodLinkage:
 
 
 def motor_position(design: TreeDesign, position: np.ndarray) -> np.ndarray:
-    """Motor angles [rad] `(..., motors)` at joint angles [rad] `(..., joints)`; zero at zero.
+    """Compute the motor angles at joint angles; they are zero at zero.
+
+    Args:
+        design: a robot or batch.
+        position: joint angles [rad], `(..., joints)`.
+
+    Returns:
+        Motor angles [rad], `(..., motors)`.
 
     Raises:
         InfeasibleError: a rod does not reach in this posture.
@@ -164,12 +230,20 @@ def motor_position(design: TreeDesign, position: np.ndarray) -> np.ndarray:
 def crank_turn(
     design: TreeDesign, motor: str, position: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Turn of a linkage's crank [rad] `(...)` and its gradient over the joints, `(..., joints)`.
+    """Compute the turn of a linkage's crank and its gradient over the joints.
 
     The crank's end r(theta) from the crank's axis and the rod's end d(q) from it keep their
     distance, so `r . d - |d|^2 / 2` is constant. With r = r_parallel + cos(theta) u + sin(theta) w
-    that is `A cos(theta) + B sin(theta) = C`, and its derivative gives the gradient
-    `(d - r) . d' / (r' . d)`.
+    that is `A cos(theta) + B sin(theta) = C`, and its derivative gives the gradient `(d - r) . d' /
+    (r' . d)`.
+
+    Args:
+        design: a robot or batch.
+        motor: name of the motor that turns the crank.
+        position: joint angles [rad], `(..., joints)`.
+
+    Returns:
+        The turn [rad], `(...)`, and its gradient [-], `(..., joints)`.
 
     Raises:
         InfeasibleError: the rod does not reach.
@@ -236,10 +310,17 @@ class LimbMasses:
 
 
 def limb_masses(design: TreeDesign) -> LimbMasses:
-    """Masses and inertias by the design's law.
+    """Compute the masses and inertias of a limb by the design's law.
 
-    Law `components` adds to each link, as a point where its motor sits, what the motor and its gear
-    weigh now less what the reference ones weigh; a motor in the root link counts once a limb.
+    The law `components` adds a point mass to each link at the place of its motor: the mass of the
+    motor with its gear minus that of the reference motor with its gear. A motor in the root link
+    counts once for each limb.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Links of one limb, their sum, and the mass of the robot.
 
     Raises:
         InputError: that leaves a link without mass.
@@ -277,7 +358,16 @@ def limb_masses(design: TreeDesign) -> LimbMasses:
 
 
 def with_point(body: Inertial, mass: Any, place: np.ndarray) -> Inertial:
-    """A body with a point mass [kg] added (or taken away) at a place [m]."""
+    """Add a point mass to a body, or take it away.
+
+    Args:
+        body: mass, centre of mass and inertia.
+        mass: of the point [kg], `(...)`; negative to take it away.
+        place: of the point [m], `(..., 3)`.
+
+    Returns:
+        The changed body.
+    """
     total = np.asarray(body.mass + mass, float)
     safe = np.where(total > 0, total, 1.0)[..., None]
     moment = np.asarray(body.mass)[..., None] * body.com + np.asarray(mass)[..., None] * place
@@ -297,7 +387,16 @@ def _declared(section: Any) -> Inertial:
 
 
 def copied(copy: Any, place: np.ndarray, *, move: bool = False) -> np.ndarray:
-    """A place of the limb as a copy of it has it [m]; moved where it is given in the trunk."""
+    """Transform a place of the limb to that of a copy of the limb.
+
+    Args:
+        copy: section of the copy, which may be mirrored.
+        place: in the frame of the limb [m], `(..., 3)`.
+        move: whether the place is in the frame of the trunk, so that it moves with the copy.
+
+    Returns:
+        The place [m], `(..., 3)`.
+    """
     mirror = np.array([1.0, -1.0 if copy.mirror else 1.0, 1.0])
     return np.asarray(place * mirror + (np.asarray(copy.position, float) if move else 0.0))
 
@@ -335,8 +434,14 @@ def behind(
 
 
 def pad_points(design: TreeDesign, position: np.ndarray | None = None) -> np.ndarray:
-    """Lowest points of one limb's pads in the root's frame [m], `(..., pads, 3)`; none gives
-    `(0, 3)`.
+    """Compute the lowest points of the pads of one limb.
+
+    Args:
+        design: a robot or batch.
+        position: joint angles [rad], `(..., joints)`; zero by default.
+
+    Returns:
+        The points in the frame of the root [m], `(..., pads, 3)`; `(0, 3)` without pads.
     """
     frames = link_frames(design, position)
     points = []
@@ -350,12 +455,27 @@ def pad_points(design: TreeDesign, position: np.ndarray | None = None) -> np.nda
 
 
 def pad_radius(design: TreeDesign, pad: Any) -> Any:
-    """Radius of a pad [m]."""
+    """Look up the radius of a pad; by default that of the design's contact.
+
+    Args:
+        design: a robot or batch.
+        pad: section of the pad.
+
+    Returns:
+        The radius [m], `(...)`.
+    """
     return np.where(np.asarray(pad.radius) > 0, pad.radius, design.contact.pad_radius)
 
 
 def standing_height(design: TreeDesign) -> np.ndarray:
-    """Root link's origin above the floor in the zero posture [m], `(...)`."""
+    """Compute the height of the root link's origin above the floor in the zero posture.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The height [m], `(...)`.
+    """
     if design.trunk.motion == "fixed" or not design.pad_sections:
         return np.asarray(design.trunk.height, float)
     drop = -pad_points(design)[..., 2].min(-1)

@@ -59,8 +59,17 @@ class CheckedTreeDesign(TreeDesign):
     def with_values(
         self, values: Mapping[str, Any], where: str = "override", label: str = "user"
     ) -> Any:
-        """A copy with leaves replaced by dotted path; a published total mass lapses with any
-        link's.
+        """Copy the design with other values of some leaves.
+
+        A published total mass is no longer checked where the mass of a link is replaced.
+
+        Args:
+            values: numbers, texts, or arrays of either with the batch in front, by dotted path.
+            where: what to name in errors.
+            label: origin of the new values.
+
+        Returns:
+            The validated copy.
         """
         lapses = any(str(p).startswith("links.") and str(p).endswith(".mass") for p in values)
         if lapses and "masses.expected_total" not in values:
@@ -99,12 +108,15 @@ def _design_class(sections: tuple[tuple[str, type], ...]) -> type[CheckedTreeDes
 
 
 def tree_design_from_mapping(data: Mapping[str, Any], name: str, where: str) -> TreeDesign:
-    """A design from what its file holds, or from what `TreeDesign.to_mapping` gives.
+    """Build a design from what its file holds, or from what `TreeDesign.to_mapping` gives.
 
     Args:
         data: sections by name, as YAML gives them.
         name: of the design where `data` has none.
         where: file, for errors.
+
+    Returns:
+        The validated design.
 
     Raises:
         InputError: no tree, a joint without a motor, a motor that is not in the catalogue, an

@@ -69,7 +69,7 @@ def least_heat(
     weight: float,
     allow_excess: bool = True,
 ) -> Allocation:
-    """Allocate contact forces and motor torques.
+    """Allocate contact forces and motor torques of least Joule heat to a motion.
 
     Args:
         required: generalised forces of the motion, joint friction included, `(n, 6 + legs *
@@ -84,6 +84,9 @@ def least_heat(
         friction: of the pads on the floor [-].
         weight: of the robot [N], which sets the scale.
         allow_excess: report what lies beyond envelopes and contacts; else it is an error.
+
+    Returns:
+        Forces, motor torques, and what lies beyond envelopes and contacts.
 
     Raises:
         InputError: shapes that do not fit, a friction or weight that is not positive.

@@ -97,11 +97,19 @@ class ContactForce:
 
 
 def posture(design: RobotDesign, name: str, model: RigidBodyModel | None = None) -> np.ndarray:
-    """A named posture of both legs alike, the lower pads on the floor: Pinocchio's `q`, `(nq,)`.
+    """Compute a named posture, both legs alike and the lower pads on the floor.
 
-    `standing`: knees bent by 20 deg, soles flat. `mid_squat`: by 80 deg. `toe_off`: heels up by 30
-        deg, contact on the
-    tip's pads only, the toes flat where they move. All assumed.
+    In `standing`, the knees are bent by 20 deg and the soles are flat. In `mid_squat`, they are
+    bent by 80 deg. In `toe_off`, the heels are up by 30 deg and only the pads of the tip touch the
+    floor; the toes are flat where they move. All these numbers are assumed.
+
+    Args:
+        design: one robot.
+        name: of the posture; `default` for a robot that describes its own tree.
+        model: the design's rigid-body model, to save making it.
+
+    Returns:
+        Configuration in Pinocchio's coordinates, `(nq,)`.
 
     Raises:
         InputError: no such posture, or a batch.
@@ -149,7 +157,7 @@ def largest_force(
     vertical: float | None = None,
     model: RigidBodyModel | None = None,
 ) -> ContactForce:
-    """The largest contact force of one leg in a posture.
+    """Compute the largest contact force of one leg in a posture.
 
     Args:
         design: a robot.
@@ -164,6 +172,9 @@ def largest_force(
         vertical: vertical force to hold at the same time [N], for the forward direction; free by
             default.
         model: the design's rigid-body model, to save making it.
+
+    Returns:
+        The force, its centre of pressure, the motor torques, and the motors at their limits.
 
     Raises:
         InputError: no such direction, side or posture, or arrays of the wrong shape.
@@ -326,7 +337,12 @@ def _result(
 def capability_table(
     designs: Mapping[str, Design], postures: tuple[str, ...] = POSTURES, *, upright: bool = False
 ) -> list[dict[str, Any]]:
-    """Largest forces of one leg, a row for each design, posture and direction.
+    """Tabulate the largest forces of one leg, with a row for each design, posture and direction.
+
+    Args:
+        designs: robots by name.
+        postures: names of postures.
+        upright: as in `largest_force`.
 
     Returns:
         Rows of `design`, `posture`, `direction`, `force` [N] (in that direction), `body_weights`

@@ -33,7 +33,15 @@ class Pad:
 
 
 def sole_pads(tree: Tree) -> tuple[Pad, ...]:
-    """Pads of both feet: left heel, ball, tip, then the right's; two in each row."""
+    """List the pads of all feet.
+
+    Args:
+        tree: the robot.
+
+    Returns:
+        Pads of the left foot, heel, ball, tip, then of the right; two in each row. For other
+        robots, limb by limb.
+    """
     pads = []
     if not tree.hyperleg:
         return _limb_pads(tree)
@@ -69,8 +77,14 @@ def _limb_pads(tree: Tree) -> tuple[Pad, ...]:
 
 
 def contact_points(model: RigidBodyModel, q: np.ndarray) -> np.ndarray:
-    """Lowest point of each pad in the world [m], `(pads, 3)`; on level floor a sphere touches
-    there.
+    """Compute the lowest point of each pad; on level floor, a sphere touches there.
+
+    Args:
+        model: rigid-body model of the robot.
+        q: configuration, `(nq,)`.
+
+    Returns:
+        The points in the world [m], `(pads, 3)`.
     """
     points, _ = contact_kinematics(model, q)
     return points

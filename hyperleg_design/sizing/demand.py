@@ -78,7 +78,13 @@ class Demand:
         return self.ledger.mean_power().total()
 
     def cost_of_transport(self, side: str = "motor") -> float:
-        """Energy / (m g distance) [-], at the motors (the paper's) or at the battery.
+        """Compute the cost of transport, energy / (m g distance).
+
+        Args:
+            side: `motor` for the energy at the motors (the paper's), or `battery`.
+
+        Returns:
+            The cost [-].
 
         Raises:
             InputError: a motion that goes nowhere, or a side that is none.
@@ -159,8 +165,14 @@ class Demand:
 
 
 def joint_friction(design: Design, velocity: np.ndarray) -> np.ndarray:
-    """Friction that the motors must overcome, `coulomb tanh(v / v_m) + viscous v`, `(..., joints)`
-    [Nm].
+    """Compute the friction that the motors must overcome, `coulomb tanh(v / v_m) + viscous v`.
+
+    Args:
+        design: a robot or batch.
+        velocity: joint velocities v [rad/s], `(..., joints)`; v_m is `FRICTION_SPEED`.
+
+    Returns:
+        The torque [Nm], `(..., joints)`.
     """
     moving = slice(len(joint_names(design)))
     coulomb, viscous = (part[..., moving] for part in friction.joint_friction(design))
@@ -168,7 +180,14 @@ def joint_friction(design: Design, velocity: np.ndarray) -> np.ndarray:
 
 
 def required_forces(motion: Motion) -> np.ndarray:
-    """Generalised forces that contacts and motors must give, joint friction included, `(n, nv)`."""
+    """Compute the generalised forces that contacts and motors must give, joint friction included.
+
+    Args:
+        motion: n states of a robot.
+
+    Returns:
+        The forces [N, Nm], `(n, nv)`.
+    """
     model = motion.model
     required = np.stack(
         [model.inverse_dynamics(*state) for state in zip(motion.q, motion.v, motion.a, strict=True)]
@@ -251,8 +270,15 @@ def _ledger(
 
 
 def demands(designs: Mapping[str, Design], name: str) -> dict[str, Demand]:
-    """Demand of one reference motion on several robots, each with the motion planned for it, by the
-    names given.
+    """Compute the demand of one reference motion on several robots, each with the motion planned
+    for it.
+
+    Args:
+        designs: robots by name.
+        name: of the reference motion.
+
+    Returns:
+        Demands by the names given.
     """
     return {key: demand(design, name) for key, design in designs.items()}
 

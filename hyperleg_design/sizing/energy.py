@@ -228,13 +228,16 @@ def energy_ledger(
 def design_ledger(
     design: Design, motor_torque: Any, motor_velocity: Any, time_step: float
 ) -> EnergyLedger:
-    """The ledger of one leg with the power constants and driver efficiencies of a design or batch.
+    """Compute the ledger of one leg with the power constants and driver efficiencies of a design.
 
     Args:
         design: a robot or batch.
         motor_torque: of the motors that are there [Nm], `(..., t, motors)`.
         motor_velocity: [rad/s], `(..., t, motors)`.
         time_step: between samples [s].
+
+    Returns:
+        The ledger, each power `(..., t, motors)` [W].
 
     Raises:
         InputError: as `energy_ledger`.
@@ -252,10 +255,17 @@ def design_ledger(
 
 
 def joint_power(joint_torque: Any, joint_velocity: Any) -> np.ndarray:
-    """Mechanical power of each joint, tau_joint q_dot [W], `(..., joints)`.
+    """Compute the mechanical power of each joint, tau_joint q_dot.
 
-    Its sum over joints equals the sum of the motors' mechanical power, because M maps both; joint
-    by joint the two differ where motors are shared.
+    Its sum over joints equals the sum of the motors' mechanical power, because M maps both. For a
+    single joint the two differ where motors are shared.
+
+    Args:
+        joint_torque: [Nm], `(..., joints)`.
+        joint_velocity: [rad/s], `(..., joints)`.
+
+    Returns:
+        The power [W], `(..., joints)`.
 
     Raises:
         InputError: unequal numbers of joints.
@@ -272,7 +282,15 @@ def joint_power(joint_torque: Any, joint_velocity: Any) -> np.ndarray:
 
 
 def cost_of_transport(energy: Any, mass: Any, distance: Any) -> np.ndarray:
-    """Energy / (m g distance) [-], from energy [J], mass [kg] and distance [m], `(...)`.
+    """Compute the cost of transport, energy / (m g distance).
+
+    Args:
+        energy: [J], `(...)`.
+        mass: [kg], `(...)`.
+        distance: [m], `(...)`.
+
+    Returns:
+        The cost [-], `(...)`.
 
     Raises:
         InputError: a mass or distance that is not positive.
@@ -281,7 +299,15 @@ def cost_of_transport(energy: Any, mass: Any, distance: Any) -> np.ndarray:
 
 
 def power_cost_of_transport(power: Any, mass: Any, speed: Any) -> np.ndarray:
-    """Power / (m g v) [-], from mean power [W], mass [kg] and mean speed [m/s], `(...)`.
+    """Compute the cost of transport from mean power and speed, power / (m g v).
+
+    Args:
+        power: [W], `(...)`.
+        mass: [kg], `(...)`.
+        speed: [m/s], `(...)`.
+
+    Returns:
+        The cost [-], `(...)`.
 
     Raises:
         InputError: a mass or speed that is not positive.

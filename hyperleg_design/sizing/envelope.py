@@ -62,7 +62,14 @@ class MotorEnvelope:
         return self.no_load_speed * (1 + self.peak_torque / self.stall_torque)
 
     def select(self, motors: slice | list[int]) -> MotorEnvelope:
-        """The envelope of some of the motors."""
+        """Select the envelope of some of the motors.
+
+        Args:
+            motors: their indices.
+
+        Returns:
+            The smaller envelope.
+        """
         return dataclasses.replace(
             self,
             no_load_speed=self.no_load_speed[..., motors],
@@ -114,13 +121,28 @@ def torque_limits(
 def clip_torque(
     envelope: MotorEnvelope, motor_torque: np.ndarray, motor_velocity: np.ndarray | float
 ) -> np.ndarray:
-    """Wanted torques brought inside the envelope at the motors' speeds [Nm], `(..., motors)`."""
+    """Bring torques inside the envelope at the motors' speeds.
+
+    Args:
+        envelope: of the motors.
+        motor_torque: as wanted [Nm], `(..., motors)`.
+        motor_velocity: [rad/s], `(..., motors)`.
+
+    Returns:
+        The clipped torques [Nm], `(..., motors)`.
+    """
     lower, upper = torque_limits(envelope, motor_velocity)
     return np.clip(motor_torque, lower, upper)
 
 
 def quadrant(motor_torque: np.ndarray, motor_velocity: np.ndarray) -> np.ndarray:
-    """Sign of the mechanical power, `(..., motors)`: `DRIVING`, `IDLE` or `BRAKING` (the
-    regenerative quadrants).
+    """Classify operating points by the sign of their mechanical power.
+
+    Args:
+        motor_torque: [Nm], `(..., motors)`.
+        motor_velocity: [rad/s], `(..., motors)`.
+
+    Returns:
+        `DRIVING`, `IDLE` or `BRAKING` (the regenerative quadrants), `(..., motors)`.
     """
     return np.sign(np.asarray(motor_torque) * np.asarray(motor_velocity)).astype(int)

@@ -115,8 +115,15 @@ def leg_inertia(design: Design) -> LegInertia:
 
 
 def rotor_swing_inertia(design: Design, posture: str | None = None) -> np.ndarray:
-    """What the rotors add to the swing inertia at the hip-pitch joint, that entry of M diag(J) M^T,
-    `(...)` [kg m^2].
+    """Compute what the rotors add to the swing inertia at the hip-pitch joint, its entry of M
+    diag(J) M^T.
+
+    Args:
+        design: a robot or batch.
+        posture: `walking` or `standing`; the design's own by default.
+
+    Returns:
+        The inertia [kg m^2], `(...)`.
     """
     return leg_reflected_inertia(design, posture)[..., HIP_PITCH, HIP_PITCH]
 
@@ -151,7 +158,14 @@ def composite(
 
 
 def com_height(design: Design) -> np.ndarray:
-    """Centre of mass of the robot above the ground, standing straight, `(...)` [m]."""
+    """Compute the height of the robot's centre of mass above the ground, standing straight.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The height [m], `(...)`.
+    """
     links = inertials(design)
     leg_mass, leg_com, _ = composite(design, links, LEG_LINKS)
     pelvis = links["pelvis"]
@@ -161,13 +175,16 @@ def com_height(design: Design) -> np.ndarray:
 
 
 def centroidal_inertia(design: Design, q: np.ndarray | None = None) -> np.ndarray:
-    """Inertia of the whole robot about its centre of mass in Pinocchio, base axes, `(3, 3)` [kg
-    m^2]; rotors not in it.
+    """Compute the inertia of the whole robot about its centre of mass with Pinocchio, without
+    rotors.
 
     Args:
         design: one robot.
         q: configuration of its floating model, of `robot.models.rigid_body_model`; straight legs by
             default.
+
+    Returns:
+        The inertia in base axes [kg m^2], `(3, 3)`.
 
     Raises:
         InputError: a batch of designs.

@@ -30,12 +30,28 @@ ALIGNED = 1e-9
 
 
 def hip_center(design: Design, side: str) -> np.ndarray:
-    """Where the hip axes meet, in the pelvis's frame [m], `(3,)`."""
+    """Compute the point where the hip axes meet.
+
+    Args:
+        design: one robot.
+        side: `left` or `right`.
+
+    Returns:
+        The point in the frame of the pelvis [m], `(3,)`.
+    """
     return np.array([0.0, SIGN[side] * design.hip.spacing / 2, 0.0])
 
 
 def leg_reach(design: Design, knee: float = 0.0) -> float:
-    """Distance from hip to ankle with the knee bent by an angle [rad] [m]."""
+    """Compute the distance from hip to ankle.
+
+    Args:
+        design: one robot.
+        knee: how far the knee is bent [rad].
+
+    Returns:
+        The distance [m].
+    """
     thigh, shank = float(design.thigh.length), float(design.shank.length)
     return float(np.sqrt(thigh**2 + shank**2 + 2 * thigh * shank * np.cos(knee)))
 
@@ -110,8 +126,13 @@ def leg_angles(
 
 
 def check_range(design: Design, side: str, angles: np.ndarray, tolerance: float = 1e-9) -> None:
-    """Whether joint angles [rad] `(..., joints)`, in the order of `JOINTS`, lie within the ranges
-    of motion.
+    """Check that joint angles lie within the ranges of motion.
+
+    Args:
+        design: one robot.
+        side: `left` or `right`, for the error message.
+        angles: joint angles in the order of `JOINTS` [rad], `(..., joints)`.
+        tolerance: how far beyond a range is allowed [rad].
 
     Raises:
         InfeasibleError: names the joint that leaves its range by most, and its angle.
@@ -132,12 +153,26 @@ def check_range(design: Design, side: str, angles: np.ndarray, tolerance: float 
 
 
 def has_toe_joint(design: Design) -> bool:
-    """Whether the toe can move in its joint."""
+    """Decide whether the toe can move in its joint.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        True if it can.
+    """
     return len(joint_names(design)) == len(JOINTS)
 
 
 def about_x(angle: np.ndarray) -> np.ndarray:
-    """Rotation about x, `(...)` [rad] -> `(..., 3, 3)`; positive lifts the left side."""
+    """Compute rotations about x; a positive angle lifts the left side.
+
+    Args:
+        angle: [rad], `(...)`.
+
+    Returns:
+        Rotation matrices, `(..., 3, 3)`.
+    """
     angle = np.asarray(angle, float)
     cosine, sine, zero, unity = (
         np.cos(angle),
@@ -156,7 +191,14 @@ def about_x(angle: np.ndarray) -> np.ndarray:
 
 
 def about_y(angle: np.ndarray) -> np.ndarray:
-    """Rotation about y, `(...)` [rad] -> `(..., 3, 3)`; positive pitches the nose down."""
+    """Compute rotations about y; a positive angle pitches the nose down.
+
+    Args:
+        angle: [rad], `(...)`.
+
+    Returns:
+        Rotation matrices, `(..., 3, 3)`.
+    """
     angle = np.asarray(angle, float)
     cosine, sine, zero, unity = (
         np.cos(angle),

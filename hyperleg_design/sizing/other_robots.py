@@ -67,7 +67,14 @@ class Description:
     """Joint that the foot moves with."""
 
     def behind(self, joint: str) -> list[Body]:
-        """Bodies that move with a joint."""
+        """List the bodies that move with a joint.
+
+        Args:
+            joint: name of the joint.
+
+        Returns:
+            The bodies, parents first.
+        """
         bodies = [self.bodies[joint]]
         for body in bodies:
             bodies += [
@@ -118,7 +125,13 @@ def robots_folder() -> Path:
 
 
 def find_source(name: str) -> RobotSource:
-    """A robot of `SOURCES` by name, whatever the case.
+    """Look up a robot of `SOURCES` by name, whatever the case.
+
+    Args:
+        name: of the robot.
+
+    Returns:
+        The robot's source.
 
     Raises:
         InputError: there is none.
@@ -131,7 +144,13 @@ def find_source(name: str) -> RobotSource:
 
 @cache
 def measure(source: RobotSource) -> OtherRobot:
-    """Mass and inertia of one leg of a robot.
+    """Measure the mass and inertia of one leg of a robot.
+
+    Args:
+        source: names the description and the joints.
+
+    Returns:
+        The measures.
 
     Raises:
         InputError: the description is missing or does not have the joints named.
@@ -179,7 +198,13 @@ def measure(source: RobotSource) -> OtherRobot:
 
 
 def compare(names: Iterable[str] | None = None) -> tuple[OtherRobot, ...]:
-    """Measures of all robots of `SOURCES`, or of those named.
+    """Measure several robots.
+
+    Args:
+        names: of robots of `SOURCES`; all by default.
+
+    Returns:
+        The measures, in this order.
 
     Raises:
         InputError: no such robot, or `example-robot-data` is not there.

@@ -78,8 +78,16 @@ def slice_polygon(
 def projection_polygon(
     matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, joints: tuple[int, int]
 ) -> np.ndarray:
-    """Torques that two joints can have together whatever the others have: vertices, anticlockwise,
-    `(k, 2)` [Nm].
+    """Compute the torques that two joints can have together, whatever the others have.
+
+    Args:
+        matrix: M [-], `(joints, motors)`.
+        lower: least motor torques [Nm], `(motors,)`.
+        upper: largest motor torques [Nm], `(motors,)`.
+        joints: the two joints.
+
+    Returns:
+        Vertices, anticlockwise, `(k, 2)` [Nm].
     """
     return slice_polygon(matrix, lower, upper, joints, {})
 
@@ -91,8 +99,17 @@ def slice_polyhedron(
     joints: tuple[int, int, int],
     held: Mapping[int, float] | None = None,
 ) -> Polyhedron:
-    """Torques that three joints can have together while others are held; arguments as
-    `slice_polygon`.
+    """Compute the torques that three joints can have together while others are held.
+
+    Args:
+        matrix: M [-], `(joints, motors)`.
+        lower: least motor torques [Nm], `(motors,)`.
+        upper: largest motor torques [Nm], `(motors,)`.
+        joints: the three joints.
+        held: torque of other joints by index [Nm], as in `slice_polygon`.
+
+    Returns:
+        Vertices and faces of the polyhedron.
 
     Raises:
         InfeasibleError: the cut misses the set or has no volume.

@@ -45,12 +45,26 @@ class ThermalUse:
     m)`."""
 
     def peak(self, reading: str = "ema_of_square") -> np.ndarray:
-        """Largest use over time in one of `READINGS`, `(..., m)` [-]."""
+        """Find the largest use over time.
+
+        Args:
+            reading: one of `READINGS`.
+
+        Returns:
+            The use [-], `(..., m)`.
+        """
         return np.asarray(getattr(self, _reading(reading)).max(-2))
 
 
 def rms_torque(motor_torque: Any) -> np.ndarray:
-    """Root of the mean squared torque over time, `(..., t, m)` -> `(..., m)` [Nm]."""
+    """Compute the root of the mean squared torque over time.
+
+    Args:
+        motor_torque: [Nm], `(..., t, m)`.
+
+    Returns:
+        [Nm], `(..., m)`.
+    """
     torque = np.asarray(motor_torque, float)
     return np.sqrt(np.mean(torque**2, -2))
 

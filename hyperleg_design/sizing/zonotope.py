@@ -34,7 +34,12 @@ _INSIDE = 1e-9
 
 
 def check_set(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> None:
-    """Whether these describe a zonotope.
+    """Check that a matrix and limits describe a zonotope.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        lower: least motor torques [Nm], `(..., motors)`.
+        upper: largest motor torques [Nm], `(..., motors)`.
 
     Raises:
         InputError: shapes that do not fit, non-finite numbers, or a lower limit above its upper
@@ -80,16 +85,32 @@ def support(
 
 
 def box(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Least and largest torque of each joint, whatever the others do [Nm], `(..., joints)` each."""
+    """Compute the least and largest torque of each joint, whatever the others do.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        lower: least motor torques [Nm], `(..., motors)`.
+        upper: largest motor torques [Nm], `(..., motors)`.
+
+    Returns:
+        Least and largest torques [Nm], `(..., joints)` each.
+    """
     low, high = matrix * np.asarray(lower)[..., None, :], matrix * np.asarray(upper)[..., None, :]
     return np.minimum(low, high).sum(-1), np.maximum(low, high).sum(-1)
 
 
 def volume(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    """Volume of the set, `(...)` [Nm^joints]: sum over choices of `joints` motors of |det| times
-    their torque ranges.
+    """Compute the volume of the set.
 
-    Zero where motors are fewer than joints.
+    It is the sum of |det| times the torque ranges over all choices of as many motors as joints.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        lower: least motor torques [Nm], `(..., motors)`.
+        upper: largest motor torques [Nm], `(..., motors)`.
+
+    Returns:
+        The volume [Nm^joints], `(...)`; zero where motors are fewer than joints.
     """
     check_set(matrix, lower, upper)
     joints, motors = matrix.shape[-2:]
@@ -101,15 +122,25 @@ def volume(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarr
 
 
 def zonotope_to_box_volume(matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-    """Volume of the set over that of the box its joint maxima span, `(...)` [-]; 1 where no motor
-    is shared.
+    """Compute the volume of the set over that of the box that its joint maxima span.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        lower: least motor torques [Nm], `(..., motors)`.
+        upper: largest motor torques [Nm], `(..., motors)`.
+
+    Returns:
+        The ratio [-], `(...)`; 1 where no motor is shared.
     """
     low, high = box(matrix, lower, upper)
     return volume(matrix, lower, upper) / (high - low).prod(-1)
 
 
 def facets(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Outward normals of the set's facets, whatever the limits.
+    """Compute the outward normals of the set's facets, which do not depend on the limits.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
 
     Returns:
         `normal` `(..., facets, joints)` and `weight` = M^T normal `(..., facets, motors)`, scaled
@@ -161,8 +192,15 @@ def facets(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def halfspaces(
     matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The set as `normal . torque <= offset`: `(..., facets, joints)` and `(..., facets)` [motor
-    Nm], normals as `facets`.
+    """Describe the set by inequalities, `normal . torque <= offset`.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        lower: least motor torques [Nm], `(..., motors)`.
+        upper: largest motor torques [Nm], `(..., motors)`.
+
+    Returns:
+        Normals as in `facets`, `(..., facets, joints)`, and offsets [motor Nm], `(..., facets)`.
     """
     check_set(matrix, lower, upper)
     normal, weight = facets(matrix)
@@ -175,7 +213,17 @@ def halfspaces(
 def contains(
     matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, torque: np.ndarray
 ) -> np.ndarray:
-    """Whether the joints can have these torques together, `(..., joints)` -> `(...)`."""
+    """Decide whether the joints can have torques together.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        lower: least motor torques [Nm], `(..., motors)`.
+        upper: largest motor torques [Nm], `(..., motors)`.
+        torque: joint torques [Nm], `(..., joints)`.
+
+    Returns:
+        True where they can, `(...)`.
+    """
     normal, offset = halfspaces(matrix, lower, upper)
     over = np.einsum("...fj,...j->...f", normal, torque) - offset
     return np.all(over <= _INSIDE * np.maximum(np.abs(lower), np.abs(upper)).max(-1)[..., None], -1)
@@ -226,8 +274,7 @@ def alone(
     joint: int,
     held: Sequence[int] | None = None,
 ) -> np.ndarray:
-    """Largest torque of one joint while others have none, `(...)` [Nm]; nan where those cannot have
-    none (past no-load speed).
+    """Compute the largest torque of one joint while others have none.
 
     Args:
         matrix: `(..., joints, motors)` [-].
@@ -236,6 +283,9 @@ def alone(
         joint: row of the joint.
         held: rows of the joints at zero torque, all others by default; those not named may have any
             torque.
+
+    Returns:
+        The torque [Nm], `(...)`; NaN where the others cannot have none (past no-load speed).
     """
     rows = [joint, *(r for r in (range(matrix.shape[-2]) if held is None else held) if r != joint)]
     return chord(matrix[..., rows, :], lower, upper, np.zeros(len(rows)), np.eye(len(rows))[0])[1]

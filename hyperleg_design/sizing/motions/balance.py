@@ -62,12 +62,27 @@ class Series:
         return spectrum, frequency.reshape(-1, *([1] * (values.ndim - 1)))
 
     def filtered(self, values: np.ndarray, lag: float) -> np.ndarray:
-        """Solution y of `y - lag^2 y'' = values`, `(n, ...)`; lag [s]."""
+        """Solve `y - lag^2 y'' = values` for y.
+
+        Args:
+            values: over time, `(n, ...)`.
+            lag: [s].
+
+        Returns:
+            y, `(n, ...)`.
+        """
         spectrum, frequency = self._spectrum(values)
         return self._back(spectrum / (1 + (lag * frequency) ** 2), values)
 
     def derivatives(self, values: np.ndarray) -> np.ndarray:
-        """Values without their highest harmonic, rate and acceleration, `(3, n, ...)`."""
+        """Differentiate values over time.
+
+        Args:
+            values: over time, `(n, ...)`.
+
+        Returns:
+            Values without their highest harmonic, their rate and their acceleration, `(3, n, ...)`.
+        """
         spectrum, frequency = self._spectrum(values)
         return np.stack(
             [
@@ -77,11 +92,25 @@ class Series:
         )
 
     def integrated_twice(self, values: np.ndarray) -> np.ndarray:
-        """Function of zero mean whose acceleration is `values` less their mean, `(n, ...)`."""
+        """Integrate values twice over time.
+
+        Args:
+            values: over time, `(n, ...)`.
+
+        Returns:
+            The function of zero mean whose acceleration is `values` minus their mean, `(n, ...)`.
+        """
         return self._over(values, 2)
 
     def integrated(self, values: np.ndarray) -> np.ndarray:
-        """Function of zero mean whose rate is `values` less their mean, `(n, ...)`."""
+        """Integrate values over time.
+
+        Args:
+            values: over time, `(n, ...)`.
+
+        Returns:
+            The function of zero mean whose rate is `values` minus their mean, `(n, ...)`.
+        """
         return self._over(values, 1)
 
     def _over(self, values: np.ndarray, times: int) -> np.ndarray:
@@ -114,7 +143,8 @@ def highest_pelvis(
     min_knee: float,
     roll: np.ndarray | float = 0.0,
 ) -> float:
-    """Largest height to which `rise` can be added without any knee straighter than `min_knee` [m].
+    """Find the largest height to which `rise` can be added while no knee is straighter than
+    `min_knee`.
 
     Args:
         design: a robot.
@@ -123,6 +153,9 @@ def highest_pelvis(
         rise: of the pelvis over time, `(n,)` [m].
         min_knee: [rad]
         roll: of the pelvis, `(n,)` [rad].
+
+    Returns:
+        The height [m].
 
     Raises:
         InfeasibleError: a foot is further away than the leg is long.
@@ -155,7 +188,7 @@ def balanced_states(
     load: np.ndarray | None = None,
     roll: np.ndarray | None = None,
 ) -> Balanced:
-    """States that carry the feet along their paths with the zero-moment point at `pressure`.
+    """Find states that carry the feet along their paths with the zero-moment point at `pressure`.
 
     Args:
         model: floating robot.
@@ -169,6 +202,9 @@ def balanced_states(
         load: planned vertical force over weight, `(n,)`, of mean 1; none leaves the height as it
             is.
         roll: of the pelvis with rate and acceleration [rad], `(3, n)`; none keeps it upright.
+
+    Returns:
+        The path of the pelvis, the states over time, and the number of rounds of correction.
 
     Raises:
         InfeasibleError: a leg does not reach, a joint leaves its range, or the corrections do not

@@ -48,13 +48,26 @@ class FootPath:
     """Phase of the contact at each sample, `(n,)`."""
 
     def twist(self, order: int, sample: int) -> np.ndarray:
-        """Velocity (order 1) or acceleration (2) of the ankle and of the foot's turning, `(6,)`,
-        world axes.
+        """Compute the velocity or acceleration of the ankle and of the foot's turning at a sample.
+
+        Args:
+            order: 1 for velocity, 2 for acceleration.
+            sample: its index.
+
+        Returns:
+            Linear, then angular part, in world axes, `(6,)`.
         """
         return np.array([*self.position[order, sample], 0.0, self.pitch[order, sample], 0.0])
 
     def bears(self, row: str) -> np.ndarray:
-        """Whether a row of pads may bear load, `(n,)`."""
+        """State when a row of pads may bear load.
+
+        Args:
+            row: `heel`, `ball` or `tip`.
+
+        Returns:
+            True where it may, `(n,)`.
+        """
         return np.isin(self.phase, _BEARS[row])
 
 
@@ -85,7 +98,18 @@ class Step:
 
 
 def quintic(time: np.ndarray, begin: float, end: float, first: State, last: State) -> np.ndarray:
-    """Polynomial of fifth degree between two states, with rate and acceleration, `(3, n)`."""
+    """Compute the polynomial of fifth degree between two states.
+
+    Args:
+        time: [s], `(n,)`.
+        begin: time of the first state [s].
+        end: time of the last state [s].
+        first: value, rate and acceleration at the begin.
+        last: value, rate and acceleration at the end.
+
+    Returns:
+        The polynomial with its rate and acceleration, `(3, n)`.
+    """
     span = end - begin
     p0, v0, a0 = first[0], first[1] * span, first[2] * span**2
     p1, v1, a1 = last[0], last[1] * span, last[2] * span**2
@@ -100,8 +124,16 @@ def quintic(time: np.ndarray, begin: float, end: float, first: State, last: Stat
 
 
 def bump(time: np.ndarray, begin: float, end: float, height: float) -> np.ndarray:
-    """Smooth rise and fall, `height (4 s (1 - s))^3`, with rate and acceleration, `(3, n)`; at rest
-    at both ends.
+    """Compute a smooth rise and fall, `height (4 s (1 - s))^3`, at rest at both ends.
+
+    Args:
+        time: [s], `(n,)`.
+        begin: of the rise [s].
+        end: of the fall [s].
+        height: in the middle.
+
+    Returns:
+        The values with their rate and acceleration, `(3, n)`.
     """
     poly = height * 64 * np.polynomial.Polynomial([0, 1, -1]) ** 3
     span = end - begin
@@ -145,12 +177,16 @@ def rolling(design: Design, row: str, pitch: np.ndarray) -> np.ndarray:
 
 
 def foot_path(design: Design, time: np.ndarray, steps: Sequence[Step]) -> FootPath:
-    """Path of a foot through its steps, in order of time; it stands where no step moves it.
+    """Plan the path of a foot through its steps, in order of time; it stands where no step moves
+    it.
 
     Args:
         design: a robot.
         time: [s], `(n,)`.
         steps: at least one.
+
+    Returns:
+        The path over time.
     """
     count, lift = len(time), np.array([0.0, 0.0, design.foot.ankle_height])
     position, pitch, toe = np.zeros((3, count, 3)), np.zeros((3, count)), np.zeros((3, count))

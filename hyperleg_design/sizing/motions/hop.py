@@ -67,12 +67,15 @@ class HopPlan:
 
 
 def hop(design: Design, plan: HopPlan | None = None, samples: int = 60) -> Motion:
-    """One hop of a steady series, from touchdown to touchdown.
+    """Plan one hop of a steady series, from touchdown to touchdown.
 
     Args:
         design: a robot, of any variant.
         plan: stance and flight.
         samples: in a hop.
+
+    Returns:
+        The motion.
 
     Raises:
         InfeasibleError: a joint's range ends before, or the corrections do not settle.
@@ -105,11 +108,18 @@ def hop(design: Design, plan: HopPlan | None = None, samples: int = 60) -> Motio
 
 
 def load_pulse(plan: HopPlan, time: np.ndarray) -> np.ndarray:
-    """Height of the centre of mass [m] over that at touchdown, its rate [m/s], and the vertical
-    force over weight, `(3, n)`.
+    """Compute the height of the centre of mass and the vertical force over one hop.
 
     The force is a smooth pulse `u^2 (3 - 2 u)`, u = 4 s (1 - s), in stance and zero in flight, 1 on
-    average. Time [s] within one hop, from touchdown.
+    average.
+
+    Args:
+        plan: stance and flight.
+        time: within one hop, from touchdown [s], `(n,)`.
+
+    Returns:
+        Height over that at touchdown [m], its rate [m/s], and the vertical force over weight [-],
+        `(3, n)`.
     """
     time = np.asarray(time, float)
     u = 4 * np.polynomial.Polynomial([0.0, 1.0, -1.0])

@@ -96,11 +96,17 @@ class Motion:
 def joint_states(
     model: RigidBodyModel, pelvis: PelvisPath, feet: tuple[FootPath, FootPath]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """States that carry pelvis and feet along their paths, velocities and accelerations exact.
+    """Find states that carry pelvis and feet along their paths, with exact velocities and
+    accelerations.
 
     Positions are inverse kinematics. Velocities solve `J_leg q_dot = twist of the foot - what the
     base brings`, and accelerations the same equation differentiated, so that a foot planned to
     stand has none of either.
+
+    Args:
+        model: floating robot.
+        pelvis: its path.
+        feet: left and right path.
 
     Returns:
         `q (n, nq)`, `v (n, nv)`, `a (n, nv)`.
@@ -167,7 +173,11 @@ def joint_states(
 
 
 def check_ranges(model: RigidBodyModel, q: np.ndarray) -> None:
-    """Whether both legs stay within their ranges of motion, `q (n, nq)`.
+    """Check that both legs stay within their ranges of motion.
+
+    Args:
+        model: floating robot.
+        q: configurations, `(n, nq)`.
 
     Raises:
         InfeasibleError: names the joint and its angle.
@@ -177,7 +187,15 @@ def check_ranges(model: RigidBodyModel, q: np.ndarray) -> None:
 
 
 def contact_mask(model: RigidBodyModel, feet: tuple[FootPath, FootPath]) -> np.ndarray:
-    """Find which pads bear load while the feet stand as planned, `(n, pads)`."""
+    """Find which pads bear load while the feet stand as planned.
+
+    Args:
+        model: floating robot.
+        feet: left and right path.
+
+    Returns:
+        True where a pad bears load, `(n, pads)`.
+    """
     columns = [feet[SIDES.index(pad.side)].bears(pad.row) for pad in sole_pads(model.tree)]
     return np.stack(columns, -1)
 
@@ -185,8 +203,16 @@ def contact_mask(model: RigidBodyModel, feet: tuple[FootPath, FootPath]) -> np.n
 def ground_wrench(
     model: RigidBodyModel, q: np.ndarray, v: np.ndarray, a: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """What the ground must give: force [N] and moment about the world's origin [Nm], each `(n, 3)`,
-    world axes.
+    """Compute what the ground must give for a motion.
+
+    Args:
+        model: floating robot.
+        q: configurations, `(n, nq)`.
+        v: velocities, `(n, nv)`.
+        a: accelerations, `(n, nv)`.
+
+    Returns:
+        Force [N] and moment about the world's origin [Nm], in world axes, each `(n, 3)`.
     """
     from hyperleg_design.robot.models import quaternion_matrix
 
@@ -200,13 +226,26 @@ def ground_wrench(
 
 
 def zero_moment_offset(force: np.ndarray, moment: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Zero-moment point at a point's height, less that point, `(n, 2)` [m]."""
+    """Compute the zero-moment point at the height of a point, relative to that point.
+
+    Args:
+        force: of the ground [N], `(n, 3)`.
+        moment: about the world's origin [Nm], `(n, 3)`.
+        point: in the world [m], `(n, 3)`.
+
+    Returns:
+        The offset, `(n, 2)` [m].
+    """
     about = moment - np.cross(point, force)
     return np.stack([-about[:, 1], about[:, 0]], -1) / force[:, 2:]
 
 
 def check_positive(where: str, **values: float) -> None:
-    """Whether numbers that describe a motion are positive and finite.
+    """Check that numbers that describe a motion are positive and finite.
+
+    Args:
+        where: name of the plan, for error messages.
+        values: the numbers by name.
 
     Raises:
         InputError: one is not.

@@ -28,13 +28,16 @@ MOTIONS = tuple(_PLANNERS)
 def reference_motion(
     design: Design, name: str, *, samples: int | None = None, **plan: float
 ) -> Motion:
-    """A reference motion of one robot.
+    """Plan a reference motion of one robot.
 
     Args:
         design: a robot, of any variant.
         name: one of `MOTIONS`.
         samples: of the motion; its own number by default.
         plan: fields of the motion's plan that differ, such as `speed` of the walk.
+
+    Returns:
+        The motion.
 
     Raises:
         InputError: no such motion or field, or a batch of designs.

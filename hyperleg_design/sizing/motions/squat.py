@@ -35,7 +35,15 @@ class SquatPlan:
 
 
 def standing_feet(design: Design, count: int) -> tuple[FootPath, FootPath]:
-    """Both feet flat under the hips, `count` samples; the ankles stand at x = 0."""
+    """Plan both feet flat under the hips; the ankles stand at x = 0.
+
+    Args:
+        design: one robot.
+        count: number of samples.
+
+    Returns:
+        Left and right path.
+    """
     feet = []
     for side in SIDES:
         position = np.zeros((3, count, 3))
@@ -47,18 +55,28 @@ def standing_feet(design: Design, count: int) -> tuple[FootPath, FootPath]:
 
 
 def sole_middle(design: Design) -> float:
-    """Middle between heel and tip pads, ahead of the ankle [m]."""
+    """Compute the middle between the pads of heel and tip.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        Its distance ahead of the ankle [m].
+    """
     tip = design.foot.ball_length + design.toe.length
     return float(tip - design.foot.heel_length) / 2
 
 
 def squat(design: Design, plan: SquatPlan | None = None, samples: int = 81) -> Motion:
-    """One squat, down and up as a sinusoid.
+    """Plan one squat, down and up as a sinusoid.
 
     Args:
         design: a robot, of any variant.
         plan: depth and pace.
         samples: in a period.
+
+    Returns:
+        The motion.
 
     Raises:
         InfeasibleError: a joint's range ends before.

@@ -64,7 +64,7 @@ class StairPlan:
 
 
 def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> Motion:
-    """One step up, left foot first, from rest to rest.
+    """Plan one step up a stair, left foot first, from rest to rest.
 
     The heel of the rear foot rises as the body does, over the toe where that moves.
 
@@ -72,6 +72,9 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
         design: a robot, of any variant.
         plan: step and pace.
         samples: in all.
+
+    Returns:
+        The motion.
 
     Raises:
         InfeasibleError: the step is too high for the legs, or a joint's range ends before.

@@ -81,16 +81,19 @@ class WalkPlan:
 
 
 def walk(design: Design, plan: WalkPlan | None = None, samples: int = 101) -> Motion:
-    """One stride (two steps) of a steady walk.
+    """Plan one stride (two steps) of a steady walk.
 
-    The feet follow their steps; the centre of pressure runs from heel to toe in single support and
-    to the other foot in double support; the pelvis path makes the whole robot's zero-moment point
-    that one.
+    The feet follow their steps. The centre of pressure runs from heel to toe in single support, and
+    to the other foot in double support. The path of the pelvis makes the zero-moment point of the
+    whole robot equal to it.
 
     Args:
         design: a robot, of any variant.
         plan: speed, timing and shape.
         samples: in a stride; an odd number leaves no harmonic uncorrected.
+
+    Returns:
+        The motion.
 
     Raises:
         InfeasibleError: the legs are too short for the step, or a joint's range ends before.
