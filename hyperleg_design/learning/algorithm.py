@@ -60,14 +60,27 @@ class IterationPPO(PPO):  # type: ignore[misc]
         return losses
 
     def set_rate(self, rate: float) -> None:
-        """Set the learning rate of all parameters."""
+        """Set the learning rate of all parameters.
+
+        Args:
+            rate: the learning rate.
+        """
         self.learning_rate = rate
         for group in self.optimizer.param_groups:
             group["lr"] = rate
 
 
 def make_algorithm(preset: Preset, environment: Environment, observations: TensorDict) -> PPO:
-    """PPO for an environment; networks are drawn from torch's random numbers."""
+    """Make PPO for an environment; networks are drawn from torch's random numbers.
+
+    Args:
+        preset: settings of algorithm and network.
+        environment: gives the sizes and the mirror maps.
+        observations: of the environment, by group.
+
+    Returns:
+        The algorithm.
+    """
     settings, network = preset.algorithm, preset.network
     actor = make_network(network, observations, "actor", environment.action_size)
     critic = make_network(network, observations, "critic", 1)
@@ -116,7 +129,17 @@ def make_algorithm(preset: Preset, environment: Environment, observations: Tenso
 
 
 def make_network(network: Network, observations: TensorDict, kind: str, outputs: int) -> MLPModel:
-    """Make the network of the actor or of the critic."""
+    """Make the network of the actor or of the critic.
+
+    Args:
+        network: settings.
+        observations: of the environment, by group.
+        kind: `actor` or `critic`.
+        outputs: number of outputs.
+
+    Returns:
+        The network with its normaliser.
+    """
     distribution = (
         {"class_name": "GaussianDistribution", "init_std": network.deviation, "std_type": "log"}
         if kind == "actor"
@@ -148,6 +171,13 @@ def _modulate(model: MLPModel, columns: list[str]) -> None:
 
 
 def as_tensors(observations: dict[str, Any]) -> TensorDict:
-    """Observation groups for rsl-rl, sharing memory with the arrays."""
+    """Wrap observation groups for rsl-rl.
+
+    Args:
+        observations: arrays by group, `(n, size)` each.
+
+    Returns:
+        Tensors that share memory with the arrays.
+    """
     tensors = {name: torch.from_numpy(values) for name, values in observations.items()}
     return TensorDict(tensors, batch_size=[len(next(iter(observations.values())))])

@@ -150,12 +150,27 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
 
 
 def campaign_status(campaign: Campaign, out: str | Path) -> list[RunStatus]:
-    """Where each training of a campaign stands, in the campaign's order."""
+    """Find out how far each training of a campaign is.
+
+    Args:
+        campaign: the list of trainings.
+        out: folder of the campaign.
+
+    Returns:
+        Statuses, in the campaign's order.
+    """
     return [_status(run, Path(out) / run.name) for run in campaign.runs]
 
 
 def status_table(statuses: list[RunStatus]) -> str:
-    """The status as text: a line a training, and a sum."""
+    """Write statuses as text.
+
+    Args:
+        statuses: of the trainings.
+
+    Returns:
+        One line for each training, and a sum.
+    """
     lines = [
         f"{'training':<34} {'state':<8} {'M steps':>12} {'speed':>6} {'falls/min':>9} {'CoT':>5} "
         f"{'assist':>6} {'left':>8}"

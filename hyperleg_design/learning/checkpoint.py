@@ -21,6 +21,10 @@ FORMAT = "hyperleg-checkpoint-1"
 def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
     """Write a checkpoint as one file, whole or not at all.
 
+    Args:
+        path: of the file.
+        content: numbers, texts, arrays and tensors in nested mappings.
+
     Raises:
         OutputError: the disk is full or the place cannot be written; the old file, if any, is
         untouched.
@@ -32,6 +36,12 @@ def save_checkpoint(path: Path, content: dict[str, Any]) -> None:
 
 def load_checkpoint(path: Path) -> dict[str, Any]:
     """Read a checkpoint; arrays come back as NumPy's, tensors under `networks` as torch's.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The content that was saved.
 
     Raises:
         InputError: missing, truncated, or no checkpoint.

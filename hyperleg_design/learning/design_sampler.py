@@ -65,7 +65,11 @@ class DesignSampler:
         return even if total == 0 else EVEN * even + (1 - EVEN) * self.fall_rate / total
 
     def note(self, terminated: np.ndarray) -> None:
-        """Take in one policy step: which simulations fell, `(n,)`."""
+        """Take in which simulations fell in one policy step.
+
+        Args:
+            terminated: `(n,)`.
+        """
         self._falls += np.bincount(self.assigned, terminated, self.spread.pool)
         self._steps += np.bincount(self.assigned, minlength=self.spread.pool)
 
@@ -89,7 +93,11 @@ class DesignSampler:
         }
 
     def put(self, state: dict[str, Any]) -> None:
-        """Back to a state."""
+        """Restore a state that `state` returned.
+
+        Args:
+            state: numbers and arrays by name.
+        """
         self.draws = int(state["draws"])
         self.assigned, self.fall_rate = state["assigned"].copy(), state["fall_rate"].copy()
         self._falls, self._steps = state["falls"].copy(), state["steps"].copy()

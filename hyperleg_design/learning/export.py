@@ -52,6 +52,9 @@ def export_policy(
         metadata: what goes into the file besides `format`; texts as they are, the rest as JSON.
         form: the file's format, `FORMAT` or `CRITIC_FORMAT`.
 
+    Returns:
+        The path of the file.
+
     Raises:
         OutputError: ONNX Runtime disagrees with torch, or the file cannot be written.
     """
@@ -66,8 +69,16 @@ def export_policy(
 
 
 def largest_difference(content: bytes, actor: MLPModel, count: int = 64) -> float:
-    """Largest difference between the actions of an ONNX file and of torch, over 1 + |action|, on
-    observations as the normaliser has seen them.
+    """Compare the actions of an ONNX file with those of torch, on observations as the normaliser
+    has seen them.
+
+    Args:
+        content: of the ONNX file.
+        actor: the network in torch.
+        count: number of observations.
+
+    Returns:
+        The largest difference over 1 + |action| [-].
     """
     import onnxruntime
 

@@ -52,13 +52,28 @@ def settled_after(stages: Sequence[Stage]) -> float:
 
 
 def final_share(stages: Sequence[Stage]) -> float:
-    """Share of all steps, at the end, that is learnt under the final reward without assist [-]."""
+    """Compute the share of all steps, at the end, that is learnt under the final reward without
+    assist.
+
+    Args:
+        stages: of the training.
+
+    Returns:
+        The share [-].
+    """
     total = sum(stage.steps for stage in stages)
     return max(0.0, 1.0 - settled_after(stages) / total)
 
 
 def final_rewards(preset: Preset, task: Task) -> dict[str, Reward]:
-    """Reward terms that count at the end of a training, by name; those of weight zero are left out.
+    """Collect the reward terms that count at the end of a training.
+
+    Args:
+        preset: of the training.
+        task: of the training.
+
+    Returns:
+        The terms by name; those of weight zero are left out.
 
     Raises:
         InputError: the preset has no stages for the task.

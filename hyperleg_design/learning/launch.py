@@ -20,12 +20,26 @@ time otherwise."""
 
 
 def surroundings(threads: int = 1) -> dict[str, str]:
-    """Environment variables of a training."""
+    """Collect the environment variables of a training.
+
+    Args:
+        threads: of the training.
+
+    Returns:
+        This process's variables with those that make a training fast.
+    """
     return {**os.environ, **MALLOC, **dict.fromkeys(THREADS, str(threads))}
 
 
 def command(arguments: Mapping[str, object]) -> list[str]:
-    """Command line of a training; arguments as `train` takes them, names and paths only."""
+    """Write the command line of a training.
+
+    Args:
+        arguments: as `train` takes them, names and paths only.
+
+    Returns:
+        The words of the command.
+    """
     return [
         sys.executable,
         "-m",
@@ -35,7 +49,16 @@ def command(arguments: Mapping[str, object]) -> list[str]:
 
 
 def start(arguments: Mapping[str, object], log: Path, threads: int = 1) -> subprocess.Popen[bytes]:
-    """Start a training in a process of its own, its progress going to a file."""
+    """Start a training in a process of its own.
+
+    Args:
+        arguments: as `train` takes them, names and paths only.
+        log: file for its progress.
+        threads: of the training.
+
+    Returns:
+        The process.
+    """
     with log.open("ab") as stream:
         return subprocess.Popen(
             command(arguments),
@@ -49,7 +72,13 @@ def start(arguments: Mapping[str, object], log: Path, threads: int = 1) -> subpr
 def run_here(
     arguments: Sequence[str], threads: int = 1, module: str = "hyperleg_design.learning"
 ) -> None:
-    """Replace this process by a training's."""
+    """Replace this process by that of a training.
+
+    Args:
+        arguments: of the command line.
+        threads: of the training.
+        module: that is run.
+    """
     os.execve(sys.executable, [sys.executable, "-m", module, *arguments], surroundings(threads))
 
 

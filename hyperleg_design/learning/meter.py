@@ -34,7 +34,11 @@ class Meter:
         self._speed = 0.0
 
     def note(self, step: Step) -> None:
-        """Take in one policy step of all simulations."""
+        """Take in one policy step of all simulations.
+
+        Args:
+            step: its rewards and endings.
+        """
         self._terms += step.reward_terms.sum(0)
         self._count += len(step.reward)
         self._ends += len(step.ended)
@@ -87,19 +91,37 @@ class Meter:
         return {"steps": self.steps, "ends": self.ends, "share": self.share}
 
     def put(self, state: dict[str, float]) -> None:
-        """Running means of a checkpoint."""
+        """Restore the running means of a checkpoint.
+
+        Args:
+            state: means by name.
+        """
         self.steps, self.ends, self.share = state["steps"], state["ends"], state["share"]
 
 
 def speed_cap(environment: Environment) -> float:
-    """Speed that waypoint commands ask for at present [m/s]."""
+    """Look up the speed that waypoint commands ask for at present.
+
+    Args:
+        environment: of the training.
+
+    Returns:
+        The speed [m/s].
+    """
     commands: Any = environment.chunks[0].commander.settings
     return float(commands.speed_cap)
 
 
 def mean_speed(environment: Environment, goal: bool) -> float:
-    """Mean speed of all robots at this moment [m/s]: straight ahead, or, with waypoints, any
-    way.
+    """Compute the mean speed of all robots at this moment.
+
+    Args:
+        environment: of the training.
+        goal: whether the task has waypoints: then speeds in any direction count, else those
+            straight ahead.
+
+    Returns:
+        The speed [m/s].
     """
     speeds = []
     for chunk in environment.chunks:

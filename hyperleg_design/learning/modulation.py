@@ -31,7 +31,14 @@ class ModulatedLayers(nn.Module):  # type: ignore[misc]
         self.shifts = nn.ModuleList(_constant(len(columns), width, 0.0) for width in widths)
 
     def forward(self, values: Tensor) -> Tensor:
-        """`(..., in)` to `(..., out)`."""
+        """Compute the outputs of the network.
+
+        Args:
+            values: inputs, `(..., in)`.
+
+        Returns:
+            `(..., out)`.
+        """
         design, hidden = values[..., self.columns], 0
         for layer in self.layers:
             values = layer(values)
@@ -42,7 +49,14 @@ class ModulatedLayers(nn.Module):  # type: ignore[misc]
 
 
 def plain_layers(network: nn.Module) -> nn.Sequential:
-    """The perceptron of a network, without its modulation if it has one."""
+    """Find the perceptron of a network.
+
+    Args:
+        network: with or without modulation.
+
+    Returns:
+        Its layers without the modulation.
+    """
     layers = network.layers if isinstance(network, ModulatedLayers) else network
     assert isinstance(layers, nn.Sequential)
     return layers

@@ -159,7 +159,13 @@ class Preset(Checked):
         return int(self.simulations) * int(self.rollout)
 
     def stages(self, task: str) -> tuple[Stage, ...]:
-        """Stages of the training for one task.
+        """List the stages of the training for one task.
+
+        Args:
+            task: name of the task.
+
+        Returns:
+            The stages in order.
 
         Raises:
             InputError: the preset has none for it.
@@ -174,11 +180,25 @@ class Preset(Checked):
         return self.tasks[task]
 
     def iterations(self, stage: Stage) -> int:
-        """Number of iterations that a stage takes, at least one."""
+        """Compute the number of iterations that a stage takes.
+
+        Args:
+            stage: of the training.
+
+        Returns:
+            The number, at least one.
+        """
         return max(1, round(stage.steps / self.steps_per_iteration))
 
     def total_iterations(self, task: str) -> int:
-        """Iterations of all stages of a task."""
+        """Compute the number of iterations of all stages of a task.
+
+        Args:
+            task: name of the task.
+
+        Returns:
+            The number.
+        """
         return sum(self.iterations(stage) for stage in self.stages(task))
 
 
@@ -204,7 +224,14 @@ def load_preset(name: str | Path) -> Preset:
 
 
 def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
-    """A preset from nested mappings as YAML gives them.
+    """Build a preset from nested mappings, as YAML gives them.
+
+    Args:
+        data: sections by name.
+        where: file, for error messages.
+
+    Returns:
+        The validated preset.
 
     Raises:
         InputError: unknown or missing field, or a value that makes no sense.

@@ -18,7 +18,14 @@ if TYPE_CHECKING:
 
 
 def task_mapping(task: Task) -> dict[str, Any]:
-    """A task such that `task_from_mapping` gives it back."""
+    """Write a task out as nested mappings.
+
+    Args:
+        task: the task.
+
+    Returns:
+        A mapping from which `task_from_mapping` builds the same task.
+    """
     commands: dict[str, Any] = {
         "kind": "waypoints" if isinstance(task.commands, WaypointCommands) else "velocity"
     }
@@ -46,7 +53,15 @@ def _section(section: Any) -> dict[str, Any]:
 
 
 def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:
-    """A preset with the stages of one task, such that `preset_from_mapping` gives it back."""
+    """Write a preset with the stages of one task out as nested mappings.
+
+    Args:
+        preset: the preset.
+        task: name of the task.
+
+    Returns:
+        A mapping from which `preset_from_mapping` builds the same preset.
+    """
     found: dict[str, Any] = {"name": preset.name}
     for field in dataclasses.fields(preset):
         if parameters.is_leaf(field):

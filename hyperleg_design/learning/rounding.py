@@ -19,7 +19,14 @@ class RoundedLinear(nn.Linear):  # type: ignore[misc]
     """Linear layer that does in float32 what autocast does in bfloat16; plain without autocast."""
 
     def forward(self, values: Tensor) -> Tensor:
-        """Values (..., in) to (..., out): bfloat16 under autocast."""
+        """Apply the layer; under autocast, operands and result are rounded to bfloat16.
+
+        Args:
+            values: `(..., in)`.
+
+        Returns:
+            `(..., out)`.
+        """
         if not torch.is_autocast_enabled("cpu"):
             return super().forward(values)
         with torch.autocast("cpu", enabled=False):
@@ -34,7 +41,11 @@ def multiplies_bfloat16() -> bool:
 
 
 def round_layers(network: nn.Module) -> None:
-    """Make a network's linear layers rounded ones, in place."""
+    """Replace the linear layers of a network by rounded ones, in place.
+
+    Args:
+        network: which is changed.
+    """
     for layer in network.modules():
         if type(layer) is nn.Linear:
             layer.__class__ = RoundedLinear

@@ -61,6 +61,9 @@ class Schedule:
     def apply(self, environment: Environment) -> None:
         """Set what the next iteration runs with; stages before the present one leave their last
         values.
+
+        Args:
+            environment: which is changed.
         """
         environment.assist = Assist(self.gain) if self.gain > 0.0 else None
         index, done = self.place
@@ -120,7 +123,11 @@ class Schedule:
         return {"iteration": self.iteration, "gain": self.gain, "gone": list(self.gone)}
 
     def put(self, state: dict[str, Any]) -> None:
-        """Restore a state that `state` returned."""
+        """Restore a state that `state` returned.
+
+        Args:
+            state: numbers and lists by name.
+        """
         self.iteration, self.gain, self.gone = (
             state["iteration"],
             state["gain"],
@@ -153,7 +160,13 @@ def _between(ramp: Ramp, progress: float) -> float:
 
 
 def set_value(environment: Environment, ramp: Ramp, progress: float) -> None:
-    """Set what a ramp changes, at its progress 0 .. 1."""
+    """Set what a ramp changes.
+
+    Args:
+        environment: which is changed.
+        ramp: names what is changed, and its range.
+        progress: of the ramp, 0 .. 1.
+    """
     kind, name, parameter = ramp.target
     value = _between(ramp, progress)
     if kind == "commands":

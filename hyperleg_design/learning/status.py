@@ -17,7 +17,14 @@ RUN, CHECKPOINT, STATUS, PROGRESS, POLICY, CRITIC = (
 
 
 def read_status(folder: Path) -> dict[str, Any] | None:
-    """`status.json` of a training; None before its first lines of progress."""
+    """Read the `status.json` of a training.
+
+    Args:
+        folder: of the training.
+
+    Returns:
+        Its content; None before the first lines of progress.
+    """
     try:
         found: dict[str, Any] = json.loads((folder / STATUS).read_text())
     except (OSError, ValueError):
@@ -26,8 +33,13 @@ def read_status(folder: Path) -> dict[str, Any] | None:
 
 
 def policies(folder: Path) -> list[Path]:
-    """ONNX files of a training, earliest first; the last one is the final policy if the training is
-    done.
+    """List the ONNX files of a training.
+
+    Args:
+        folder: of the training.
+
+    Returns:
+        The files, earliest first; the last one is the final policy if the training is done.
     """
     final = folder / POLICY
     return [*sorted(folder.glob("late_*.onnx")), *([final] if final.exists() else [])]

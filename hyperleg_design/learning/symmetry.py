@@ -45,7 +45,16 @@ class Mirrors:
     def append_mirrored(
         self, env: Any, obs: TensorDict | None, actions: torch.Tensor | None
     ) -> tuple[TensorDict | None, torch.Tensor | None]:
-        """Samples followed by their mirror images, as rsl-rl asks for; `(n, k)` -> `(2 n, k)`."""
+        """Append the mirror images of samples, as rsl-rl asks for.
+
+        Args:
+            env: not used.
+            obs: observations by group, `(n, k)` each; may be None.
+            actions: `(n, J)`; may be None.
+
+        Returns:
+            Both with `2 n` rows.
+        """
         if obs is not None:
             image = obs.clone()
             for name, mirror in self.groups.items():
@@ -76,7 +85,12 @@ class HalfMirrored(Symmetry):  # type: ignore[misc]
         """Mean KL divergence from the old policy on unmirrored samples [nat], by minibatch."""
 
     def augment_batch(self, batch: RolloutStorage.Batch, original_batch_size: int) -> None:
-        """Mirror half of the samples."""
+        """Mirror a share of the samples at random.
+
+        Args:
+            batch: which is changed.
+            original_batch_size: number of samples.
+        """
         self.mirrored = torch.rand(original_batch_size) < self.share
         if not self.share:
             return
@@ -89,8 +103,16 @@ class HalfMirrored(Symmetry):  # type: ignore[misc]
     def compute_loss(
         self, actor: MLPModel, batch: RolloutStorage.Batch, original_batch_size: int
     ) -> torch.Tensor:
-        """No loss; notes the divergence of the policy on unmirrored samples from the forward pass
-        just made.
+        """Note the divergence of the policy on unmirrored samples from the latest forward pass;
+        there is no loss.
+
+        Args:
+            actor: the network.
+            batch: with the old distribution of actions.
+            original_batch_size: number of samples.
+
+        Returns:
+            Zero.
         """
         alone = ~self.mirrored
         with torch.no_grad():

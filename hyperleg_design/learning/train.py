@@ -153,7 +153,17 @@ def train(
 
 
 def describe(task: Task, design: RobotDesign, seed: int, preset: Preset) -> dict[str, Any]:
-    """What a training is, as JSON takes it."""
+    """Describe a training, as JSON takes it.
+
+    Args:
+        task: what is trained for.
+        design: the robot.
+        seed: of all random numbers.
+        preset: size, algorithm and stages.
+
+    Returns:
+        Nested mappings.
+    """
     return {
         "task": task_mapping(task),
         "design": design.to_mapping(),
@@ -221,7 +231,15 @@ class Training:
             self._start_from(start)
 
     def run(self, iterations: int | None, show: Callable[[str], None]) -> bool:
-        """Train to the end, to a signal, or for some iterations; whether it is done."""
+        """Train to the end, until a signal comes, or for some iterations.
+
+        Args:
+            iterations: at most; to the end by default.
+            show: is called with each line of progress.
+
+        Returns:
+            Whether the training is done.
+        """
         first, schedule, preset = self.schedule.iteration, self.schedule, self.preset
         last = schedule.total if iterations is None else min(schedule.total, first + iterations)
         if (self.folder / POLICY).exists():
@@ -315,7 +333,14 @@ class Training:
         self.meter.environment = self.environment
 
     def policy(self, observation: np.ndarray) -> np.ndarray:
-        """The deterministic policy so far, `(n, size)` to `(n, J)`."""
+        """Compute the actions of the deterministic policy so far.
+
+        Args:
+            observation: `(n, size)`.
+
+        Returns:
+            Actions, `(n, J)`.
+        """
         actor = self.algorithm.get_policy()
         with torch.inference_mode():
             return actor.mlp(actor.obs_normalizer(torch.from_numpy(observation))).numpy()
@@ -341,7 +366,15 @@ class Training:
         )
 
     def line(self, measures: dict[str, Any], left: float) -> str:
-        """Describe the latest iteration in one line of text."""
+        """Describe the latest iteration in one line of text.
+
+        Args:
+            measures: of the iteration.
+            left: time that is left [s].
+
+        Returns:
+            The line.
+        """
         total = self.schedule.total * self.preset.steps_per_iteration
         terms = " ".join(
             f"{name} {value:+.2f}" for name, value in measures["terms"].items() if value

@@ -88,6 +88,12 @@ class StartCritic:
 def read_start(path: str | Path) -> StartPolicy:
     """Read a policy that `hyperleg train` exported, and the critic beside it, if any.
 
+    Args:
+        path: of the ONNX file.
+
+    Returns:
+        Weights, normaliser and origin of the policy, and those of its critic.
+
     Raises:
         InputError: missing, truncated, or no such policy or critic.
     """
@@ -267,8 +273,13 @@ def fits_critic(critic: MLPModel, start: StartPolicy, task: str, columns: list[s
 
 
 def start_critic(critic: MLPModel, actor: MLPModel, old: StartCritic) -> None:
-    """Give a critic the weights of the one that judged the policy, and the actor the deviation that
-    its actions had.
+    """Give a critic the weights of the one that judged the policy, and the actor the deviation of
+    its actions.
+
+    Args:
+        critic: which is changed.
+        actor: which is changed.
+        old: weights and normaliser of the critic, and the deviation of the actions.
     """
     _put(critic, zip(old.weights, old.biases, strict=True), old.mean, old.deviation)
     with torch.no_grad():

@@ -59,7 +59,14 @@ class ActuationModel:
 
 
 def actuation_model(design: RobotDesign) -> ActuationModel:
-    """Actuation of a robot, or of a batch of them with an axis for the legs behind the batch."""
+    """Collect the constants of a robot's actuation.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Constants of one leg; for a batch, `(n, legs, ...)` each.
+    """
     joints, motors = transmission.joint_names(design), transmission.motor_names(design)
     batched = bool(design.batch_shape)
     arrays = motor_arrays(design)
@@ -98,11 +105,17 @@ def actuation_model(design: RobotDesign) -> ActuationModel:
 
 
 def motor_from_joint(matrix: np.ndarray, power_constant: np.ndarray) -> np.ndarray:
-    """The linear map from joint torques to motor torques, `(..., motors, joints)`: M^-1, or that of
-    least Joule heat; zero for a joint that no motor moves.
+    """Compute the linear map from joint torques to motor torques, C^-1 M^T (M C^-1 M^T)^-1.
 
-    C^-1 M^T (M C^-1 M^T)^-1 with C the motors' power constants [W/Nm^2]; where motors outnumber
-    joints it leaves the others at the cheapest.
+    It is M^-1 where there are as many motors as joints. Where motors outnumber joints, it gives the
+    motor torques of least Joule heat. It is zero for a joint that no motor moves.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        power_constant: C, Joule heat over squared torque [W/Nm^2], `(..., motors)`.
+
+    Returns:
+        The map [-], `(..., motors, joints)`.
     """
     moved = transmission.driven_rows(matrix)
     if not moved.all():
@@ -116,8 +129,16 @@ def motor_from_joint(matrix: np.ndarray, power_constant: np.ndarray) -> np.ndarr
 
 
 def smoothed_action(previous: np.ndarray, action: np.ndarray, weight: float) -> np.ndarray:
-    """Exponential moving average, `(..., J)`: weight * action + (1 - weight) * previous, once a
-    policy step.
+    """Compute the exponential moving average of actions, weight * action + (1 - weight) * previous,
+    once a policy step.
+
+    Args:
+        previous: average of the step before, `(..., J)`.
+        action: of this step, `(..., J)`.
+        weight: of the new action [-].
+
+    Returns:
+        The new average, `(..., J)`.
     """
     return previous + weight * (action - previous)
 
@@ -125,25 +146,46 @@ def smoothed_action(previous: np.ndarray, action: np.ndarray, weight: float) -> 
 def controller_torque(
     model: ActuationModel, target: np.ndarray, position: np.ndarray, velocity: np.ndarray
 ) -> np.ndarray:
-    """Joint torque that the joint controller wants [Nm], `(..., legs, joints)`."""
+    """Compute the joint torque that the joint controller asks for.
+
+    Args:
+        model: gives stiffness and damping.
+        target: joint positions to reach [rad], `(..., legs, joints)`.
+        position: joint positions [rad], `(..., legs, joints)`.
+        velocity: joint velocities [rad/s], `(..., legs, joints)`.
+
+    Returns:
+        The torque [Nm], `(..., legs, joints)`.
+    """
     return model.stiffness * (target - position) - model.damping * velocity
 
 
 def motor_speed(matrix: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """M^T q_dot [rad/s], `(..., legs, joints)` -> `(..., legs, motors)`."""
+    """Compute motor velocities, M^T q_dot.
+
+    Args:
+        matrix: M [-], `(joints, motors)` or with the leading axes of `velocity`.
+        velocity: joint velocities [rad/s], `(..., legs, joints)`.
+
+    Returns:
+        Motor velocities [rad/s], `(..., legs, motors)`.
+    """
     return applied(np.swapaxes(matrix, -1, -2), velocity)
 
 
 def driven_torque(
     model: ActuationModel, wanted: np.ndarray, speed: np.ndarray, to_motor: np.ndarray | None = None
 ) -> np.ndarray:
-    """Motor torques that the drives give [Nm], `(..., legs, motors)`.
+    """Compute the motor torques that the drives give, inside their envelopes.
 
     Args:
         model: the actuation.
         wanted: joint torques [Nm], `(..., legs, joints)`.
         speed: motor velocities [rad/s], `(..., legs, motors)`.
         to_motor: map from joint to motor torques in place of the model's, `(..., motors, joints)`.
+
+    Returns:
+        The torques [Nm], `(..., legs, motors)`.
     """
     torque = applied(model.motor_from_joint if to_motor is None else to_motor, wanted)
     # `sizing.envelope.clip_torque` with the bounds taken one after the other, in place: this runs
@@ -160,14 +202,34 @@ def driven_torque(
 def friction_torque(
     coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any
 ) -> np.ndarray:
-    """f_c tanh(v / v_m) + f_v v [Nm], the part subtracted in Eq. (4); `(...)`."""
+    """Compute joint friction, f_c tanh(v / v_m) + f_v v, the part that is subtracted in Eq. (4).
+
+    Args:
+        coulomb: f_c [Nm], `(...)`.
+        viscous: f_v [Nms/rad], `(...)`.
+        velocity: v [rad/s], `(...)`.
+        width: v_m [rad/s].
+
+    Returns:
+        The friction torque [Nm], `(...)`.
+    """
     return coulomb * np.tanh(velocity / width) + viscous * velocity
 
 
 def friction_damping(
     coulomb: np.ndarray, viscous: np.ndarray, velocity: np.ndarray, width: Any
 ) -> np.ndarray:
-    """The damping D with D v = `friction_torque` [Nms/rad], `(...)`; f_c / v_m + f_v at rest."""
+    """Compute the damping D with D v = `friction_torque`; at rest it is f_c / v_m + f_v.
+
+    Args:
+        coulomb: f_c [Nm], `(...)`.
+        viscous: f_v [Nms/rad], `(...)`.
+        velocity: v [rad/s], `(...)`.
+        width: v_m [rad/s].
+
+    Returns:
+        The damping [Nms/rad], `(...)`.
+    """
     ratio = np.abs(velocity)
     ratio /= width
     np.maximum(ratio, 1e-9, out=ratio)
@@ -179,11 +241,15 @@ def friction_damping(
 
 
 def motor_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
-    """Friction at the motors that comes nearest to the printed friction at the joints.
+    """Fit friction at the motors that comes nearest to the printed friction at the joints.
 
-    Table I prints friction per joint, measured with motors that move several joints. Non-negative
-    Coulomb torques f and viscous coefficients d at the motors are fitted, in least squares, so that
-    each joint moving alone meets `sum |M| f` and `sum M^2 d`; they cannot meet all of them.
+    Table I prints friction for each joint, measured with motors that move several joints.
+    Non-negative Coulomb torques f and viscous coefficients d at the motors are fitted in least
+    squares, so that each joint moving alone meets `sum |M| f` and `sum M^2 d`. They cannot meet all
+    of them exactly.
+
+    Args:
+        design: one robot.
 
     Returns:
         Coulomb [Nm] and viscous [Nms/rad], `(motors,)` each, of one robot.
@@ -195,25 +261,54 @@ def motor_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
 
 
 def motor_friction_width(matrix: np.ndarray, width: float) -> np.ndarray:
-    """Motor speeds that match the joints' v_m: v_m times each motor's largest reduction [rad/s],
-    `(..., motors)`.
+    """Compute the motor speeds that match the joints' v_m: v_m times each motor's largest
+    reduction.
+
+    Args:
+        matrix: M [-], `(..., joints, motors)`.
+        width: v_m [rad/s].
+
+    Returns:
+        The speeds [rad/s], `(..., motors)`.
     """
     return np.asarray(width * np.max(np.abs(matrix), -2))
 
 
 def joule_power(power_constant: np.ndarray, torque: np.ndarray) -> np.ndarray:
-    """Heat in each motor [W], Cp tau^2, `(..., motors)`."""
+    """Compute the heat in each motor, Cp tau^2.
+
+    Args:
+        power_constant: Cp [W/Nm^2], `(..., motors)`.
+        torque: tau [Nm], `(..., motors)`.
+
+    Returns:
+        The heat [W], `(..., motors)`.
+    """
     return power_constant * torque**2
 
 
 def mechanical_power(torque: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Signed mechanical power of each motor or joint [W], `(...)`."""
+    """Compute the signed mechanical power of each motor or joint.
+
+    Args:
+        torque: [Nm], `(...)`.
+        velocity: [rad/s], `(...)`.
+
+    Returns:
+        The power [W], `(...)`.
+    """
     return torque * velocity
 
 
 def applied(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """Product of matrix and vector over the last axes; one product for all rows where the matrix is
-    shared.
+    """Multiply a matrix and a vector over the last axes.
+
+    Args:
+        matrix: `(rows, columns)`, shared by all vectors, or `(..., rows, columns)`.
+        vector: `(..., columns)`.
+
+    Returns:
+        The product, `(..., rows)`.
     """
     if matrix.ndim == 2:
         return (vector.reshape(-1, matrix.shape[1]) @ matrix.T).reshape(

@@ -73,20 +73,37 @@ class Machine:
         )
 
     def joint(self, name: str) -> int:
-        """Index of a joint in all arrays over joints."""
+        """Find a joint in all arrays over joints.
+
+        Args:
+            name: of the joint.
+
+        Returns:
+            Its index.
+        """
         return self.joints.index(name)
 
     def motor(self, name: str) -> int:
-        """Index of a motor in all arrays over motors."""
+        """Find a motor in all arrays over motors.
+
+        Args:
+            name: of the motor.
+
+        Returns:
+            Its index.
+        """
         return self.motors.index(name)
 
     def changed(self, field: str, place: int, change: Callable[[np.ndarray], Any]) -> Machine:
-        """A copy in which a constant of one joint or motor is changed.
+        """Copy the machine with another constant of one joint or motor.
 
         Args:
             field: name of a `(J,)` or `(K,)` field.
             place: of the joint or motor.
             change: from the constant, `()` or `(n,)`, to the new one, `()` or `(n,)`.
+
+        Returns:
+            The copy.
         """
         old = np.asarray(getattr(self, field), float)
         new = np.asarray(change(old[..., place]), float)
@@ -107,8 +124,14 @@ class Limits:
     peak_torque: np.ndarray
 
     def clip(self, torque: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Torque inside the four-quadrant envelope at a motor velocity [Nm], `(n, K)`; as
-        `sizing.envelope`.
+        """Bring torques inside the four-quadrant envelope, as `sizing.envelope` does.
+
+        Args:
+            torque: as wanted [Nm], `(n, K)`.
+            speed: motor velocity [rad/s], `(n, K)`.
+
+        Returns:
+            The clipped torque [Nm], `(n, K)`.
         """
         with np.errstate(invalid="ignore"):
             droop = (
@@ -169,71 +192,146 @@ class Live:
         """Find places by name, make the hidden state."""
 
     def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
-        """Some simulations start anew from joint states `(len(ids), J)`; by default their hidden
-        state becomes zero.
+        """Start some simulations anew; by default their hidden state becomes zero.
+
+        Args:
+            ids: indices of the simulations.
+            position: of the joints [rad], `(len(ids), J)`.
+            velocity: of the joints [rad/s], `(len(ids), J)`.
         """
         for name in self.kept:
             getattr(self, name)[ids] = 0
 
     def begin(self, tick: Tick) -> None:
-        """First in each step: take in the new joint state; may write the rotors' state into the
-        tick.
+        """Take in the new joint state, first in each step.
+
+        Args:
+            tick: the state; the rotors' state may be written into it.
         """
 
     def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Joint state that the controller and the policy are told, `(n, J)` each."""
+        """Change the joint state that the controller and the policy measure.
+
+        Args:
+            position: of the joints [rad], `(n, J)`.
+            velocity: of the joints [rad/s], `(n, J)`.
+
+        Returns:
+            Measured position and velocity, `(n, J)` each.
+        """
         return position, velocity
 
     def imu(self, angular_velocity: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Angular velocity [rad/s] and specific force [m/s^2] that gyro and accelerometer tell, in
-        the base's frame, `(n, 3)` each.
+        """Change what gyro and accelerometer measure.
+
+        Args:
+            angular_velocity: in the base's frame [rad/s], `(n, 3)`.
+            force: specific force in the base's frame [m/s^2], `(n, 3)`.
+
+        Returns:
+            Measured angular velocity and specific force, `(n, 3)` each.
         """
         return angular_velocity, force
 
     def target(self, target: np.ndarray, tick: Tick) -> np.ndarray:
-        """Position target that the controller follows `(n, J)` [rad]."""
+        """Change the position target that the controller follows.
+
+        Args:
+            target: as given [rad], `(n, J)`.
+            tick: the state of this step.
+
+        Returns:
+            The target that is followed [rad], `(n, J)`.
+        """
         return target
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
         """Change the motor torque that the controller asks for into the one that the drive tries to
-        give [Nm], `(n, K)`.
+        give.
+
+        Args:
+            command: as asked for [Nm], `(n, K)`.
+            tick: the state of this step.
+
+        Returns:
+            The torque that is tried [Nm], `(n, K)`.
         """
         return command
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:
-        """What the motors can give in this step; return a new one, or the one given."""
+        """Change what the motors can give in this step.
+
+        Args:
+            limits: so far.
+            tick: the state of this step.
+
+        Returns:
+            New limits, or the same object.
+        """
         return limits
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
         """Change the torque that the drive believes to give, within its limits, into the torque at
-        the rotor [Nm], `(n, K)`.
+        the rotor.
+
+        Args:
+            torque: as believed [Nm], `(n, K)`.
+            tick: the state of this step.
+
+        Returns:
+            The torque at the rotor [Nm], `(n, K)`.
         """
         return torque
 
     def motor_damping(self, tick: Tick) -> np.ndarray | None:
-        """Resistance at the rotors D >= 0 `(n, K)` [Nms/rad]: D times the motor velocity *after*
-        the step is taken off.
+        """State the resistance D >= 0 at the rotors: D times the motor velocity *after* the step is
+        taken off.
 
         Friction f(v) of any kind is D = f(v) / v at the present velocity, bounded at rest; see
         `resistance`.
+
+        Args:
+            tick: the state of this step.
+
+        Returns:
+            D [Nms/rad], `(n, K)`; None for no resistance.
         """
         return None
 
     def joint_damping(self, tick: Tick) -> np.ndarray | None:
-        """Resistance at the joints, as `motor_damping`, `(n, J)` [Nms/rad]."""
+        """State the resistance at the joints, as `motor_damping` does at the rotors.
+
+        Args:
+            tick: the state of this step.
+
+        Returns:
+            D [Nms/rad], `(n, J)`; None for no resistance.
+        """
         return None
 
     def joint_torque(self, tick: Tick) -> np.ndarray | None:
-        """Torque added at the joints, taken as it is `(n, J)` [Nm]; stiff springs belong into
-        `edit`.
+        """State a torque that is added at the joints as it is; stiff springs belong into `edit`.
+
+        Args:
+            tick: the state of this step.
+
+        Returns:
+            The torque [Nm], `(n, J)`; None for no torque.
         """
         return None
 
     def transmitted(
         self, torque: np.ndarray, damping: np.ndarray | None, tick: Tick
     ) -> tuple[np.ndarray, np.ndarray | None]:
-        """Change torque and resistance at the rotors into those on the motor's side of a rigid M,
-        `(n, K)` each.
+        """Change torque and resistance at the rotors into those on the motor's side of a rigid M.
+
+        Args:
+            torque: at the rotors [Nm], `(n, K)`.
+            damping: at the rotors [Nms/rad], `(n, K)`; None for no resistance.
+            tick: the state of this step.
+
+        Returns:
+            Torque and resistance that are transmitted, `(n, K)` each.
         """
         return torque, damping
 
@@ -275,7 +373,14 @@ class Alteration:
         """
 
     def machine(self, machine: Machine) -> Machine:
-        """Constants of the robot with it."""
+        """Change the constants of the robot.
+
+        Args:
+            machine: without this alteration.
+
+        Returns:
+            The machine with it.
+        """
         return machine
 
     @property
@@ -289,14 +394,31 @@ Alterations = Sequence[Alteration] | Callable[[Any], Sequence[Alteration]]
 
 
 def made(alterations: Alterations | None, design: RobotDesign) -> tuple[Alteration, ...]:
-    """Alterations of a design."""
+    """Collect the alterations of a design.
+
+    Args:
+        alterations: themselves, or a function that makes them for a design; None for none.
+        design: the robot.
+
+    Returns:
+        The alterations.
+    """
     return tuple(alterations(design) if callable(alterations) else alterations or ())
 
 
 def edited(
     model: mujoco.MjModel, alterations: Sequence[Alteration], simulation: int = 0
 ) -> mujoco.MjModel:
-    """A model with the edits of alterations; the same one if there are none, a copy otherwise."""
+    """Apply the edits of alterations to a model.
+
+    Args:
+        model: the compiled model.
+        alterations: whose edits are applied.
+        simulation: index of the simulation, for alterations that differ between simulations.
+
+    Returns:
+        The same model if there are no edits, a changed copy otherwise.
+    """
     import copy
 
     import mujoco
@@ -311,8 +433,14 @@ def edited(
 
 
 def damps_motors(alterations: Sequence[Alteration]) -> bool:
-    """Whether any of them resists at the rotors; MuJoCo then needs an integrator that is implicit
-    in tendon damping.
+    """Decide whether any alteration resists at the rotors; MuJoCo then needs an integrator that is
+    implicit in tendon damping.
+
+    Args:
+        alterations: all of a simulation.
+
+    Returns:
+        True if one does.
     """
     return any(
         overrides(a.live, "motor_damping") or overrides(a.live, "transmitted") for a in alterations
@@ -320,13 +448,29 @@ def damps_motors(alterations: Sequence[Alteration]) -> bool:
 
 
 def resistance(torque: np.ndarray, velocity: np.ndarray, width: float) -> np.ndarray:
-    """The D of friction whose size `torque` [Nm] grows from zero over a `width` [rad/s] of
-    velocity: torque tanh(|v| / w) / |v|.
+    """Compute the D of friction that grows from zero over a width of velocity, torque tanh(|v| / w)
+    / |v|.
+
+    Args:
+        torque: size of the friction [Nm].
+        velocity: v [rad/s], `(...)`.
+        width: w [rad/s].
+
+    Returns:
+        D [Nms/rad], `(...)`.
     """
     speed = np.maximum(np.abs(velocity), 1e-9 * width)
     return np.asarray(torque * np.tanh(speed / width) / speed)
 
 
 def overrides(live: type[Live] | None, hook: str) -> bool:
-    """Whether a class of hooks has one of its own under a name."""
+    """Decide whether a class of hooks has a hook of its own.
+
+    Args:
+        live: the class; None for none.
+        hook: name of the method.
+
+    Returns:
+        True if the class overrides it.
+    """
     return live is not None and getattr(live, hook) is not getattr(Live, hook)

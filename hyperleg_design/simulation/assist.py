@@ -55,12 +55,15 @@ class Assist:
             self.gain = 0.0
 
     def wrench(self, motion: Motion, direction: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Force and torque on the pelvis in the world [N, Nm], `(n, 6)`.
+        """Compute the helping force and torque on the pelvis.
 
         Args:
             motion: of the robots.
             direction: unit vector to go, in the yaw frame, `(n, 2)`.
             speed: wanted that way [m/s], `(n,)`.
+
+        Returns:
+            Force [N] and torque [Nm] in the world, `(n, 6)`.
         """
         ahead = to_world(motion.heading, direction)
         error = speed - np.einsum("ni,ni->n", ahead, motion.velocity[:, :2])

@@ -89,21 +89,41 @@ class Chain:
         }
 
     def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
-        """Some simulations start anew, from joint states `(len(ids), J)`."""
+        """Start some simulations anew.
+
+        Args:
+            ids: indices of the simulations.
+            position: of the joints [rad], `(len(ids), J)`.
+            velocity: of the joints [rad/s], `(len(ids), J)`.
+        """
         self.last_torque[ids] = 0.0
         for live in self.lives:
             live.reset(ids, position, velocity)
 
     def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Joint state that controller and policy are told, `(n, J)` each; copies."""
+        """Compute the joint state that controller and policy measure.
+
+        Args:
+            position: true, of the joints [rad], `(n, J)`.
+            velocity: true, of the joints [rad/s], `(n, J)`.
+
+        Returns:
+            Measured position and velocity, `(n, J)` each; copies.
+        """
         position, velocity = position.copy(), velocity.copy()
         for live in self._hooks["measured"]:
             position, velocity = live.measured(position, velocity)
         return position, velocity
 
     def imu(self, angular_velocity: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What the IMU tells of angular velocity [rad/s] and specific force [m/s^2], `(n, 3)` each;
-        copies.
+        """Compute what the IMU measures.
+
+        Args:
+            angular_velocity: true, in the base's frame [rad/s], `(n, 3)`.
+            force: true specific force in the base's frame [m/s^2], `(n, 3)`.
+
+        Returns:
+            Measured angular velocity and specific force, `(n, 3)` each; copies.
         """
         angular_velocity, force = angular_velocity.copy(), force.copy()
         for live in self._hooks["imu"]:
@@ -123,7 +143,7 @@ class Chain:
         joint_from_motor: np.ndarray | None = None,
         motor_from_joint: np.ndarray | None = None,
     ) -> Driven:
-        """One step of all simulations, before the simulator makes its own.
+        """Compute one step of all drives, before the simulator makes its own.
 
         Args:
             position: of the joints, true `(n, J)` [rad].
@@ -135,6 +155,9 @@ class Chain:
             battery: its voltage, where a log has it `(n,)` [V].
             joint_from_motor: of this posture, in place of the machine's `(n, J, K)`.
             motor_from_joint: of this posture, in place of the machine's `(n, K, J)`.
+
+        Returns:
+            Torques and resistances at rotors and joints.
         """
         machine = self.machine
         matrix = machine.joint_from_motor if joint_from_motor is None else joint_from_motor
@@ -210,7 +233,11 @@ class Chain:
         return {"last_torque": self.last_torque.copy(), **kept}
 
     def put_state(self, state: dict[str, np.ndarray]) -> None:
-        """Restore arrays that `state` returned."""
+        """Restore arrays that `state` returned.
+
+        Args:
+            state: arrays by name.
+        """
         self.last_torque = state["last_torque"].copy()
         for i, live in enumerate(self.lives):
             for name in live.kept:

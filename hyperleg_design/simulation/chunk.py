@@ -194,7 +194,14 @@ class Chunk:
         return observe(self.task.observations, state, self.robot)
 
     def step(self, action: np.ndarray) -> Step:
-        """One policy step with finite actions `(n, J)`."""
+        """Advance all simulations of the chunk by one policy step.
+
+        Args:
+            action: finite numbers, `(n, J)`.
+
+        Returns:
+            Observations, rewards and endings.
+        """
         task, duration = self.task, self.task.physics.policy_step
         self.previous_action, self.action = (
             self.action,

@@ -89,23 +89,57 @@ class Commander(Protocol):
     settings: Any
 
     def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> Goal | None:
-        """New commands at the start of episodes, and where they stand to them; `motion` holds the
-        rows of `ids`.
+        """Give new commands at the start of episodes.
+
+        Args:
+            ids: indices of the simulations.
+            motion: of these simulations, in the same order.
+            rng: random numbers.
+
+        Returns:
+            Where each of them stands to its waypoint; None without waypoints.
         """
 
     def judge(self, motion: Motion) -> Goal | None:
-        """Where each simulation stands to its waypoint, if there are any."""
+        """Compute where each simulation stands to its waypoint.
+
+        Args:
+            motion: of all simulations.
+
+        Returns:
+            Distances and arrivals; None without waypoints.
+        """
 
     def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: Random) -> None:
-        """Go on by one policy step, after it was judged; rows of `goal` that got a new waypoint
-        then describe that.
+        """Go on by one policy step, after it was judged.
+
+        Args:
+            motion: of all simulations.
+            goal: as judged; rows that get a new waypoint then describe that.
+            duration: of the policy step [s].
+            rng: random numbers.
         """
 
     def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
-        """The command that a policy sees, `(n, 3)`; of `ids`, whose goals are given, or of all."""
+        """Compute the command that a policy observes.
+
+        Args:
+            goal: of the simulations `ids`, or of all.
+            ids: indices of the simulations; all by default.
+
+        Returns:
+            The command, `(n, 3)`.
+        """
 
     def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
-        """Direction to go in the yaw frame `(n, 2)` and speed [m/s] `(n,)`."""
+        """Compute where the robots should go.
+
+        Args:
+            goal: of all simulations.
+
+        Returns:
+            Direction in the yaw frame, `(n, 2)`, and speed [m/s], `(n,)`.
+        """
 
 
 class VelocityCommander:
@@ -117,7 +151,13 @@ class VelocityCommander:
         self.left = np.zeros(count)
 
     def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> None:
-        """Draw new commands for the simulations `ids`."""
+        """Draw new commands for some simulations.
+
+        Args:
+            ids: indices of the simulations.
+            motion: of these simulations.
+            rng: random numbers.
+        """
         s, count = self.settings, len(ids)
         drawn = np.empty((count, 3))
         drawn[:, 0] = rng.uniform(s.forward_low, s.forward_high, count)
@@ -130,21 +170,47 @@ class VelocityCommander:
         self.left[ids] = s.interval
 
     def judge(self, motion: Motion) -> None:
-        """Do nothing: velocity commands have no waypoints that could be reached."""
+        """Do nothing: velocity commands have no waypoints that could be reached.
+
+        Args:
+            motion: of all simulations.
+        """
 
     def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: Random) -> None:
-        """New commands where the old ones' time is over."""
+        """Draw new commands where the time of the old ones is over.
+
+        Args:
+            motion: of all simulations.
+            goal: None.
+            duration: of the policy step [s].
+            rng: random numbers.
+        """
         self.left -= duration
         over = np.flatnonzero(self.left < 0.5 * duration)
         if len(over):
             self.reset(over, motion, of_rows(rng, over))
 
     def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
-        """Commanded velocities: forward and sideways [m/s] and turning [rad/s], `(n, 3)`."""
+        """Collect the commanded velocities.
+
+        Args:
+            goal: None.
+            ids: indices of the simulations; all by default.
+
+        Returns:
+            Forward and sideways velocity [m/s] and turning rate [rad/s], `(n, 3)`.
+        """
         return self.values.copy() if ids is None else self.values[ids]
 
     def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
-        """Straight on at the forward speed."""
+        """Go straight on at the forward speed.
+
+        Args:
+            goal: None.
+
+        Returns:
+            Direction in the yaw frame, `(n, 2)`, and speed [m/s], `(n,)`.
+        """
         return np.broadcast_to(np.array([1.0, 0.0]), (len(self.values), 2)), self.values[:, 0]
 
 
@@ -167,7 +233,16 @@ class WaypointCommander:
         self._origin, self._heading = np.zeros((count, 2)), np.zeros((count, 2))
 
     def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> Goal:
-        """First waypoints, from where the robots stand, ahead of them."""
+        """Give first waypoints, ahead of where the robots stand.
+
+        Args:
+            ids: indices of the simulations.
+            motion: of these simulations, in the same order.
+            rng: random numbers.
+
+        Returns:
+            Where they stand to their waypoints.
+        """
         count, s = len(ids), self.settings
         here = motion.position[:, :2]
         self._origin[ids], self._heading[ids], self.last[ids], self.reached[ids] = (
@@ -186,7 +261,14 @@ class WaypointCommander:
         return goal
 
     def judge(self, motion: Motion) -> Goal:
-        """Distances, progress and arrivals; the best distance is brought up to date."""
+        """Compute distances, progress and arrivals, and bring the best distance up to date.
+
+        Args:
+            motion: of all simulations.
+
+        Returns:
+            Where they stand to their waypoints.
+        """
         goal = self._seen(slice(None), motion.position[:, :2], motion.heading)
         goal.progress = np.maximum(self.best - goal.distance, 0.0)
         goal.arrived = goal.distance < self.settings.arrival
@@ -195,7 +277,14 @@ class WaypointCommander:
         return goal
 
     def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: Random) -> None:
-        """The next waypoint for those that arrived; a finished course keeps its last."""
+        """Give the next waypoint to those that arrived; a finished course keeps its last.
+
+        Args:
+            motion: of all simulations.
+            goal: as judged; rows that get a new waypoint then describe that.
+            duration: of the policy step [s].
+            rng: random numbers.
+        """
         assert goal is not None
         ids = np.flatnonzero(goal.arrived & ~goal.finished)
         if not len(ids):
@@ -212,12 +301,27 @@ class WaypointCommander:
         goal.put(ids, self._seen(ids, here, motion.heading[ids]))
 
     def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
-        """Offset to the waypoint in the yaw frame, clipped to `SIGHT`, and heading error."""
+        """Compute the offset to the waypoint, clipped to `SIGHT`, and the heading error.
+
+        Args:
+            goal: of the simulations `ids`, or of all.
+            ids: indices of the simulations; all by default.
+
+        Returns:
+            Offset in the yaw frame [m] and heading error [rad], `(n, 3)`.
+        """
         assert goal is not None
         return np.column_stack([clipped(goal.offset), goal.heading_error])
 
     def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
-        """Toward the waypoint at the speed cap."""
+        """Go toward the waypoint at the speed cap.
+
+        Args:
+            goal: of all simulations.
+
+        Returns:
+            Direction in the yaw frame, `(n, 2)`, and speed [m/s], `(n,)`.
+        """
         assert goal is not None
         return goal.offset / np.maximum(goal.distance, 1e-9)[:, None], goal.speed_cap
 
@@ -264,13 +368,29 @@ class WaypointCommander:
 
 
 def clipped(offset: np.ndarray) -> np.ndarray:
-    """Offsets shortened to `SIGHT` where longer, `(n, 2)` [m]."""
+    """Shorten offsets to `SIGHT` where they are longer.
+
+    Args:
+        offset: `(n, 2)` [m].
+
+    Returns:
+        The shortened offsets, `(n, 2)` [m].
+    """
     length = np.hypot(offset[:, 0], offset[:, 1])
     return offset * np.minimum(1.0, SIGHT / np.maximum(length, 1e-9))[:, None]
 
 
 def segment_distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Distance of points from straight segments [m], `(n, 2)` each -> `(n,)`."""
+    """Compute the distance of points from straight segments.
+
+    Args:
+        point: `(n, 2)` [m].
+        start: of each segment, `(n, 2)` [m].
+        end: of each segment, `(n, 2)` [m].
+
+    Returns:
+        The distances, `(n,)` [m].
+    """
     along = end - start
     length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-12)
     share = np.clip(np.einsum("ni,ni->n", point - start, along) / length, 0.0, 1.0)
@@ -281,7 +401,15 @@ def segment_distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> n
 def commander(
     settings: VelocityCommands | WaypointCommands, count: int
 ) -> VelocityCommander | WaypointCommander:
-    """Runtime of a kind of command for a number of simulations."""
+    """Make the runtime of a kind of command.
+
+    Args:
+        settings: of the commands.
+        count: number of simulations.
+
+    Returns:
+        The commander.
+    """
     return (
         VelocityCommander(settings, count)
         if isinstance(settings, VelocityCommands)

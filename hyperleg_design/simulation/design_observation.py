@@ -43,7 +43,14 @@ class Range:
             raise InputError("design ranges", "low", self.low, "must be positive with log")
 
     def scaled(self, values: np.ndarray) -> np.ndarray:
-        """-1 at the low end, 1 at the high one, linear in the value or its logarithm."""
+        """Scale values linearly, or their logarithms: -1 at the low end, 1 at the high one.
+
+        Args:
+            values: `(...)`.
+
+        Returns:
+            The scaled values [-], `(...)`.
+        """
         low, high = (np.log([self.low, self.high])) if self.log else (self.low, self.high)
         place = np.log(values) if self.log else values
         return np.asarray(2 * (place - low) / (high - low) - 1)
@@ -62,8 +69,13 @@ class DesignRanges:
         return [f"design.{path}" for path in self.ranges]
 
     def numbers(self, design: RobotDesign) -> np.ndarray:
-        """Observed numbers of a robot `(k,)` or a batch `(n, k)`, within -1 .. 1 inside the
-        ranges.
+        """Compute the numbers of a design that a policy observes.
+
+        Args:
+            design: a robot or a batch of n.
+
+        Returns:
+            The numbers, within -1 .. 1 inside the ranges, `(k,)` or `(n, k)`.
         """
         values = [
             bounds.scaled(np.asarray(design[path], float)) for path, bounds in self.ranges.items()
@@ -71,7 +83,14 @@ class DesignRanges:
         return np.stack(np.broadcast_arrays(*values), -1)
 
     def outside(self, design: RobotDesign) -> list[str]:
-        """Leaves of one robot that lie outside their range."""
+        """List the leaves of a robot that lie outside their range.
+
+        Args:
+            design: one robot.
+
+        Returns:
+            Dotted paths.
+        """
         numbers = self.numbers(design)
         return [
             path
@@ -80,7 +99,15 @@ class DesignRanges:
         ]
 
     def draw(self, count: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
-        """Values of designs drawn evenly over the ranges, by path, each `(count,)`."""
+        """Draw designs evenly over the ranges.
+
+        Args:
+            count: number of designs.
+            rng: random numbers.
+
+        Returns:
+            Values by path, `(count,)` each.
+        """
         drawn = {}
         for path, bounds in self.ranges.items():
             place = rng.random(count)
@@ -97,7 +124,14 @@ class DesignRanges:
 
 
 def design_ranges(data: Any, where: str) -> DesignRanges:
-    """Ranges from what `DesignRanges.to_mapping` gives, or a file holds.
+    """Build ranges from what `DesignRanges.to_mapping` gives, or what a file holds.
+
+    Args:
+        data: `{low, high}` by dotted path.
+        where: file, for error messages.
+
+    Returns:
+        The validated ranges.
 
     Raises:
         InputError: no mapping, a path that is no single number of a design, or no range.

@@ -47,11 +47,25 @@ class DesignSpread:
         return {**dataclasses.asdict(self), "ranges": self.ranges.to_mapping()}
 
     def designs(self, base: RobotDesign) -> RobotDesign:
-        """The pool, a batch of `pool` designs: `base` with the drawn leaves."""
+        """Draw the pool of designs for training.
+
+        Args:
+            base: the robot whose leaves are replaced.
+
+        Returns:
+            A batch of `pool` designs.
+        """
         return _drawn(base, self.ranges, self.pool, self.seed)
 
     def held_out_designs(self, base: RobotDesign) -> RobotDesign:
-        """The designs for checks, a batch of `held_out`."""
+        """Draw the designs for checks.
+
+        Args:
+            base: the robot whose leaves are replaced.
+
+        Returns:
+            A batch of `held_out` designs.
+        """
         return _drawn(base, self.ranges, self.held_out, self.held_out_seed)
 
 
@@ -72,6 +86,9 @@ def load_design_spread(name: str | Path) -> DesignSpread:
         name: a shipped name such as `toe`, or a YAML file with `ranges:` of leaves (`low`, `high`,
             `log`), and the other fields of `DesignSpread` where they differ from its defaults.
 
+    Returns:
+        The validated spread.
+
     Raises:
         InputError: names file, field, value and remedy.
     """
@@ -80,7 +97,14 @@ def load_design_spread(name: str | Path) -> DesignSpread:
 
 
 def design_spread(data: Mapping[str, Any], where: str) -> DesignSpread:
-    """The same from nested mappings.
+    """Build a spread of designs from nested mappings, as YAML gives them.
+
+    Args:
+        data: `ranges`, and other fields of `DesignSpread`.
+        where: file, for error messages.
+
+    Returns:
+        The validated spread.
 
     Raises:
         InputError: unknown or missing field, or a value that makes no sense.

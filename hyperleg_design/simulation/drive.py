@@ -118,7 +118,13 @@ class Drive:
         """What the chain gave in the last step."""
 
     def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
-        """Some simulations start anew from joint states `(len(ids), J)`."""
+        """Start some simulations anew.
+
+        Args:
+            ids: indices of the simulations.
+            position: of the joints [rad], `(len(ids), J)`.
+            velocity: of the joints [rad/s], `(len(ids), J)`.
+        """
         if self.chain is not None:
             self.chain.reset(ids, position, velocity)
 
@@ -145,7 +151,14 @@ class Drive:
         )
 
     def flat(self, values: np.ndarray) -> np.ndarray:
-        """Constants `(n, L, k)` as rows over all L limbs, `(n, L k)`."""
+        """Put the constants of all L limbs into one row.
+
+        Args:
+            values: `(n, L, k)`.
+
+        Returns:
+            `(n, L k)`.
+        """
         return values.reshape(self.count, -1)
 
     def apply(self, target: np.ndarray, torque: np.ndarray, speed: np.ndarray) -> None:
@@ -218,8 +231,14 @@ class Drive:
             self._applied[:, 6:] += driven.joint_torque
 
     def friction(self, velocity: np.ndarray, motor_speed: np.ndarray) -> np.ndarray:
-        """Friction torque at the joints [Nm], `(..., L, joints)` and `(..., L, motors)` -> `(...,
-        L, joints)`.
+        """Compute the friction torque at the joints.
+
+        Args:
+            velocity: of the joints [rad/s], `(..., L, joints)`.
+            motor_speed: of the motors [rad/s], `(..., L, motors)`.
+
+        Returns:
+            The torque [Nm], `(..., L, joints)`.
         """
         if self.physics.friction_space == "joint":
             return actuation.friction_torque(self.coulomb, self.viscous, velocity, self._width)

@@ -260,6 +260,11 @@ class Environment:
     def set_reward(self, name: str, weight: float | None = None, **parameters: float) -> None:
         """Change the weight or parameters of a reward term that the task has.
 
+        Args:
+            name: of the term.
+            weight: the new weight; unchanged by default.
+            parameters: new values by name.
+
         Raises:
             InputError: no such term in the task, or no such parameter.
         """
@@ -281,6 +286,9 @@ class Environment:
     def set_clock(self, shown: float) -> None:
         """Change the gain of the gait clock in the observation.
 
+        Args:
+            shown: the gain, 0 .. 1 [-].
+
         Raises:
             InputError: not within 0 .. 1.
         """
@@ -290,6 +298,9 @@ class Environment:
 
     def set_commands(self, **values: Any) -> None:
         """Change settings of the commands, for those drawn from now on.
+
+        Args:
+            values: new settings by name.
 
         Raises:
             InputError: no such setting, or a value that makes no sense.
@@ -313,11 +324,14 @@ class Environment:
         return _joined(self._each(Chunk.reset, [()] * len(self.chunks)))
 
     def step(self, action: np.ndarray) -> Step:
-        """One policy step; simulations whose episode ends start a new one.
+        """Advance all simulations by one policy step; those whose episode ends start a new one.
 
         Args:
             action: `(n, J)`; joint targets are the default posture plus `control.scale` times its
                 moving average.
+
+        Returns:
+            Observations, rewards, and how episodes ended.
 
         Raises:
             InputError: wrong shape, or values that are not finite.
@@ -371,6 +385,9 @@ class Environment:
             `motor_velocity`, `pad_force` (of the floor on each pad, world), `pad_slip`; with
             alterations also those of `told.Told`. Zero for a simulation that diverged; for others
             that ended, of the episode that did.
+
+        Raises:
+            InputError: the environment was made without `recording`.
         """
         if not self.recording:
             raise InputError(
@@ -401,7 +418,13 @@ class Environment:
 
 
 def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: str) -> None:
-    """Whether a robot can stand in its default posture.
+    """Check that a robot can stand in its default posture.
+
+    Args:
+        model: its compiled model.
+        layout: of the robot.
+        limits: at which height a robot counts as fallen.
+        name: of the robot, for error messages.
 
     Raises:
         InputError: its pelvis would be under the height that counts as fallen, or its weight beside

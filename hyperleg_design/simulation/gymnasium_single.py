@@ -68,7 +68,15 @@ class GymnasiumSingle(gymnasium.Env):  # type: ignore[misc]
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Start an episode; the same seed gives the same episodes from there on."""
+        """Start an episode; the same seed gives the same episodes from there on.
+
+        Args:
+            seed: of the random numbers; those of the running environment by default.
+            options: not used.
+
+        Returns:
+            Observation and an empty mapping.
+        """
         super().reset(seed=seed)
         if seed is not None:
             self.environment.close()
@@ -76,7 +84,16 @@ class GymnasiumSingle(gymnasium.Env):  # type: ignore[misc]
         return self.environment.reset()[self.group][0], {}
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
-        """One policy step; after the last of an episode, the observation is that of its end."""
+        """Advance by one policy step; after the last of an episode, the observation is that of its
+        end.
+
+        Args:
+            action: `(J,)`.
+
+        Returns:
+            Observation, reward, whether the episode terminated, whether it was truncated, and an
+            empty mapping.
+        """
         result = self.environment.step(np.asarray(action)[None])
         terminated, truncated = bool(result.terminated[0]), bool(result.truncated[0])
         ended = terminated or truncated
@@ -84,7 +101,7 @@ class GymnasiumSingle(gymnasium.Env):  # type: ignore[misc]
         return observations[self.group][0], float(result.reward[0]), terminated, truncated, {}
 
     def close(self) -> None:
-        """Stop the simulation."""
+        """Stop the simulation and its threads."""
         self.environment.close()
 
 

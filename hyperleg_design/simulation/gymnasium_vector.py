@@ -40,13 +40,29 @@ class GymnasiumVector(VectorEnv):  # type: ignore[misc]
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[np.ndarray, dict[str, Any]]:
-        """Start all simulations; the seed is the environment's own, given when it was made."""
+        """Start all simulations; the seed is the environment's own, given when it was made.
+
+        Args:
+            seed: not used.
+            options: not used.
+
+        Returns:
+            Observations, `(n, size)`, and an empty mapping.
+        """
         return self.environment.reset()[self.group], {}
 
     def step(
         self, actions: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
-        """Advance all simulations by one policy step."""
+        """Advance all simulations by one policy step.
+
+        Args:
+            actions: `(n, J)`.
+
+        Returns:
+            Observations, rewards, whether each episode terminated, whether it was truncated, and
+            the final observations of ended episodes.
+        """
         step = self.environment.step(actions)
         info: dict[str, Any] = {}
         if len(step.ended):
@@ -57,5 +73,9 @@ class GymnasiumVector(VectorEnv):  # type: ignore[misc]
         return step.observations[self.group], step.reward, step.terminated, step.truncated, info
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Stop the threads of the simulation."""
+        """Stop the threads of the simulation.
+
+        Args:
+            kwargs: not used.
+        """
         self.environment.close()

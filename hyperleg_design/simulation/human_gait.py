@@ -64,15 +64,18 @@ def cycle(joints: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def distance(joints: tuple[str, ...], position: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Distance from the nearest phase of the cycle [-], `(n,)`.
+    """Compute the distance of joint states from the nearest phase of the cycle.
 
-    d^2 = min over phases of the mean over joints of ((q - q_h) / ANGLE)^2 and
-    ((dq - dq_h) / RATE)^2.
+    d^2 = min over phases of the mean over joints of ((q - q_h) / ANGLE)^2 and ((dq - dq_h) /
+    RATE)^2.
 
     Args:
         joints: names with the side in front, `(J,)`.
         position: of the joints [rad], `(n, J)`.
         velocity: of the joints [rad/s], `(n, J)`.
+
+    Returns:
+        The distance [-], `(n,)`.
     """
     places, phases = cycle(joints)
     now = np.concatenate([position[:, places] / ANGLE, velocity[:, places] / RATE], 1)
@@ -83,13 +86,16 @@ def distance(joints: tuple[str, ...], position: np.ndarray, velocity: np.ndarray
 def distance_at(
     joints: tuple[str, ...], position: np.ndarray, velocity: np.ndarray, phase: np.ndarray
 ) -> np.ndarray:
-    """Distance from the cycle at given phases [-], `(n,)`; as `distance` otherwise.
+    """Compute the distance of joint states from the cycle at given phases, otherwise as `distance`.
 
     Args:
         joints: names with the side in front, `(J,)`.
         position: of the joints [rad], `(n, J)`.
         velocity: of the joints [rad/s], `(n, J)`.
         phase: of the cycle, 0 .. 1, `(n,)`.
+
+    Returns:
+        The distance [-], `(n,)`.
     """
     places, phases = cycle(joints)
     now = np.concatenate([position[:, places] / ANGLE, velocity[:, places] / RATE], 1)

@@ -81,8 +81,14 @@ class Layout:
         return self.default.ndim > 1
 
     def take(self, rows: Any) -> Layout:
-        """Layout of one robot of a batch by its number, or of several by an index array or slice;
-        a single robot's is the same for all rows.
+        """Take the layout of some robots of a batch; that of a single robot is the same for all
+        rows.
+
+        Args:
+            rows: a number for one robot, or an index array or slice.
+
+        Returns:
+            The layout.
         """
         if not self.batched:
             return self
@@ -114,7 +120,14 @@ class Layout:
         return self.joint_indices("hip_yaw", "hip_roll")
 
     def joint_indices(self, *names: str) -> np.ndarray:
-        """Places of joints, given without the limb's name, in all limbs."""
+        """Find joints in the arrays over all limbs.
+
+        Args:
+            names: without the limb's name.
+
+        Returns:
+            Their indices.
+        """
         own = self.own_joints
         return np.array([i for i in range(len(self.joints)) if own[i % len(own)] in names], int)
 
@@ -138,8 +151,13 @@ _NUMBERS = (
 
 
 def layout_of(design: RobotDesign) -> Layout:
-    """Layout of a robot, or of a batch of robots with the same joints, motors and pads, whose
-    numbers then have the batch in front.
+    """Compute the layout of a robot.
+
+    Args:
+        design: a robot, or a batch of robots with the same joints, motors and pads.
+
+    Returns:
+        The layout; the numbers of a batch have the batch in front.
     """
     if design.batch_shape:
         return stacked([layout_of(design.take(i)) for i in range(design.batch_shape[0])])
@@ -183,10 +201,16 @@ def layout_of(design: RobotDesign) -> Layout:
 
 
 def foot_links(tree: Tree) -> dict[str, str]:
-    """First link of the foot that each link with pads belongs to, by name of the link.
+    """Find the foot that each link with pads belongs to.
 
     A link with pads belongs to the foot of the nearest link with pads that carries it, as a toe
     does; pads of the base are a foot of their own.
+
+    Args:
+        tree: the robot.
+
+    Returns:
+        First link of the foot, by name of the link.
     """
     carrier = {joint.child: joint.parent for joint in tree.joints}
     links_by_name: dict[str, str] = {}
@@ -237,7 +261,13 @@ def _phases(tree: Tree, feet: Sequence[str]) -> tuple[float, ...]:
 
 
 def stacked(layouts: Sequence[Layout]) -> Layout:
-    """Layouts of robots with the same joints, motors and pads as that of a batch.
+    """Stack layouts of single robots into that of a batch.
+
+    Args:
+        layouts: of robots with the same joints, motors and pads.
+
+    Returns:
+        The layout, with the batch in front of all numbers.
 
     Raises:
         InputError: their joints, motors or pads differ.

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 def machine_of(design: RobotDesign) -> Machine:
     """Describe the joints and motors of one robot for the actuation model.
 
+    Args:
+        design: one robot.
+
     Returns:
         Arrays `(J,)`, `(K,)` and `(J, K)` in the order of `layout_of(design)`.
     """
@@ -47,6 +50,9 @@ def machine_from(
         motors: names, limb after limb.
         inertia: of the rotors of one leg [kg m^2], `(..., motors)`.
         voltage: of the battery [V].
+
+    Returns:
+        The machine; arrays `(J,)`, `(K,)`, `(J, K)`, or with n in front.
     """
     limbs = len(joints) // model.joint_from_motor.shape[-2]
 
@@ -84,8 +90,14 @@ def machine_from(
 
 
 def legs_matrix(matrix: np.ndarray, limbs: int = 2) -> np.ndarray:
-    """Matrices of all limbs as one, `(n, limbs, rows, columns)` -> `(n, limbs rows, limbs
-    columns)`; `(n, 1, ...)` where the limbs share one.
+    """Combine the matrices of all limbs into one block-diagonal matrix.
+
+    Args:
+        matrix: `(n, limbs, rows, columns)`, or `(n, 1, rows, columns)` where the limbs share one.
+        limbs: number of limbs.
+
+    Returns:
+        `(n, limbs rows, limbs columns)`.
     """
     rows, columns = matrix.shape[-2:]
     whole = np.zeros((len(matrix), limbs * rows, limbs * columns))
@@ -96,8 +108,13 @@ def legs_matrix(matrix: np.ndarray, limbs: int = 2) -> np.ndarray:
 
 
 def bus_voltage(design: RobotDesign) -> float:
-    """Nominal voltage of the motors times the design's ratio [V]; NaN where motors, or designs of a
-    batch, differ in it.
+    """Compute the bus voltage: nominal voltage of the motors times the design's ratio.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The voltage [V]; NaN where motors, or designs of a batch, differ in it.
     """
     voltages = {
         float(v)
@@ -109,7 +126,12 @@ def bus_voltage(design: RobotDesign) -> float:
 
 
 def rotor_inertia(design: RobotDesign) -> np.ndarray:
-    """Rotor inertia of the motors of one leg [kg m^2], `(motors,)` for a robot or `(n, motors)` for
-    a batch.
+    """Compute the rotor inertia of the motors of one leg.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        The inertia [kg m^2], `(motors,)` or `(n, motors)`.
     """
     return gear.rotor_inertia(design)[..., : len(transmission.motor_names(design))]

@@ -32,7 +32,13 @@ class MirrorMap:
 
 
 def mirror_joints(layout: Layout) -> MirrorMap:
-    """How joint values and actions are mirrored.
+    """Describe how joint values and actions are mirrored.
+
+    Args:
+        layout: of the robot.
+
+    Returns:
+        Indices and signs.
 
     Raises:
         InputError: the robot is not its own mirror image.
@@ -50,7 +56,15 @@ def mirror_joints(layout: Layout) -> MirrorMap:
 
 
 def mirror_observation(parts: Sequence[str], layout: Layout) -> MirrorMap:
-    """How an observation that is made of parts is mirrored."""
+    """Describe how an observation is mirrored.
+
+    Args:
+        parts: of the observation, by name.
+        layout: of the robot.
+
+    Returns:
+        Indices and signs.
+    """
     index, sign, start, joints = [], [], 0, mirror_joints(layout)
     for name, count, signs in columns(parts, layout):
         turned = np.array(signs, np.float32) if signs else np.ones(count, np.float32)
@@ -71,7 +85,16 @@ def mirror_observation(parts: Sequence[str], layout: Layout) -> MirrorMap:
 def mirror_position(
     qpos: np.ndarray, qvel: np.ndarray, layout: Layout
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mirror image, in the plane y = 0, of MuJoCo states `(..., 7 + J)` and `(..., 6 + J)`."""
+    """Mirror MuJoCo states in the plane y = 0.
+
+    Args:
+        qpos: `(..., 7 + J)`.
+        qvel: `(..., 6 + J)`.
+        layout: of the robot.
+
+    Returns:
+        The mirrored `qpos` and `qvel`.
+    """
     position, velocity, joints = qpos.copy(), qvel.copy(), mirror_joints(layout)
     position[..., [1, 4, 6]] *= -1  # y; quaternion x and z
     velocity[..., [1, 3, 5]] *= -1

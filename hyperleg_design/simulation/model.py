@@ -33,12 +33,18 @@ PAD_SENSOR_SIZE = 6
 
 
 def simulation_spec(design: RobotDesign, physics: Physics | None = None) -> mujoco.MjSpec:
-    """Editable model of one robot as simulated here; motors on tendons, joint friction left to
-    `actuation`.
+    """Build the editable model of one robot as it is simulated; motors are on tendons, and joint
+    friction is left to `actuation`.
 
     A state that is not finite stays as it is instead of being reset by MuJoCo, so that it can be
-    reported. Controls are not
-    clamped: `actuation` holds them inside the motors' envelopes.
+    reported. Controls are not clamped: `actuation` holds them inside the motors' envelopes.
+
+    Args:
+        design: one robot.
+        physics: settings of the simulation; the defaults where left out.
+
+    Returns:
+        The specification.
     """
     import mujoco
 
@@ -111,7 +117,16 @@ def _check_walker(design: RobotDesign, layout: Layout) -> None:
 def simulation_model(
     design: RobotDesign, physics: Physics | None = None, alterations: Sequence[Alteration] = ()
 ) -> mujoco.MjModel:
-    """Compiled `simulation_spec`, with the shapes and edits of alterations."""
+    """Compile `simulation_spec`, with the shapes and edits of alterations.
+
+    Args:
+        design: one robot.
+        physics: settings of the simulation; the defaults where left out.
+        alterations: of the simulation.
+
+    Returns:
+        The compiled model.
+    """
     import mujoco
 
     spec = simulation_spec(design, physics)
@@ -130,11 +145,17 @@ def simulation_model(
 def simulated_robots(
     designs: Sequence[RobotDesign], physics: Physics | None = None
 ) -> list[tuple[mujoco.MjModel, Layout]]:
-    """`simulation_model` without alterations and `layout_of` of each design; equal designs share
-    both.
+    """Compile the models and compute the layouts of several designs; equal designs share both.
 
     The latest `KEPT` are kept in this process, so that a design that is evaluated again is neither
     compiled nor measured again. Nobody may write into them.
+
+    Args:
+        designs: single robots.
+        physics: settings of the simulation; the defaults where left out.
+
+    Returns:
+        `simulation_model` without alterations, and `layout_of`, of each design.
     """
     physics = physics or Physics()
     robots = []
@@ -159,33 +180,53 @@ def _fingerprint(design: RobotDesign, physics: Physics) -> str:
 
 
 def pad_forces(sensors: np.ndarray) -> np.ndarray:
-    """Forces of the floor on the pads, in the world [N], `(..., 6 P)` sensor values -> `(..., P,
-    3)`.
+    """Compute the forces of the floor on the pads.
 
     On a floor the contact's frame is (z, y, -x) of the world.
+
+    Args:
+        sensors: values of the P contact sensors, `(..., 6 P)`.
+
+    Returns:
+        Forces in the world [N], `(..., P, 3)`.
     """
     raw = sensors.reshape(*sensors.shape[:-1], -1, PAD_SENSOR_SIZE)
     return np.stack([-raw[..., 2], raw[..., 1], raw[..., 0]], -1)
 
 
 def pad_loads(sensors: np.ndarray) -> np.ndarray:
-    """Vertical forces of the floor on the pads [N], `(..., 6 P)` -> `(..., P)`."""
+    """Compute the vertical forces of the floor on the pads.
+
+    Args:
+        sensors: values of the P contact sensors, `(..., 6 P)`.
+
+    Returns:
+        Forces [N], `(..., P)`.
+    """
     return sensors[..., 0::PAD_SENSOR_SIZE].copy()
 
 
 def pad_slip(sensors: np.ndarray) -> np.ndarray:
-    """Speed at which each touching pad slides over the floor [m/s], zero where it does not touch;
-    `(..., 6 P)` -> `(..., P)`.
+    """Compute the speed at which each touching pad slides over the floor.
+
+    Args:
+        sensors: values of the P contact sensors, `(..., 6 P)`.
+
+    Returns:
+        Speeds [m/s], `(..., P)`; zero where a pad does not touch.
     """
     return np.sqrt(sensors[..., 4::PAD_SENSOR_SIZE] ** 2 + sensors[..., 5::PAD_SENSOR_SIZE] ** 2)
 
 
 def foot_loads(loads: np.ndarray, pads_of_foot: Sequence[int]) -> np.ndarray:
-    """Vertical forces on the feet [N] from those on the pads, `(..., P)` -> `(..., F)`.
+    """Sum the vertical forces on the pads of each foot.
 
     Args:
         loads: on the pads, foot after foot [N].
         pads_of_foot: number of pads of each foot, `(F,)`, as `Layout.pads_of_foot`.
+
+    Returns:
+        Forces on the feet [N], `(..., F)`.
     """
     shape = (*loads.shape[:-1], len(pads_of_foot), max(pads_of_foot))
     if np.prod(shape) == loads.size:

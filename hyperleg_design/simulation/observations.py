@@ -141,17 +141,41 @@ points across."""
 
 
 def columns(parts: Sequence[str], layout: Layout) -> list[Column]:
-    """Columns of an observation made of parts."""
+    """List the columns of an observation.
+
+    Args:
+        parts: of the observation, by name.
+        layout: of the robot.
+
+    Returns:
+        Name, number of numbers, and signs in a mirror, of each column.
+    """
     return [column for part in parts for column in PARTS[part].columns(layout)]
 
 
 def size(parts: Sequence[str], layout: Layout) -> int:
-    """Numbers in an observation made of parts."""
+    """Count the numbers in an observation.
+
+    Args:
+        parts: of the observation, by name.
+        layout: of the robot.
+
+    Returns:
+        The count.
+    """
     return sum(column[1] for column in columns(parts, layout))
 
 
 def column_names(parts: Sequence[str], layout: Layout) -> list[str]:
-    """A name for each number of an observation."""
+    """Name each number of an observation.
+
+    Args:
+        parts: of the observation, by name.
+        layout: of the robot.
+
+    Returns:
+        Names, such as `joint_position.left_knee`.
+    """
     names = []
     for name, count, _ in columns(parts, layout):
         joints = name in ("joint_position", "joint_velocity", "action", "previous_action")
@@ -165,7 +189,16 @@ def column_names(parts: Sequence[str], layout: Layout) -> list[str]:
 def observe(
     groups: Mapping[str, Sequence[str]], state: State, robot: Robot
 ) -> dict[str, np.ndarray]:
-    """Observations by group, each `(n, size)` in single precision."""
+    """Compute the observations of all simulations.
+
+    Args:
+        groups: parts of each group.
+        state: after a policy step.
+        robot: what the parts know of the robot.
+
+    Returns:
+        Observations by group, `(n, size)` each, in single precision.
+    """
     made = {
         part: PARTS[part].function(state, robot)
         for part in dict.fromkeys(p for parts in groups.values() for p in parts)

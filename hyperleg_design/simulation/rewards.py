@@ -34,7 +34,14 @@ class Robot:
     clock: Clock
 
     def take(self, rows: np.ndarray) -> Robot:
-        """The robots of some of the simulations."""
+        """Take the robots of some of the simulations.
+
+        Args:
+            rows: their indices.
+
+        Returns:
+            The smaller object.
+        """
         return dataclasses.replace(self, layout=self.layout.take(rows))
 
 
@@ -73,7 +80,16 @@ TERMS: dict[str, Term] = {}
 def term(
     *, paper: bool = False, goal: bool = False, joints: Sequence[str] = ()
 ) -> Callable[[Callable[..., np.ndarray]], Callable[..., np.ndarray]]:
-    """Register a function as a reward term under its own name."""
+    """Register a function as a reward term under its own name.
+
+    Args:
+        paper: whether the term is in Table II of the paper.
+        goal: whether it needs waypoints.
+        joints: names of joints, without the limb's, that a robot must have.
+
+    Returns:
+        A decorator, which returns the function unchanged.
+    """
 
     def registered(function: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
         TERMS[function.__name__] = Term(function.__name__, function, paper, goal, tuple(joints))
@@ -289,11 +305,14 @@ def path_deviation(state: State, robot: Robot, most: float = 1.5) -> np.ndarray:
 
 
 def stance(phase: np.ndarray, share: float, foot_phase: Sequence[float] = (0.0, 0.5)) -> np.ndarray:
-    """Whether feet should stand at phases of the gait clock, `(n,)` -> `(n, F)`.
+    """Decide whether feet should stand at phases of the gait clock.
 
     Args:
         phase: of the clock, 0 .. 1.
         share: of the stride for which a foot stands.
         foot_phase: by which each foot is behind the first, `(F,)`; of a biped, left and right.
+
+    Returns:
+        True where a foot should stand, `(n, F)`.
     """
     return (phase[:, None] + np.array(foot_phase)) % 1.0 < share

@@ -58,6 +58,9 @@ def rollout(
         each_step: called after each step with its number and `ending`; returning True stops, for
             progress bars and goals.
 
+    Returns:
+        The signals of all steps.
+
     Raises:
         InputError: the environment has an assist, a signal does not exist, or the policy's actions
         are wrong or not finite.

@@ -168,10 +168,13 @@ class Limits(Checked):
     """Farther than this from the path to a waypoint an episode is truncated [m]."""
 
     def of(self, default_height: Any) -> Limits:
-        """These limits of a robot, the height in metres.
+        """Convert a height that is given as a share of the default posture's into metres.
 
         Args:
             default_height: of the base's origin in the robot's default posture [m], `()` or `(n,)`.
+
+        Returns:
+            The limits of the robot.
         """
         if not self.height_share:
             return self

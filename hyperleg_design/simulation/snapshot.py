@@ -28,9 +28,15 @@ _ARRAYS = (
 
 
 def take_snapshot(environment: Environment) -> dict[str, Any]:
-    """State of an environment that has been reset: numbers, texts and arrays in nested mappings.
+    """Take the state of an environment that has been reset.
 
     Settings that were changed since it was made (assist, rewards, commands) are not part of it.
+
+    Args:
+        environment: the environment.
+
+    Returns:
+        Numbers, texts and arrays in nested mappings.
     """
     return {
         "simulations": environment.simulations,
@@ -40,6 +46,10 @@ def take_snapshot(environment: Environment) -> dict[str, Any]:
 
 def put_snapshot(environment: Environment, snapshot: dict[str, Any]) -> None:
     """Put an environment made with the same arguments back into a state.
+
+    Args:
+        environment: made with the same arguments as the one that the state is of.
+        snapshot: as `take_snapshot` gives it.
 
     Raises:
         InputError: the state is of another environment.

@@ -146,7 +146,15 @@ class State:
 
 
 def read_motion(qpos: np.ndarray, qvel: np.ndarray) -> Motion:
-    """Motion from MuJoCo's coordinates, `(n, 7 + J)` and `(n, 6 + J)`; copies."""
+    """Compute the motion of robots from MuJoCo's coordinates.
+
+    Args:
+        qpos: `(n, 7 + J)`.
+        qvel: `(n, 6 + J)`.
+
+    Returns:
+        The motion; its arrays are copies.
+    """
     w, x, y, z = np.ascontiguousarray(qpos[:, 3:7].T)
     rows = np.empty((3, 3, len(qpos)))  # simulations last, so that each entry is written in one run
     xx, yy, zz = 2 * x * x, 2 * y * y, 2 * z * z
@@ -170,7 +178,15 @@ def read_motion(qpos: np.ndarray, qvel: np.ndarray) -> Motion:
 
 
 def to_yaw_frame(heading: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """Horizontal world vectors in the yaw frame, `(n, 2)`."""
+    """Rotate horizontal vectors from the world into the yaw frame.
+
+    Args:
+        heading: cosine and sine of the yaw, `(n, 2)`.
+        vector: in the world, `(n, 2)`.
+
+    Returns:
+        `(n, 2)`.
+    """
     cosine, sine = heading[:, 0], heading[:, 1]
     turned = np.empty_like(vector)
     turned[:, 0] = cosine * vector[:, 0] + sine * vector[:, 1]
@@ -179,7 +195,15 @@ def to_yaw_frame(heading: np.ndarray, vector: np.ndarray) -> np.ndarray:
 
 
 def to_world(heading: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """Horizontal yaw-frame vectors in the world, `(n, 2)`."""
+    """Rotate horizontal vectors from the yaw frame into the world.
+
+    Args:
+        heading: cosine and sine of the yaw, `(n, 2)`.
+        vector: in the yaw frame, `(n, 2)`.
+
+    Returns:
+        `(n, 2)`.
+    """
     cosine, sine = heading[:, 0], heading[:, 1]
     turned = np.empty_like(vector)
     turned[:, 0] = cosine * vector[:, 0] - sine * vector[:, 1]

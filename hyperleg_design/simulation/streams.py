@@ -29,7 +29,14 @@ class RowStreams:
         self._ends = np.cumsum(self.sizes)
 
     def of(self, rows: np.ndarray) -> RowStreams:
-        """Draws for some rows, in ascending order; they advance the same generators."""
+        """Make a stream for some of the rows; it advances the same generators.
+
+        Args:
+            rows: indices, in ascending order.
+
+        Returns:
+            The stream.
+        """
         block = np.searchsorted(self._ends, rows, side="right")
         sizes = np.bincount(block, minlength=len(self.generators))
         drawn = np.flatnonzero(sizes)
@@ -38,11 +45,28 @@ class RowStreams:
     def uniform(
         self, low: float = 0.0, high: float = 1.0, size: int | tuple[int, ...] = 0
     ) -> np.ndarray:
-        """Uniform numbers, of the shape `size`, whose first entry is the number of rows."""
+        """Draw uniform numbers.
+
+        Args:
+            low: lower end.
+            high: upper end.
+            size: shape, whose first entry is the number of rows; all rows by default.
+
+        Returns:
+            The numbers.
+        """
         return self._drawn("uniform", (low, high), size)
 
     def integers(self, high: int, size: int | tuple[int, ...] = 0) -> np.ndarray:
-        """Whole numbers from 0 to `high - 1`, of the shape `size`."""
+        """Draw whole numbers from 0 to `high - 1`.
+
+        Args:
+            high: number that is not reached.
+            size: shape, whose first entry is the number of rows; all rows by default.
+
+        Returns:
+            The numbers.
+        """
         return self._drawn("integers", (high,), size)
 
     @property
@@ -51,7 +75,12 @@ class RowStreams:
         return [dict(generator.bit_generator.state) for generator in self.generators]
 
     def restore(self, state: Sequence[dict[str, Any]] | dict[str, Any]) -> None:
-        """Go on from a `state`, or from that of a single generator as older snapshots hold it."""
+        """Go on from a `state`, or from that of a single generator as older snapshots hold it.
+
+        Args:
+            state: as `state` returned it, or that of a single generator, as older snapshots hold
+                it.
+        """
         states = [state] if isinstance(state, dict) else state
         for generator, own in zip(self.generators, states, strict=True):
             generator.bit_generator.state = own
@@ -74,5 +103,13 @@ Random = np.random.Generator | RowStreams
 
 
 def of_rows(rng: Random, rows: np.ndarray) -> Random:
-    """What draws for some rows: their part of `RowStreams`, or a plain generator itself."""
+    """Choose what draws for some rows.
+
+    Args:
+        rng: a stream, or a plain generator.
+        rows: indices, in ascending order.
+
+    Returns:
+        The rows' part of the stream; a plain generator itself.
+    """
     return rng.of(rows) if isinstance(rng, RowStreams) else rng

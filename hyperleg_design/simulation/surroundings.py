@@ -48,7 +48,12 @@ class Slope(Alteration):
         return np.array([np.sin(angle), 0.0, np.cos(angle)])
 
     def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
-        """Turn gravity."""
+        """Turn gravity, so that the level floor is a slope.
+
+        Args:
+            model: compiled model, which is changed.
+            simulation: index of the simulation; the slope is the same in all.
+        """
         model.opt.gravity[:] = -GRAVITY * self.vertical
 
 
@@ -80,7 +85,11 @@ class UnevenFloor(Alteration):
         return heights
 
     def shape(self, spec: mujoco.MjSpec) -> None:
-        """Replace the plane by a height field under the same name."""
+        """Replace the plane by a height field under the same name.
+
+        Args:
+            spec: specification of the model, which is changed.
+        """
         import mujoco
 
         heights = self.heights()

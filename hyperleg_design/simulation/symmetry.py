@@ -52,7 +52,15 @@ def mirrored_joints(tree: Tree) -> tuple[tuple[int, float], ...] | None:
 
 
 def mirrored_order(tree: Tree, links: Sequence[str]) -> tuple[int, ...] | None:
-    """Place of each link's mirror image among the given ones; None where one has none."""
+    """Find the mirror image of each link among given ones.
+
+    Args:
+        tree: the robot.
+        links: names of links.
+
+    Returns:
+        Index of each link's mirror image; None where one has none.
+    """
     images = _images(tree)
     if images is None:
         return None

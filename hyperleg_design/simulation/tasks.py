@@ -130,7 +130,13 @@ class Task:
         return found
 
     def posed(self, design: RobotDesign) -> RobotDesign:
-        """The design with the task's default posture.
+        """Put a design into the task's default posture.
+
+        Args:
+            design: a robot or batch.
+
+        Returns:
+            The design with other default angles; the same design where the task states none.
 
         Raises:
             InputError: a joint that the design does not have, or an angle outside its range.
@@ -169,7 +175,14 @@ class Task:
                 )
 
     def conditioned(self, designs: DesignRanges) -> Task:
-        """The same task with the design, scaled by these ranges, in every observation group."""
+        """Copy the task with the design observed in every observation group.
+
+        Args:
+            designs: ranges by which the observed numbers are scaled.
+
+        Returns:
+            The copy.
+        """
         parts = {
             group: (*(part for part in parts if part != "design"), "design")
             for group, parts in self.observations.items()
@@ -177,7 +190,14 @@ class Task:
         return self.changed(observations=parts, designs=designs)
 
     def changed(self, **sections: Any) -> Task:
-        """A copy with other sections."""
+        """Copy the task with other sections.
+
+        Args:
+            sections: new values by name.
+
+        Returns:
+            The validated copy.
+        """
         return dataclasses.replace(self, **sections)
 
 
@@ -203,7 +223,14 @@ def task_names() -> list[str]:
 
 
 def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
-    """A task from nested mappings as YAML gives them.
+    """Build a task from nested mappings, as YAML gives them.
+
+    Args:
+        data: sections by name.
+        where: file, for error messages.
+
+    Returns:
+        The validated task.
 
     Raises:
         InputError: unknown or missing field, or a value that makes no sense.
@@ -295,7 +322,13 @@ def _reward(entry: Any, where: str, path: str) -> Reward:
 
 
 def check_reward(where: str, name: str, reward: Reward, goal: bool) -> None:
-    """Whether a reward can stand in a task, with waypoints (`goal`) or without.
+    """Check that a reward can stand in a task.
+
+    Args:
+        where: file, for error messages.
+        name: of the term.
+        reward: its weight and parameters.
+        goal: whether the task has waypoints.
 
     Raises:
         InputError: no such term or parameter, or a term that needs waypoints where there are none.

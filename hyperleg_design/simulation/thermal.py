@@ -26,7 +26,11 @@ class ThermalState:
         """Of the relative torque, squared or not, `(n, K)`."""
 
     def reset(self, ids: np.ndarray) -> None:
-        """Let the motors of the simulations `ids` start cold."""
+        """Let the motors of some simulations start cold.
+
+        Args:
+            ids: indices of the simulations.
+        """
         self.average[ids] = 0.0
 
     @property

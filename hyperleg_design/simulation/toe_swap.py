@@ -57,7 +57,14 @@ class LockedToe(Alteration):
     live = _Held
 
     def machine(self, machine: Machine) -> Machine:
-        """Controller that takes no torque of the toe joints into account."""
+        """Take the torque of the toe joints out of the controller's map.
+
+        Args:
+            machine: of the robot.
+
+        Returns:
+            The changed machine.
+        """
         driven = np.array([name not in TOES for name in machine.joints])
         matrix = machine.joint_from_motor
         own = motor_from_joint(matrix[..., driven, :], machine.power_constant)
@@ -71,7 +78,15 @@ class ToeMotorAlone(Alteration):
     """Takes the toe motors' help from knee and ankle."""
 
     def machine(self, machine: Machine) -> Machine:
-        """Transmission and controller without that coupling."""
+        """Take the coupling of the toe's motor with other joints out of transmission and
+        controller.
+
+        Args:
+            machine: of the robot.
+
+        Returns:
+            The changed machine.
+        """
         matrix = machine.joint_from_motor.copy()
         others = [j for j, name in enumerate(machine.joints) if name not in TOES]
         for name in TOES:
@@ -89,7 +104,14 @@ class ToeMotorToAnkle(Alteration):
     """
 
     def machine(self, machine: Machine) -> Machine:
-        """Constants of the larger motors."""
+        """Enlarge the ankle motors by the share of the toe's motor.
+
+        Args:
+            machine: of the robot.
+
+        Returns:
+            The changed machine.
+        """
         larger = ("peak_torque", "stall_torque", "rated_torque", "rotor_inertia")
         for name in ANKLES:
             place = machine.motor(name)

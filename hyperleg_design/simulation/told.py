@@ -42,8 +42,14 @@ class Told:
         velocity: np.ndarray,
         angular_velocity: np.ndarray,
     ) -> None:
-        """Keep one simulation step, from the true joint state `(n, J)` and the base's angular
-        velocity `(n, 3)` in its frame.
+        """Keep what drives, encoders and IMU measure in one simulation step.
+
+        Args:
+            substep: index within the policy step.
+            driven: torques of this step.
+            position: true, of the joints [rad], `(n, J)`.
+            velocity: true, of the joints [rad/s], `(n, J)`.
+            angular_velocity: true, of the base in its frame [rad/s], `(n, 3)`.
         """
         assert driven.command is not None
         turning, added = self.chain.imu(angular_velocity, np.zeros_like(angular_velocity))
@@ -58,6 +64,10 @@ class Told:
             kept[substep] = values
 
     def forget(self, simulations: Sequence[int] | np.ndarray) -> None:
-        """Zero what some simulations told."""
+        """Set what some simulations measured to zero.
+
+        Args:
+            simulations: their indices.
+        """
         for kept in self.signals.values():
             kept[:, simulations] = 0.0

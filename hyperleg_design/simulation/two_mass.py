@@ -54,7 +54,14 @@ class Belt(Alteration):
     rotor, which it takes for them."""
 
     def machine(self, machine: Machine) -> Machine:
-        """The machine with this rotor free to move where the belt is not rigid."""
+        """Let the rotor move freely where the belt is not rigid.
+
+        Args:
+            machine: of the robot.
+
+        Returns:
+            The changed machine.
+        """
         place = machine.motor(self.motor)
         loose = (np.asarray(self.compliance, float) > 0) | (np.asarray(self.play, float) > 0)
         inertia = np.asarray(machine.rotor_inertia, float)
@@ -193,8 +200,14 @@ Belt.live = _Rotor
 
 
 def joined(alterations: Sequence[Alteration]) -> list[Alteration]:
-    """Alterations with the belts of each motor made one: compliances and plays add up, dampings act
-    in series.
+    """Combine the belts of each motor into one: compliances and plays add up, dampings act in
+    series.
+
+    Args:
+        alterations: all of a simulation.
+
+    Returns:
+        The alterations, with one belt for each motor at most.
     """
     belts: list[Alteration] = []
     for alteration in alterations:

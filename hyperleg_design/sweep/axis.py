@@ -54,7 +54,14 @@ class Axis:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def at(self, position: np.ndarray) -> np.ndarray:
-        """Values at positions in [0, 1), `(n,)`."""
+        """Compute values at positions along the axis.
+
+        Args:
+            position: in [0, 1), `(n,)`.
+
+        Returns:
+            Values, `(n,)`.
+        """
         if self.levels:
             index = np.minimum((position * len(self.levels)).astype(int), len(self.levels) - 1)
             return np.asarray(self.levels)[index]
@@ -66,7 +73,15 @@ class Axis:
         return np.clip(drawn, self.low, self.high)
 
     def leaf_values(self, base: RobotDesign, values: np.ndarray) -> dict[str, Any]:
-        """What each leaf becomes, by path, for a batch of values of this axis."""
+        """Compute what each leaf becomes.
+
+        Args:
+            base: the unchanged design.
+            values: of this axis, `(n,)`.
+
+        Returns:
+            New values of the leaves by path.
+        """
         if not self.scaled:
             return dict.fromkeys(self.paths, values)
         leaves = {}
@@ -84,7 +99,7 @@ class Axis:
 
 
 def read_axis(name: str, data: Any, base: RobotDesign, where: str, *, grid: bool) -> Axis:
-    """An axis as a sweep file describes it.
+    """Read an axis as a sweep file describes it.
 
     Args:
         name: key of the axis: a leaf's path, or any name where `paths` lists the leaves.
@@ -93,6 +108,9 @@ def read_axis(name: str, data: Any, base: RobotDesign, where: str, *, grid: bool
         base: design whose leaves it moves.
         where: file, for messages.
         grid: whether every range needs `steps`.
+
+    Returns:
+        The validated axis.
 
     Raises:
         InputError: it names no leaf, one that cannot vary within a sweep, or values that the leaf

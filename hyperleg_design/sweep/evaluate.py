@@ -51,11 +51,16 @@ def evaluate_range(
 def evaluate_samples(
     sweep: Sweep, samples: Mapping[str, np.ndarray], variant: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Measures of some samples as one variant.
+    """Compute the measures of some samples as one variant.
 
     A batch that holds an impossible design is refused as a whole. The error says which ones are
     impossible, and the others are tried again; where it does not, the batch is halved until those
     stand alone.
+
+    Args:
+        sweep: the definition.
+        samples: values by axis, `(n,)` each.
+        variant: ablation that all samples become.
 
     Returns:
         Measures `(columns, n)`, and reasons of rejection `(n,)`, empty where there is none.

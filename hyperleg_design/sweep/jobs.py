@@ -55,7 +55,14 @@ def completed(
 
 
 def workers_of(executor: Executor) -> int:
-    """Jobs that an executor runs at a time."""
+    """Count the jobs that an executor runs at a time.
+
+    Args:
+        executor: of `concurrent.futures` or Dask.
+
+    Returns:
+        The count, at least 1.
+    """
     client = getattr(executor, "_client", None)
     if client is not None:
         return max(1, sum(client.nthreads().values()))
@@ -64,13 +71,16 @@ def workers_of(executor: Executor) -> int:
 
 @contextmanager
 def cluster(address: str) -> Iterator[Executor | None]:
-    """Executor on the workers of a Dask scheduler; None, this process, without an address.
+    """Connect to the workers of a Dask scheduler; without an address, use this process.
 
     A job whose worker dies is run again on another one. Each result is asked for once, by the
     process that holds the store, so none is lost or counted twice.
 
     Args:
         address: such as `tcp://host:8786`.
+
+    Yields:
+        The executor; None without an address.
 
     Raises:
         InputError: the extra `cluster` is not installed, nothing answers at the address, or the

@@ -114,7 +114,14 @@ class Measure:
         return self.columns_of(None)
 
     def columns_of(self, design: RobotDesign | None) -> tuple[str, ...]:
-        """Names of its columns for a design; HyperLeg's where there is none."""
+        """Name the columns of the measure.
+
+        Args:
+            design: a robot; HyperLeg where there is none.
+
+        Returns:
+            One name for each part, or one for the whole robot.
+        """
         tree = self.parts and isinstance(design, TreeDesign)
         parts = transmission.joint_names(design) if tree and design else self.parts
         return tuple(f"{self.name}.{part}" for part in parts) or (self.name,)
@@ -127,7 +134,21 @@ MEASURES: dict[str, Measure] = {}
 def measure(
     unit: str, better: str, parts: tuple[str, ...] = (), *, trees: bool = False
 ) -> Callable[[Callable[[Batch], np.ndarray]], Callable[[Batch], np.ndarray]]:
-    """Register a function as the measure of its name; its docstring is the measure's."""
+    """Register a function as the measure of its name; its docstring is the measure's.
+
+    Args:
+        unit: of the values; empty without one.
+        better: `low` or `high`, the direction that is better.
+        parts: joints or motors that the measure has a value for each of; empty for one value a
+            design.
+        trees: whether designs that describe their own tree have the measure, too.
+
+    Returns:
+        A decorator, which returns the function unchanged.
+
+    Raises:
+        ValueError: the name is taken, or docstring or direction is missing.
+    """
 
     def register(function: Callable[[Batch], np.ndarray]) -> Callable[[Batch], np.ndarray]:
         name = function.__name__
@@ -142,23 +163,52 @@ def measure(
 
 
 def columns(names: Iterable[str], design: RobotDesign | None = None) -> tuple[str, ...]:
-    """Table columns of some measures, of a design or of HyperLeg."""
+    """List the table columns of some measures.
+
+    Args:
+        names: of the measures.
+        design: a robot; HyperLeg by default.
+
+    Returns:
+        Names of the columns.
+    """
     return tuple(c for name in names for c in MEASURES[name].columns_of(design))
 
 
 def measures_of(design: RobotDesign) -> tuple[str, ...]:
-    """Names of the measures that a design has."""
+    """List the measures that a design has.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Names of the measures.
+    """
     tree = isinstance(design, TreeDesign)
     return tuple(name for name, entry in MEASURES.items() if entry.trees or not tree)
 
 
 def measure_of(column: str) -> Measure:
-    """Measure that a column belongs to."""
+    """Look up the measure that a column belongs to.
+
+    Args:
+        column: name of the column.
+
+    Returns:
+        The measure.
+    """
     return MEASURES[column.split(".")[0]]
 
 
 def label(column: str) -> str:
-    """A column's name with unit, for figures and tables."""
+    """Write a column's name with unit, for figures and tables.
+
+    Args:
+        column: name of the column.
+
+    Returns:
+        The text.
+    """
     measure = measure_of(column)
     name = column.replace("_", " ").replace(".", ", ")
     return f"{name} [{measure.unit.replace('^2', '²')}]" if measure.unit else name
@@ -358,17 +408,20 @@ def push_off_power(batch: Batch) -> np.ndarray:
 
 
 def largest_power(envelope: MotorEnvelope, speed: np.ndarray) -> np.ndarray:
-    """Largest summed power over the rates s at which the motors turn together at `s speed`, `(...)`
-    [W].
+    """Compute the largest summed power over the rates s at which the motors turn together at `s
+    speed`.
 
-    Up to the rate at which the first motor reaches its top speed, past which its driver has no hold
-    of it. Each gives s v min(peak, stall (1 - s v / w0)), concave in s: the derivative of the sum
-    is piecewise linear and falls, with kinks at the motors' corner speeds, so its root is exact in
-    one of the intervals between them.
+    The rate is bounded by that at which the first motor reaches its top speed, past which its
+    driver has no hold of it. Each motor gives s v min(peak, stall (1 - s v / w0)), concave in s:
+    the derivative of the sum is piecewise linear and falls, with kinks at the motors' corner
+    speeds, so its root is exact in one of the intervals between them.
 
     Args:
         envelope: limits, `(..., motors)`.
         speed: each motor's speed at s = 1, not negative, `(..., motors)` [rad/s].
+
+    Returns:
+        The power [W], `(...)`.
     """
     peak, stall, free = envelope.peak_torque, envelope.stall_torque, envelope.no_load_speed
     turning = speed > 0

@@ -67,11 +67,17 @@ class StaticLoad:
 
 
 def squat(design: Design, inertials: Mapping[str, Inertial]) -> StaticLoad:
-    """The squat of a design or batch; `inertials` of its left leg.
+    """Compute the joint torques of the squat in closed form.
 
     The robot's centre of mass is `a sin(lean) + b cos(lean) + c` ahead of the ankle for a knee at a
-    fixed angle, so the lean of the shank follows in closed form; nan where no lean brings it over
-    the foot.
+    fixed angle, so the lean of the shank follows in closed form.
+
+    Args:
+        design: a robot or batch.
+        inertials: of its left leg, by link.
+
+    Returns:
+        Angles and torques; NaN where no lean brings the centre of mass over the foot.
     """
     total = np.asarray(mass_table(design).total, float)
     thigh, shank = np.asarray(design.thigh.length, float), np.asarray(design.shank.length, float)
@@ -129,7 +135,15 @@ def squat(design: Design, inertials: Mapping[str, Inertial]) -> StaticLoad:
 
 
 def push_off(design: Design, inertials: Mapping[str, Inertial]) -> StaticLoad:
-    """The push-off of a design or batch; `inertials` of its left leg."""
+    """Compute the joint torques of the push-off in closed form.
+
+    Args:
+        design: a robot or batch.
+        inertials: of its left leg, by link.
+
+    Returns:
+        Angles and torques.
+    """
     total = np.asarray(mass_table(design).total, float)
     active = design.toe.joint == "active"
     angles = np.broadcast_to(
@@ -160,7 +174,7 @@ def holding_torque(
     *,
     on_toe: bool,
 ) -> np.ndarray:
-    """Torques of the joints that move, `(..., joints)` [Nm], by the equation above.
+    """Compute the torques of the joints that move, by the equation in the module's docstring.
 
     Args:
         design: a robot or batch.
@@ -169,6 +183,9 @@ def holding_torque(
         force: vertical ground force on the leg [N].
         pressure_point: where it acts, ahead of the hip axis [m].
         on_toe: whether the force acts on the toe; on the foot otherwise.
+
+    Returns:
+        The torques [Nm], `(..., joints)`.
     """
     points = _points(design, angles)
     pitch = np.cumsum(angles, -1)

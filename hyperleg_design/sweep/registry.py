@@ -99,7 +99,14 @@ def resolve(name: str, protocols: Sequence[str] = (), where: str = "measures") -
 
 
 def label(name: str) -> str:
-    """A measure's name with unit, for figures and tables."""
+    """Write a measure's name with unit, for figures and tables.
+
+    Args:
+        name: of the measure.
+
+    Returns:
+        The text.
+    """
     entry = entries()[name]
     text = name.replace("_", " ").replace(".", ", ")
     return f"{text} [{entry.unit.replace('^2', '²')}]" if entry.unit else text

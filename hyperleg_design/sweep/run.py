@@ -59,7 +59,14 @@ class SweepResult:
         return self.folder / TABLE
 
     def columns(self, names: list[str] | None = None) -> Columns:
-        """Columns of the table, all by default."""
+        """Read columns of the table.
+
+        Args:
+            names: of the columns; all by default.
+
+        Returns:
+            Values by column, one for each row.
+        """
         return table.read(self.table_path, names)
 
 

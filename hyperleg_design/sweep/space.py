@@ -123,11 +123,26 @@ class Sweep:
         return {axis.name: axis.at(positions[:, i]) for i, axis in enumerate(self.axes)}
 
     def made(self, design: RobotDesign, variant: str) -> RobotDesign:
-        """A design as one of the sweep's variants; of a design that writes its tree out, itself."""
+        """Turn a design into one of the sweep's variants.
+
+        Args:
+            design: a robot or batch.
+            variant: name of the ablation.
+
+        Returns:
+            The ablated design; a design that describes its own tree is returned unchanged.
+        """
         return ablate(design, variant) if isinstance(design, Design) else design
 
     def design(self, samples: Mapping[str, np.ndarray], variant: str) -> RobotDesign:
-        """The batch of designs of some samples.
+        """Make the batch of designs of some samples.
+
+        Args:
+            samples: values by axis, `(n,)` each.
+            variant: name of the ablation.
+
+        Returns:
+            The batch of n designs.
 
         Raises:
             InputError: one of them makes no design.
@@ -220,7 +235,16 @@ def sweep_from_mapping(
     *,
     overrides: Mapping[str, Any] | None = None,
 ) -> Sweep:
-    """A sweep from what its file would hold.
+    """Build a sweep from what its file would hold.
+
+    Args:
+        data: fields by name.
+        where: file, for error messages.
+        name: of the sweep.
+        overrides: of the base design, by dotted path.
+
+    Returns:
+        The validated sweep.
 
     Raises:
         InputError: names `where`, field, value and remedy.

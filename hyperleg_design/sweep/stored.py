@@ -79,6 +79,9 @@ def store(result: SweepResult, target: str | Path) -> Path:
         result: a sweep after `run_trials`.
         target: file to write, `sweeps/walked/NAME.parquet`.
 
+    Returns:
+        The path of the file.
+
     Raises:
         InputError: the sweep has no trials, or those of another definition.
     """
@@ -106,7 +109,13 @@ def store(result: SweepResult, target: str | Path) -> Path:
 
 
 def stored(name: str) -> Stored:
-    """Committed trials of a shipped sweep.
+    """Read the committed trials of a shipped sweep.
+
+    Args:
+        name: of the sweep.
+
+    Returns:
+        The trials, with the sweep and the plan that they are of.
 
     Raises:
         InputError: they are of another definition than the shipped one, or cannot be read.
@@ -136,6 +145,9 @@ def rerun(committed: Stored, wanted: Plan, count: int = RERUN) -> Rerun:
         committed: the trials to compare with.
         wanted: protocols and policies; the first protocol, variant and policy run.
         count: designs, spread evenly over those that were simulated.
+
+    Returns:
+        The new trials beside the committed ones.
     """
     import pandas as pd
 

@@ -20,6 +20,10 @@ _SHOWN_FRONT = 200
 def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
     """Summarise the table of a finished sweep.
 
+    Args:
+        sweep: the definition.
+        path: of the finished table.
+
     Returns:
         `description`, `seed`, `sampling`, `samples`, `designs`, `rejected`, `rejected_because`
         (counts by reason), `base` (measures of the unchanged design, by variant), `range` (by
@@ -71,8 +75,14 @@ def summarise(sweep: Sweep, path: Path) -> dict[str, Any]:
 
 
 def base_values(sweep: Sweep, variant: str) -> dict[str, float]:
-    """Measures of the sweep's unchanged design as one variant, by column; those it lacks are left
-    out.
+    """Compute the measures of the sweep's unchanged design as one variant.
+
+    Args:
+        sweep: the definition.
+        variant: name of the ablation.
+
+    Returns:
+        Values by column; measures that the variant lacks are left out.
     """
     values = measures.evaluate(sweep.made(sweep.base, variant), sweep.measures)
     return {column: float(v[0]) for column, v in values.items() if np.isfinite(v[0])}

@@ -27,7 +27,14 @@ depend on those."""
 
 
 def schema(sweep: Sweep) -> pa.Schema:
-    """Columns of a sweep's table, with unit and meaning."""
+    """Describe the columns of a sweep's table, with unit and meaning.
+
+    Args:
+        sweep: the definition.
+
+    Returns:
+        The schema.
+    """
     import pyarrow as pa
 
     def field(name: str, kind: Any, doc: str, unit: str = "") -> Any:
@@ -50,7 +57,15 @@ def schema(sweep: Sweep) -> pa.Schema:
 
 
 def to_bytes(sweep: Sweep, columns: Columns) -> bytes:
-    """Some rows as a Parquet file."""
+    """Write some rows as a Parquet file.
+
+    Args:
+        sweep: the definition, which knows the columns.
+        columns: values by column.
+
+    Returns:
+        The content of the file.
+    """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -65,7 +80,14 @@ def to_bytes(sweep: Sweep, columns: Columns) -> bytes:
 
 
 def rows_of(path: Path) -> int:
-    """Rows of a Parquet file; -1 where it cannot be read."""
+    """Count the rows of a Parquet file.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The count; -1 where the file cannot be read.
+    """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -76,7 +98,14 @@ def rows_of(path: Path) -> int:
 
 
 def join(sweep: Sweep, parts: Iterable[Path], path: Path, metadata: Mapping[str, Any]) -> None:
-    """Write one Parquet file of several, in their order, holding only a row group in memory."""
+    """Join several Parquet files into one, in their order, with only one row group in memory.
+
+    Args:
+        sweep: the definition, which knows the columns.
+        parts: files to join.
+        path: file to write.
+        metadata: what made the table.
+    """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -102,7 +131,14 @@ def join(sweep: Sweep, parts: Iterable[Path], path: Path, metadata: Mapping[str,
 
 
 def read(path: Path, columns: list[str] | None = None) -> Columns:
-    """Columns of a finished table, all by default.
+    """Read columns of a finished table.
+
+    Args:
+        path: of the file.
+        columns: their names; all by default.
+
+    Returns:
+        Values by column.
 
     Raises:
         InputError: no such file, or no table of a sweep.
@@ -123,7 +159,13 @@ def _plain(column: pa.ChunkedArray) -> np.ndarray:
 
 
 def read_metadata(path: Path) -> dict[str, Any]:
-    """What made a finished table: resolved configuration, versions, commit.
+    """Read what made a finished table.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The resolved configuration, versions and commit.
 
     Raises:
         InputError: no such file, or no table of a sweep.

@@ -73,13 +73,16 @@ def plan(
     seeds: int = SEEDS,
     policies: str | Path | None = None,
 ) -> Plan:
-    """Protocols and policies of an evaluated sweep.
+    """Choose protocols and policies of an evaluated sweep.
 
     Args:
         sweep: the definition.
         protocols: shipped names, files, or protocols; the kind decides which policies run them.
         seeds: trainings of each toe layout, at most.
         policies: folder of trainings; the shipped ones by default.
+
+    Returns:
+        The plan.
 
     Raises:
         InputError: no such protocol, or no policy for a variant's toe layout.
@@ -101,7 +104,14 @@ def plan(
 
 
 def kind_of(protocol: Protocol) -> str:
-    """Kind of a protocol: `walk` or `t_test`."""
+    """Name the kind of a protocol.
+
+    Args:
+        protocol: the protocol.
+
+    Returns:
+        `walk` or `t_test`.
+    """
     return str(protocol_mapping(protocol)["kind"])
 
 
@@ -183,7 +193,19 @@ def evaluate_batch(
     policy: Path,
     threads: int | None = None,
 ) -> bytes:
-    """Trials of one policy on some designs of a sweep, as a Parquet file."""
+    """Run one policy on some designs of a sweep.
+
+    Args:
+        sweep: the definition.
+        variant: name of the ablation.
+        samples: numbers of the designs, `(n,)`.
+        protocol: as `protocol_mapping` gives it.
+        policy: ONNX file.
+        threads: of the simulation.
+
+    Returns:
+        The trials, as a Parquet file.
+    """
     values = {name: column[samples] for name, column in sweep.samples().items()}
     return _parquet(evaluate_values(sweep, variant, values, samples, protocol, policy, threads))
 
@@ -197,7 +219,7 @@ def evaluate_values(
     policy: Path,
     threads: int | None = None,
 ) -> pd.DataFrame:
-    """Trials of one policy on designs by their values on the axes, `(n,)` each; see `trial_rows`.
+    """Run one policy on designs that are given by their values on the axes.
 
     Args:
         sweep: the definition.
@@ -207,6 +229,9 @@ def evaluate_values(
         protocol: as `protocol_mapping` gives it.
         policy: ONNX file.
         threads: of the simulation.
+
+    Returns:
+        The trials, as `trial_rows` tabulates them.
     """
     batch = walker(sweep.design(values, variant), f"{sweep.name}: trials")
     designs = batch.rows(np.arange(len(samples)))
@@ -219,6 +244,12 @@ def evaluate_all(
     policy: OnnxPolicy, designs: Design, protocol: Protocol, threads: int | None = None
 ) -> tuple[dict[int, Evaluation], dict[int, str]]:
     """Evaluate those designs of a batch that can be simulated.
+
+    Args:
+        policy: that runs.
+        designs: the batch.
+        protocol: under which it runs.
+        threads: of the simulation.
 
     Returns:
         Evaluations, without signals, and reasons of rejection, by the design's number.
@@ -247,10 +278,21 @@ def trial_rows(
     protocol: Protocol,
     policy: Path,
 ) -> pd.DataFrame:
-    """One row a trial, and one a design that was rejected.
+    """Tabulate trials, and designs that were rejected.
 
-    Besides the measures: `speed_use`, the largest motor speed over the no-load speed, and
+    Besides the measures there are `speed_use`, the largest motor speed over the no-load speed, and
     `hardest_motor`, the motor with the largest continuous use.
+
+    Args:
+        found: evaluations by position in `samples`.
+        rejected: reasons by position in `samples`.
+        samples: numbers of the designs, `(n,)`.
+        variant: name of the ablation.
+        protocol: under which the trials ran.
+        policy: ONNX file, whose folder names the training.
+
+    Returns:
+        One row for each trial, and one for each design that was rejected.
     """
     import pandas as pd
 
@@ -321,7 +363,14 @@ def _joined(paths: Sequence[Path], state: dict[str, Any]) -> bytes:
 
 
 def trials_state(path: Path) -> Any:
-    """What made a table of trials (digests of sweep and plan), or None where it cannot be read."""
+    """Read what made a table of trials.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        Digests of sweep and plan; None where the file cannot be read.
+    """
     import pyarrow as pa
     import pyarrow.parquet as pq
 

@@ -114,7 +114,14 @@ def _of_protocol(protocol: str, part: pd.DataFrame) -> dict[str, Any]:
 
 
 def acting_limits(part: pd.DataFrame) -> str:
-    """Limits of the motors that act in the mean over trials: envelope, heat, speed, or none."""
+    """Name the limits of the motors that act in the mean over trials.
+
+    Args:
+        part: trials of one design.
+
+    Returns:
+        Envelope, heat, speed, or none.
+    """
     acting = []
     for name, column, level in (
         (ENVELOPE, "limit_share", ENVELOPE_SHARE),
@@ -131,12 +138,18 @@ def acting_limits(part: pd.DataFrame) -> str:
 def sensitivities(
     sweep: Sweep, designs: pd.DataFrame, names: Sequence[str]
 ) -> list[dict[str, Any]]:
-    """How each measure follows each parameter, over all designs of a variant.
+    """Compute how each measure follows each parameter, over all designs of a variant.
 
-    For parameters with positive numbers the elasticity b of ln m = a + sum b ln x, by least squares
-    over all of them together: the percentage by which the measure changes where the parameter grows
-    by one per cent. Its effect is `exp(|b| ln(high / low)) - 1`, over the whole axis. For others
-    (motors), the effect is the spread between the levels' means over their smallest.
+    For parameters with positive numbers it is the elasticity b of ln m = a + sum b ln x, by least
+    squares over all of them together: the percentage by which the measure changes where the
+    parameter grows by one per cent. Its effect is `exp(|b| ln(high / low)) - 1`, over the whole
+    axis. For others (motors), the effect is the spread between the levels' means over their
+    smallest.
+
+    Args:
+        sweep: the definition.
+        designs: one row for each design.
+        names: of the measures.
 
     Returns:
         `variant`, `measure`, `parameter`, `elasticity` with `low` and `high` (None for texts),
@@ -199,6 +212,11 @@ def front(designs: pd.DataFrame, objectives: Sequence[str], seed: int = 0) -> pd
     from independent normal distributions of the intervals' widths, in which no other design is
     better in all. Designs that fall more often than `MOST_FALLS` are left out.
 
+    Args:
+        designs: one row for each design.
+        objectives: names of the measures.
+        seed: of the draws.
+
     Returns:
         Rows of `designs` with `on_front` (of the means) and `front_probability`, the likeliest
         first; those above zero.
@@ -225,7 +243,14 @@ def front(designs: pd.DataFrame, objectives: Sequence[str], seed: int = 0) -> pd
 
 
 def walks(designs: pd.DataFrame) -> np.ndarray:
-    """Designs that were simulated and fall no more often than `MOST_FALLS`, `(n,)`."""
+    """Decide which designs walk: they were simulated and fall no more often than `MOST_FALLS`.
+
+    Args:
+        designs: one row for each of n designs.
+
+    Returns:
+        `(n,)`.
+    """
     good = np.ones(len(designs), bool)
     for protocol in registry.PROTOCOLS:
         if f"{protocol}.fell" in designs:
@@ -234,7 +259,16 @@ def walks(designs: pd.DataFrame) -> np.ndarray:
 
 
 def best(designs: pd.DataFrame, objectives: Sequence[str], count: int = 5) -> pd.DataFrame:
-    """The best designs that walk, by each objective: rows of `designs` with `by`, the objective."""
+    """List the best designs that walk.
+
+    Args:
+        designs: one row for each design.
+        objectives: names of the measures.
+        count: designs for each objective.
+
+    Returns:
+        Rows of `designs` with `by`, the objective.
+    """
     import pandas as pd
 
     good = designs[walks(designs)]
@@ -249,7 +283,15 @@ def best(designs: pd.DataFrame, objectives: Sequence[str], count: int = 5) -> pd
 
 
 def build_command(sweep: Sweep, row: Mapping[str, Any]) -> str:
-    """The command that builds one design of a sweep."""
+    """Write the command that builds one design of a sweep.
+
+    Args:
+        sweep: the definition.
+        row: of the design, with its values on the axes.
+
+    Returns:
+        The command line.
+    """
     settings: dict[str, Any] = {
         path: sweep.base[path]
         for path, origin in sweep.base.origins.items()
