@@ -18,6 +18,9 @@ from hyperleg_design.sweep.space import load_sweep
 def check_paths(paths: Sequence[str]) -> list[dict[str, Any]]:
     """Check files, each by its own rules.
 
+    Args:
+        paths: files, or names of shipped designs, motors or sweeps.
+
     Returns:
         For each: `path`, `errors`, `warnings` (counts) and `findings`.
 
@@ -70,7 +73,14 @@ def _find(path: str) -> Path:
 
 
 def checks_text(findings: list[dict[str, Any]]) -> str:
-    """Lay out the findings as text for a terminal."""
+    """Write findings as text for a terminal.
+
+    Args:
+        findings: as `check_paths` returns them.
+
+    Returns:
+        The text.
+    """
     lines = []
     for entry in findings:
         verdict = (

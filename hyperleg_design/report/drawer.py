@@ -35,8 +35,13 @@ class Drawer:
     def together(
         self, jobs: Sequence[tuple[str, str, Callable[[Path], object], str, bool]]
     ) -> list[Picture | Missing]:
-        """Figures that other processes draw, side by side; each job has the arguments of a call.
-        Not for matplotlib, which shares its state.
+        """Draw figures side by side, in other processes.
+
+        This is not for matplotlib, which shares its state.
+
+        Args:
+            jobs: arguments of one call each: name, caption, function that draws, ending of the
+                file, and whether it is wide.
 
         Returns:
             In the order of the jobs.

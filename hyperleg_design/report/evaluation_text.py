@@ -69,7 +69,14 @@ def _plain(value: Estimate) -> dict[str, Any]:
 
 
 def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
-    """Lay out the rows of `evaluation_rows` as a table for a terminal, with units."""
+    """Write the rows of `evaluation_rows` as a table for a terminal, with units.
+
+    Args:
+        rows: one for each policy and measure.
+
+    Returns:
+        The text.
+    """
     cells = []
     for row in rows:
         numbers = ["" if row[k] is None else row[k] for k in ("mean", "low", "high")]

@@ -33,6 +33,12 @@ _LONG = ("measures", "parameters")
 def listing(kind: str = "all") -> dict[str, Any]:
     """List everything that is shipped, by kind.
 
+    Args:
+        kind: one of `KINDS`, or `all`.
+
+    Returns:
+        Entries by kind.
+
     Raises:
         InputError: no such kind.
     """
@@ -144,7 +150,14 @@ def _parameters() -> dict[str, Any]:
 
 
 def listing_text(shipped: dict[str, Any]) -> str:
-    """Lay out a listing as tables for a terminal."""
+    """Write a listing as tables for a terminal.
+
+    Args:
+        shipped: as `listing` returns it.
+
+    Returns:
+        The text.
+    """
     parts = []
     for kind, entries in shipped.items():
         parts.append(kind)

@@ -87,7 +87,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """A whole page."""
+    """A whole page: title, sections, headline numbers and provenance."""
 
     title: str
     lead: str
@@ -98,7 +98,15 @@ class Page:
 
 
 def number(value: Any, digits: int = 4) -> str:
-    """A number with a few significant digits, thin enough to read in a table."""
+    """Write a number with a few significant digits, for a table.
+
+    Args:
+        value: a number, text, true, false or None.
+        digits: significant digits.
+
+    Returns:
+        The text.
+    """
     if isinstance(value, bool) or value is None or isinstance(value, str):
         return {True: "yes", False: "no", None: ""}.get(value, str(value))  # type: ignore[arg-type]
     if isinstance(value, int):
@@ -114,7 +122,14 @@ def number(value: Any, digits: int = 4) -> str:
 
 
 def render(page: Page) -> str:
-    """The page as HTML; plotly is embedded, once, where an explorer needs it."""
+    """Write a page as HTML; plotly is embedded, once, where an explorer needs it.
+
+    Args:
+        page: the page.
+
+    Returns:
+        The HTML.
+    """
     explored = any(isinstance(item, Explorer) for s in page.sections for item in s.content)
     names = ("plotly-basic.min.js", "explorer.js") if explored else ()
     scripts = [(TEMPLATES / name).read_text(encoding="utf-8") for name in names]
@@ -122,7 +137,15 @@ def render(page: Page) -> str:
 
 
 def fill(template: str, **values: Any) -> str:
-    """One of the templates beside this file, filled with values."""
+    """Fill one of the templates beside this file.
+
+    Args:
+        template: name of the file.
+        values: that the template uses.
+
+    Returns:
+        The text.
+    """
     import jinja2
 
     environment = jinja2.Environment(

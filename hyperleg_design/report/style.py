@@ -23,7 +23,14 @@ VARIANT_COLOUR = {
 
 
 def variant_colour(variant: str) -> str:
-    """Colour of an ablation; the active toe's for a robot without ablations."""
+    """Look up the colour of an ablation; that of the active toe for a robot without ablations.
+
+    Args:
+        variant: name of the ablation.
+
+    Returns:
+        The colour.
+    """
     return VARIANT_COLOUR.get(variant, VARIANT_COLOUR["toe"])
 
 
@@ -54,8 +61,17 @@ def figure_style() -> Iterator[None]:
 
 
 def save(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
-    """Write a figure as PNG or SVG by its ending, whole or not at all, the same bytes each time;
-    closes it.
+    """Write a figure as PNG or SVG, by the ending of the file, and close it.
+
+    The file is written whole or not at all, with the same bytes each time.
+
+    Args:
+        figure: the figure.
+        path: of the file.
+        dpi: resolution of PNG [1/inch].
+
+    Returns:
+        The path.
     """
     import io
 
@@ -70,7 +86,15 @@ def save(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
 
 
 def later(figure: Callable[..., Figure], *arguments: Any) -> Callable[[Path], Path]:
-    """Draws and saves a figure when it is given a path."""
+    """Make a function that draws and saves a figure when it is given a path.
+
+    Args:
+        figure: function that draws.
+        arguments: of that function.
+
+    Returns:
+        The function.
+    """
 
     def write(path: Path) -> Path:
         return save(figure(*arguments), path)

@@ -9,7 +9,15 @@ from hyperleg_design.robot.names import JOINTS
 
 
 def table(headers: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Aligned columns: texts to the left, numbers to the right."""
+    """Write aligned columns: texts to the left, numbers to the right.
+
+    Args:
+        headers: of the columns.
+        rows: of cells.
+
+    Returns:
+        The text.
+    """
     cells = [[_cell(v) for v in row] for row in rows]
     numeric = (
         [
@@ -49,7 +57,14 @@ _LIMITS = ("max_torque", "torque_alone", "speed", "reflected_inertia")
 
 
 def analysis_text(analysis: Mapping[str, Any]) -> str:
-    """An analysis as a page for a terminal."""
+    """Write an analysis as a page for a terminal.
+
+    Args:
+        analysis: as `analyze` returns it.
+
+    Returns:
+        The text.
+    """
     masses = ", ".join(f"{k} {v:.3g}" for k, v in analysis["segment_mass"].items())
     limits = analysis["joint_limits"]
     printed = ", ".join(f"{j} {v:.4g}" for j, v in analysis["max_joint_torque"].items())
@@ -116,7 +131,14 @@ def analysis_text(analysis: Mapping[str, Any]) -> str:
 
 
 def confound_text(effects: Mapping[str, Any]) -> str:
-    """The ablations beside each other."""
+    """Write the ablations beside each other.
+
+    Args:
+        effects: as `confound` returns them, by ablation.
+
+    Returns:
+        The text.
+    """
     joints = [j for j in JOINTS if j in ("knee", "ankle_pitch", "ankle_roll", "toe")]
     rows = [
         [

@@ -9,10 +9,13 @@ from hyperleg_design.report.text import table
 
 
 def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
-    """What `tree_analysis.analyze_tree` returns, as a page for a terminal.
+    """Write what `tree_analysis.analyze_tree` returns as a page for a terminal.
 
     Args:
         analysis: the analysis.
+
+    Returns:
+        The text.
     """
     masses = ", ".join(f"{name} {mass:.3g}" for name, mass in analysis["link_mass"].items())
     joints = [

@@ -50,11 +50,14 @@ class Shapes:
 
 
 def robot_svg(subject: Subject, shares: Mapping[str, float]) -> str:
-    """The robot at rest as an SVG element.
+    """Draw the robot at rest as an SVG element.
 
     Args:
         subject: the robot.
         shares: of the gap, by joint or motor name; links count for the joint that carries them.
+
+    Returns:
+        The element as text.
     """
     shapes = shapes_of(subject)
     share = np.array([share_of(subject, joint, shares) for joint in subject.joints])
@@ -93,8 +96,16 @@ def robot_svg(subject: Subject, shares: Mapping[str, float]) -> str:
 
 
 def shapes_of(subject: Subject) -> Shapes:
-    """Shapes and joints of a robot at rest, of its file where that can be read again; the nominal
-    model has few shapes left.
+    """Collect the shapes and joints of a robot at rest.
+
+    They are those of its file where that can be read again, because the nominal model has few
+    shapes left.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The shapes.
     """
     import mujoco
 
@@ -249,8 +260,16 @@ def _colour(part: float) -> str:
 
 
 def share_of(subject: Subject, joint: str, shares: Mapping[str, float]) -> float:
-    """A joint's share of the gap: its own, those of the links that it carries, and its part of
-    those of the motors that turn it.
+    """Compute a joint's share of the gap: its own, those of the links that it carries, and its part
+    of those of the motors that turn it.
+
+    Args:
+        subject: the robot.
+        joint: name of the joint.
+        shares: of the gap, by name of joint, link or motor.
+
+    Returns:
+        The share [-].
     """
     share = float(shares.get(joint, 0.0))
     if not subject.one_to_one:

@@ -26,7 +26,14 @@ MOST_NAMED = 8
 
 
 def plan_text(experiment: Experiment) -> str:
-    """Describe an experiment in text for a terminal."""
+    """Describe an experiment in text for a terminal.
+
+    Args:
+        experiment: the plan.
+
+    Returns:
+        The text.
+    """
     subject, blocks = experiment.subject, experiment.blocks
     measured = "motor torque measured" if experiment.torque else "no torque measured"
     lines = [
@@ -156,7 +163,14 @@ def _deviation_lines(experiment: Experiment) -> list[str]:
 
 
 def motions_figure(experiment: Experiment) -> Figure:
-    """Targets of all motions over time, a panel each."""
+    """Draw the targets of all motions over time, with a panel for each motion.
+
+    Args:
+        experiment: the plan.
+
+    Returns:
+        The figure.
+    """
     with figure_style():
         import matplotlib.pyplot as plt
 
@@ -207,6 +221,12 @@ def motions_figure(experiment: Experiment) -> Figure:
 def separation_figure(experiment: Experiment) -> Figure:
     """Draw how clearly each motion separates effects that look alike, at the least clear joint, and
     how clear each effect is.
+
+    Args:
+        experiment: the plan.
+
+    Returns:
+        The figure.
     """
     with figure_style():
         import matplotlib.pyplot as plt
@@ -265,7 +285,15 @@ def _table(
 
 
 def write_report(experiment: Experiment, folder: str | Path) -> list[Path]:
-    """Plan as text and figures into a folder that exists."""
+    """Write the plan as text and figures into a folder.
+
+    Args:
+        experiment: the plan.
+        folder: must exist.
+
+    Returns:
+        The files.
+    """
     folder = Path(folder)
     return [
         write_text(folder / "plan.txt", plan_text(experiment)),

@@ -24,7 +24,15 @@ _MOST_DOTS = 3000
 
 
 def time_figure(shown: Evidence) -> Figure:
-    """Residual measured, explained and left over time, of the row where the causes explain most."""
+    """Draw the residual over time as measured, as explained, and what is left of it, for the row
+    where the causes explain most.
+
+    Args:
+        shown: evidence of one log.
+
+    Returns:
+        The figure.
+    """
     with figure_style():
         import matplotlib.pyplot as plt
 
@@ -44,7 +52,15 @@ def time_figure(shown: Evidence) -> Figure:
 
 
 def speed_figure(shown: Evidence) -> Figure:
-    """Residual measured and explained over speed, of the same row; it must have a speed."""
+    """Draw the residual over speed as measured and as explained, for the same row as in
+    `time_figure`.
+
+    Args:
+        shown: evidence of one log; the row must have a speed.
+
+    Returns:
+        The figure.
+    """
     with figure_style():
         import matplotlib.pyplot as plt
 

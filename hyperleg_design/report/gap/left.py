@@ -32,7 +32,14 @@ class Friction:
     """Share of the mean square that friction explains [-]."""
 
     def sentence(self, joint: str) -> str:
-        """Describe the remaining friction of a joint in one sentence."""
+        """Describe the remaining friction of a joint in one sentence.
+
+        Args:
+            joint: name of the joint.
+
+        Returns:
+            The sentence.
+        """
         return (
             f"Left at {joint}: a torque that goes with its speed as plain friction does: "
             f"{self.constant:.2g} Nm and {self.viscous:.2g} Nms/rad explain "
@@ -46,6 +53,9 @@ def friction(shown: Sequence[Evidence], row: int) -> Friction:
     Args:
         shown: of the motion residual of one robot's logs.
         row: of the joint.
+
+    Returns:
+        The fit, and how much of what is left it explains.
     """
     speed, left = (
         np.concatenate(part)
@@ -65,12 +75,15 @@ def friction(shown: Sequence[Evidence], row: int) -> Friction:
 
 
 def hints(shapes: Sequence[Mapping[str, Any]], shown: Sequence[Evidence]) -> list[str]:
-    """What is left, in sentences: plain friction where it fits nearly as well as what was found,
-    else what was found.
+    """Describe what is left of a gap: plain friction where it fits nearly as well as the shape that
+    was found, else that shape.
 
     Args:
         shapes: `residual_shape` of the diagnosis, the largest first.
         shown: evidence of its logs, all of one residual.
+
+    Returns:
+        Sentences.
     """
     alike = [one for one in shown if one.residual_name == "motion"]
     rows = alike[0].rows if alike else ()

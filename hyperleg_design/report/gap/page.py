@@ -87,6 +87,9 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
         folder: of the diagnosis, exists.
         diagnosis: as `diagnosis.json` holds it.
         signals: of the logs that were diagnosed, for the figures.
+
+    Returns:
+        The path of the page.
     """
     (folder / FIGURES).mkdir(exist_ok=True)
     causes, rivals = list(diagnosis["causes"]), list(diagnosis["rivals"])

@@ -71,8 +71,15 @@ def diagnose_to_folder(
 
 
 def excite_to_folder(robot: str, out: str | os.PathLike[str], **options: Any) -> str:
-    """Design experiments for a rig, write targets, plan and figures, and return the plan as text;
-    options as `gap.experiments.excite.excite`.
+    """Design experiments for a rig, and write targets, plan and figures.
+
+    Args:
+        robot: a design, or an MJCF or URDF file.
+        out: folder to write.
+        options: of `gap.experiments.excite.excite`.
+
+    Returns:
+        The plan as text.
 
     Raises:
         InputError: bad input.

@@ -44,12 +44,26 @@ class CauseRow:
 
 
 def title(effect: str) -> str:
-    """The name of an effect inside a sentence: `Coulomb friction`, `payload`."""
+    """Name an effect inside a sentence, such as `Coulomb friction` or `payload`.
+
+    Args:
+        effect: its identifier.
+
+    Returns:
+        The name.
+    """
     return EFFECTS[effect].title if effect in EFFECTS else effect.replace("_", " ")
 
 
 def cause_row(cause: Entry) -> CauseRow:
-    """A cause, or a rival, with each of its parameters."""
+    """Make the table row of a cause, or of a rival, with each of its parameters.
+
+    Args:
+        cause: as `diagnosis.json` holds it.
+
+    Returns:
+        The row.
+    """
     values = []
     for name, value, choice in chosen(cause["effect"], cause["parameters"]):
         unit = f" {value['unit']}".replace("^2", "²").rstrip()
@@ -71,17 +85,38 @@ def cause_row(cause: Entry) -> CauseRow:
 
 
 def share_text(share: float) -> str:
-    """A share in per cent; a dash where it is none."""
+    """Write a share in per cent; a dash where it is none.
+
+    Args:
+        share: [-].
+
+    Returns:
+        The text.
+    """
     return f"{100 * share:.0f} %" if round(100 * share) else "–"
 
 
 def probability_text(value: float) -> str:
-    """A probability with two digits, never a bare zero."""
+    """Write a probability with two digits, never as a bare zero.
+
+    Args:
+        value: the probability [-].
+
+    Returns:
+        The text.
+    """
     return f"{value:.2f}" if value >= 0.005 else "< 0.01"
 
 
 def verdict_sentence(diagnosis: Entry) -> str:
-    """The verdict in one sentence."""
+    """State the verdict in one sentence.
+
+    Args:
+        diagnosis: as `diagnosis.json` holds it.
+
+    Returns:
+        The sentence.
+    """
     causes, verdict = list(diagnosis["causes"]), str(diagnosis["verdict"])
     places = joined(places_of(diagnosis)[:2])
     if verdict == "none":
@@ -99,8 +134,14 @@ def verdict_sentence(diagnosis: Entry) -> str:
 
 
 def phrase(causes: Sequence[Entry]) -> str:
-    """All causes in words, one effect at several places said once: `Coulomb friction at elbow (0.25
-    Nm) and payload at hand (0.5 kg)`.
+    """List all causes in words, such as `Coulomb friction at elbow (0.25 Nm) and payload at hand
+    (0.5 kg)`; an effect at several places is named once.
+
+    Args:
+        causes: as `diagnosis.json` holds them.
+
+    Returns:
+        The phrase.
     """
     places: dict[str, list[str]] = {}
     for cause in causes:
@@ -122,23 +163,40 @@ def _size(cause: Entry) -> str:
 
 
 def named(entry: Entry) -> str:
-    """An effect and its place, where it has one."""
+    """Name an effect and its place, where it has one.
+
+    Args:
+        entry: a cause or a rival.
+
+    Returns:
+        The words.
+    """
     effect, location = title(str(entry.get("effect", ""))), entry.get("location", "")
     return f"{effect} at {location}" if location else effect
 
 
 def places_of(diagnosis: Entry) -> list[str]:
-    """Places of the gap, the largest share first."""
+    """List the places of the gap, the largest share first.
+
+    Args:
+        diagnosis: as `diagnosis.json` holds it.
+
+    Returns:
+        Names of joints and other places.
+    """
     return [str(w["location"]) for w in diagnosis["where"] if w["regime"] == "all"]
 
 
 def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
-    """What follows the verdict: how far the gap shrinks, what remains, what joints do at rest, what
-    the model lacks already.
+    """Write what follows the verdict: how far the gap shrinks, what remains, what joints do at
+    rest, and what the model lacks already.
 
     Args:
         diagnosis: as `diagnosis.json` holds it.
         left: sentences on what is left.
+
+    Returns:
+        Sentences.
     """
     texts, gap, remainder = [], diagnosis["gap"], diagnosis.get("remainder")
     if diagnosis["causes"]:
@@ -168,7 +226,14 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
 
 
 def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
-    """What to do next, each a sentence and a command, which may be empty."""
+    """List what to do next.
+
+    Args:
+        diagnosis: as `diagnosis.json` holds it.
+
+    Returns:
+        A sentence and a command for each step; the command may be empty.
+    """
     steps, verdict = [], diagnosis["verdict"]
     experiment = diagnosis["separating_experiment"]
     if experiment:
@@ -212,18 +277,40 @@ def _experiment(experiment: Entry) -> str:
 
 
 def joined(parts: Iterable[str], word: str = "and") -> str:
-    """Parts as people list them: `a, b and c`."""
+    """Join parts as people list them: `a, b and c`.
+
+    Args:
+        parts: the parts.
+        word: before the last one.
+
+    Returns:
+        The text.
+    """
     *first, last = [*parts] or [""]
     return f"{', '.join(first)} {word} {last}" if first else last
 
 
 def capital(text: str) -> str:
-    """The text with a capital first letter, the rest as it is."""
+    """Write a text with a capital first letter, the rest as it is.
+
+    Args:
+        text: the text.
+
+    Returns:
+        The changed text.
+    """
     return text[:1].upper() + text[1:]
 
 
 def plain(value: Any) -> str:
-    """Any value of a diagnosis as text."""
+    """Write any value of a diagnosis as text.
+
+    Args:
+        value: a number, text, list or mapping.
+
+    Returns:
+        The text.
+    """
     if isinstance(value, Mapping):
         return "; ".join(f"{str(k).replace('_', ' ')}: {plain(part)}" for k, part in value.items())
     if isinstance(value, list | tuple):

@@ -28,8 +28,14 @@ PLACES = {
 
 
 def effects_text(table: Sequence[Mapping[str, Any]]) -> str:
-    """The catalogue as lines: identifier, kind of place and summary, then a line for each
+    """Write the catalogue as lines: identifier, kind of place and summary, then a line for each
     parameter.
+
+    Args:
+        table: the catalogue, one mapping for each effect.
+
+    Returns:
+        The text.
     """
     lines = []
     for entry in table:
@@ -54,7 +60,14 @@ def effects_text(table: Sequence[Mapping[str, Any]]) -> str:
 
 
 def show_summary(shown: Shown) -> dict[str, Any]:
-    """What was shown and how large it is, as JSON takes it."""
+    """Summarise what was shown and how large it is, as JSON takes it.
+
+    Args:
+        shown: one effect on the standard motion.
+
+    Returns:
+        The summary.
+    """
     known = np.isfinite(shown.trace) & np.isfinite(shown.residual)
     return {
         "effect": shown.effect.identifier,
@@ -75,7 +88,14 @@ def show_summary(shown: Shown) -> dict[str, Any]:
 
 
 def show_text(summary: Mapping[str, Any]) -> str:
-    """Lay out what `show_summary` returns as text for a terminal."""
+    """Write what `show_summary` returns as text for a terminal.
+
+    Args:
+        summary: the summary.
+
+    Returns:
+        The text.
+    """
     values = ", ".join(
         f"{name} {v['value']:.4g} {v['unit']}".rstrip() for name, v in summary["parameters"].items()
     )
@@ -95,7 +115,14 @@ def show_text(summary: Mapping[str, Any]) -> str:
 
 def show_figure(shown: Shown, path: str | Path) -> Path:
     """Draw a shown effect: trace and residual in time, the trace against velocity, position and
-    torque, the closed loop.
+    torque, and the closed loop.
+
+    Args:
+        shown: one effect on the standard motion.
+        path: of the picture.
+
+    Returns:
+        The path.
     """
     import matplotlib.pyplot as plt
 

@@ -25,7 +25,14 @@ MOST_PLACES = 4
 
 
 def checks_text(checks: Sequence[Check]) -> str:
-    """What each log can and cannot show."""
+    """Describe what each log can and cannot show.
+
+    Args:
+        checks: of the logs.
+
+    Returns:
+        The text.
+    """
     return "\n\n".join(_text(check) for check in checks)
 
 
@@ -84,8 +91,15 @@ def _signals(columns: Sequence[Column]) -> list[str]:
 
 
 def gap_text(gap: Gap, most: int = 12) -> str:
-    """Where the gap lies: each signal's places, largest excess first, and the regimes in which the
-    largest stands out.
+    """Describe where the gap lies: each signal's places, largest excess first, and the regimes in
+    which the largest stands out.
+
+    Args:
+        gap: as measured.
+        most: rows for each signal at most.
+
+    Returns:
+        The text.
     """
     lines = [f"floor from {FLOORS[gap.floor_from]}"]
     lines += [f"note: {note}" for note in gap.notes]
@@ -121,7 +135,15 @@ def gap_text(gap: Gap, most: int = 12) -> str:
 def chosen(
     effect: str, parameters: Mapping[str, Mapping[str, Any]]
 ) -> list[tuple[str, Mapping[str, Any], str]]:
-    """Parameters by name, with words for those that are a choice."""
+    """List parameters by name, with words for those that are a choice.
+
+    Args:
+        effect: its identifier.
+        parameters: values by name, as `diagnosis.json` holds them.
+
+    Returns:
+        Name, value and words of each parameter; the words are empty for a number.
+    """
     choices = {p.name: p.choices for p in EFFECTS[effect].parameters}
     found = []
     for name, one in parameters.items():
@@ -137,8 +159,14 @@ def chosen(
 
 
 def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
-    """Smallest change that the logs would have shown, an effect's parameter a row: effect,
-    parameter, where it is least and where most.
+    """Tabulate the smallest changes that the logs would have shown.
+
+    Args:
+        diagnosis: as `diagnosis.json` holds it.
+
+    Returns:
+        For each parameter of each effect: effect, parameter, where the change is least and where it
+        is most.
     """
     groups: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
     for one in diagnosis.get("sensitivity", ()):
@@ -154,13 +182,28 @@ def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, 
 
 
 def change_text(one: Mapping[str, Any]) -> str:
-    """A change of a parameter as people say it: shares in per cent, anything else in its unit."""
+    """Write a change of a parameter as people state it: shares in per cent, anything else in its
+    unit.
+
+    Args:
+        one: an entry of `sensitivity`.
+
+    Returns:
+        The text.
+    """
     change, unit = float(one["change"]), str(one["unit"])
     return f"{change:.2g} {unit}" if unit else f"{100 * change:.2g} %"
 
 
 def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
-    """Verdict, gap, causes, rivals and what to do next."""
+    """Write verdict, gap, causes, rivals and what to do next.
+
+    Args:
+        diagnosis: as `diagnosis.json` holds it.
+
+    Returns:
+        The text.
+    """
     gap = diagnosis["gap"]
     lines = [
         f"verdict: {diagnosis['verdict']}",
@@ -219,7 +262,14 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
 
 
 def replayed_text(rows: Sequence[Replayed]) -> str:
-    """Errors of replayed logs without and with an effect."""
+    """Write the errors of replayed logs without and with an effect.
+
+    Args:
+        rows: one for each joint.
+
+    Returns:
+        The text; empty without rows.
+    """
     if not rows:
         return ""
     wide = max(len(r.joint) for r in rows)
@@ -232,7 +282,14 @@ def replayed_text(rows: Sequence[Replayed]) -> str:
 
 
 def changed_text(rows: Sequence[Changed]) -> str:
-    """Measures of a policy's trials without and with an effect."""
+    """Write the measures of a policy's trials without and with an effect.
+
+    Args:
+        rows: one for each measure.
+
+    Returns:
+        The text; empty without rows.
+    """
     if not rows:
         return ""
     wide = max(len(r.measure) for r in rows)

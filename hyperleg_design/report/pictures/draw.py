@@ -57,7 +57,12 @@ def _add(plotter: Any, solid: Solid, mesh: Any, lighting: bool = True) -> Any:
 
 
 def draw(scene: Scene, path: Path) -> None:
-    """Draw a scene into a PNG file."""
+    """Draw a scene into a PNG file.
+
+    Args:
+        scene: what is drawn.
+        path: of the file.
+    """
     import pyvista as pv
 
     plotter = pv.Plotter(off_screen=True, window_size=list(scene.size), lighting="three lights")
@@ -91,7 +96,12 @@ def draw(scene: Scene, path: Path) -> None:
 
 
 def draw_motion(motion: Motion, path: Path) -> None:
-    """Draw all frames of a motion into an `.npy` file, `(frames, height, width, 3)` of bytes."""
+    """Draw all frames of a motion into an `.npy` file, `(frames, height, width, 3)` of bytes.
+
+    Args:
+        motion: what is drawn.
+        path: of the file.
+    """
     import pyvista as pv
 
     plotter = pv.Plotter(off_screen=True, window_size=list(motion.size), lighting="three lights")

@@ -42,7 +42,7 @@ class Moving(Protocol):
 
     @property
     def design(self) -> Any:
-        """The robot."""
+        """The robot that moves."""
 
     @property
     def joints(self) -> Sequence[str]:
@@ -50,15 +50,15 @@ class Moving(Protocol):
 
     @property
     def samples(self) -> int:
-        """In each signal."""
+        """The number of samples in each signal."""
 
     @property
     def time_step(self) -> float:
-        """Between samples [s]."""
+        """The time between samples [s]."""
 
     @property
     def base_position(self) -> np.ndarray:
-        """[m], `(t, 3)`."""
+        """Positions of the base in the world [m], `(t, 3)`."""
 
     @property
     def base_orientation(self) -> np.ndarray:
@@ -66,7 +66,7 @@ class Moving(Protocol):
 
     @property
     def joint_position(self) -> np.ndarray:
-        """[rad], `(t, J)`."""
+        """Positions of the joints [rad], `(t, J)`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,11 +99,14 @@ class Motion:
 
 
 def drawn_frames(motion: Motion, path: str | os.PathLike[str]) -> np.ndarray:
-    """Frames of a motion, `(frames, height, width, 3)` of bytes.
+    """Draw the frames of a motion.
 
     Args:
         motion: what to draw.
         path: for messages.
+
+    Returns:
+        Bytes, `(frames, height, width, 3)`.
 
     Raises:
         HyperlegError: this machine cannot draw.
@@ -112,8 +115,15 @@ def drawn_frames(motion: Motion, path: str | os.PathLike[str]) -> np.ndarray:
 
 
 def render_gif(motion: Motion, path: str | os.PathLike[str]) -> Path:
-    """Draw a motion into a GIF file of at most `MOST_BYTES`; colours, then frames are given up to
-    fit.
+    """Draw a motion into a GIF file of at most `MOST_BYTES`; colours, then frames are left out
+    until it fits.
+
+    Args:
+        motion: what is drawn.
+        path: of the file.
+
+    Returns:
+        The path.
 
     Raises:
         HyperlegError: this machine cannot draw, or no file small enough can be made.
@@ -130,7 +140,16 @@ def render_gif(motion: Motion, path: str | os.PathLike[str]) -> Path:
 
 
 def gif_of(frames: np.ndarray, frame_time: float, colours: int) -> bytes:
-    """A GIF file that repeats frames `(frames, height, width, 3)`, each shown for a time [s]."""
+    """Make a GIF file that repeats frames.
+
+    Args:
+        frames: bytes, `(frames, height, width, 3)`.
+        frame_time: for which each frame is shown [s].
+        colours: in the palette.
+
+    Returns:
+        The content of the file.
+    """
     from PIL import Image
 
     sample = frames[np.linspace(0, len(frames) - 1, 8).astype(int)]
@@ -162,7 +181,7 @@ def walk_motion(
     frames_per_second: float = 20.0,
     size: tuple[int, int] = (480, 400),
 ) -> Motion:
-    """A walk from the right side, the camera beside the robot.
+    """Prepare the animation of a walk from the right side, with the camera beside the robot.
 
     Args:
         trial: the walk.
@@ -170,6 +189,9 @@ def walk_motion(
         duration: shown [s].
         frames_per_second: of the animation, at true speed.
         size: of a frame [px].
+
+    Returns:
+        The motion to draw.
 
     Raises:
         InputError: a trial without samples.
@@ -203,8 +225,19 @@ def t_test_motion(
     most_frames: int = 150,
     size: tuple[int, int] = (480, 360),
 ) -> Motion:
-    """A run over a course from above and aside, the camera following; faster than true if it is
-    long.
+    """Prepare the animation of a run over a course, seen from above and aside; the camera follows.
+
+    A long run is shown faster than it was.
+
+    Args:
+        trial: the run.
+        protocol: gives the course.
+        frames_per_second: of the animation.
+        most_frames: of the animation.
+        size: of a frame [px].
+
+    Returns:
+        The motion to draw.
 
     Raises:
         InputError: a trial without samples.
@@ -261,12 +294,15 @@ def t_test_motion(
 
 
 def strip_scene(walks: Mapping[str, tuple[Trial, Any]], snapshots: int = SNAPSHOTS) -> Scene:
-    """Snapshots of one gait cycle of each walk, one row a walk, from the right side, with the
-    floor's force on each foot.
+    """Draw snapshots of one gait cycle from the right side, with the floor's force on each foot and
+    one row for each walk.
 
     Args:
         walks: by label: a walk and the `Events` by which its steps are told.
         snapshots: in a row, equal shares of the cycle apart, both ends among them.
+
+    Returns:
+        The scene.
 
     Raises:
         InputError: a walk without two strides of the right foot.
@@ -339,8 +375,15 @@ def _samples(trial: Moving, begin: float, duration: float, rate: float) -> np.nd
 
 
 def travel(trial: Moving, samples: np.ndarray) -> np.ndarray:
-    """Cosine and sine of the direction of travel between the first and the last of some samples,
-    `(2,)`; that of the start if it stands.
+    """Compute the direction of travel between the first and the last of some samples.
+
+    Args:
+        trial: the motion.
+        samples: their indices.
+
+    Returns:
+        Cosine and sine of the direction, `(2,)`; those of the heading at the start if the robot
+        stands.
     """
     way = trial.base_position[samples[-1], :2] - trial.base_position[samples[0], :2]
     length = float(np.linalg.norm(way))

@@ -85,6 +85,13 @@ class Scene:
 def render(scene: Scene, path: str | os.PathLike[str]) -> Path:
     """Draw a scene into a PNG file.
 
+    Args:
+        scene: what is drawn.
+        path: of the file.
+
+    Returns:
+        The path.
+
     Raises:
         HyperlegError: this machine cannot draw (no OpenGL), or drawing fails.
     """
@@ -92,12 +99,14 @@ def render(scene: Scene, path: str | os.PathLike[str]) -> Path:
 
 
 def drawn(what: Any, path: str | os.PathLike[str]) -> bytes:
-    """What `report.draw` makes of a scene or a motion, in a process of its own: a PNG file, or an
-    `.npy` of frames.
+    """Draw a scene or a motion with `report.pictures.draw`, in a process of its own.
 
     Args:
         what: anything that `report.draw` knows.
         path: for messages.
+
+    Returns:
+        A PNG file, or an `.npy` file of frames.
 
     Raises:
         HyperlegError: this machine cannot draw (no OpenGL), or drawing fails.
@@ -146,8 +155,8 @@ def robot_solids(
     tree: Tree | None = None,
     pelvis: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> list[Solid]:
-    """Solids of a robot that stands with its lowest sole pad at the height of `offset`, or has its
-    pelvis where it is said.
+    """Place the solids of a robot that stands with its lowest sole pad at the height of `offset`,
+    or whose pelvis has a given pose.
 
     Args:
         design: one robot.
@@ -159,6 +168,9 @@ def robot_solids(
         tree: the design's tree, if it is already there.
         pelvis: rotation `(3, 3)` and position [m] of the pelvis in the world, instead of `offset`
             and `yaw`.
+
+    Returns:
+        The solids in the world.
     """
     tree = tree or build_tree(design)
     poses = link_poses(tree, angles)
@@ -196,13 +208,16 @@ def robot_solids(
 def link_solids(
     design: RobotDesign, tree: Tree, *, opacity: float = 1.0, motors: bool = True
 ) -> dict[str, list[Solid]]:
-    """Solids of each link in the link's own frame, by link.
+    """Collect the solids of each link in the link's own frame.
 
     Args:
         design: one robot of any family.
         tree: of the design.
         opacity: 0 to 1.
         motors: draw the motors where the design houses them.
+
+    Returns:
+        Solids by link.
     """
     toe = TOE.get(str(design["toe.joint"]), TOE["locked"]) if tree.hyperleg else FRAME
     solids: dict[str, list[Solid]] = {}
@@ -309,7 +324,14 @@ def _tree_motor_solids(
 
 
 def dimensions_scene(design: Design) -> Scene:
-    """The robot from the left side with its lengths."""
+    """Prepare a picture of the robot from the left side with its lengths.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        The scene.
+    """
     tree = build_tree(design)
     hip = float(design.thigh.length + design.shank.length + design.foot.ankle_height)
     top = hip + float(design.pelvis.height)
@@ -377,8 +399,14 @@ def _dimension(
 
 
 def frames_scene(design: Design) -> Scene:
-    """Joint axes of both legs; the arrow points along the axis about which the angle is
-    positive.
+    """Prepare a picture of the joint axes of both legs; arrows point along the axes about which
+    angles are positive.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        The scene.
     """
     tree = build_tree(design)
     angles = default_angles(tree)
@@ -420,7 +448,15 @@ def frames_scene(design: Design) -> Scene:
 
 
 def masses_scene(design: Design) -> Scene:
-    """Masses of the segments at their centres of mass, as balls of their size, and the motors."""
+    """Prepare a picture of the segments' masses, as balls of their size at the centres of mass, and
+    of the motors.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        The scene.
+    """
     from hyperleg_design.robot.masses import mass_table
 
     tree = build_tree(design)
@@ -471,7 +507,14 @@ def masses_scene(design: Design) -> Scene:
 
 
 def variants_scene(designs: Mapping[str, Design]) -> Scene:
-    """Robots side by side, each with its name and mass."""
+    """Prepare a picture of robots side by side, each with its name and mass.
+
+    Args:
+        designs: robots by name.
+
+    Returns:
+        The scene.
+    """
     from hyperleg_design.robot.masses import mass_table
 
     solids, labels = [], []

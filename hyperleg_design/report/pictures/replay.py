@@ -25,7 +25,7 @@ def replay(
     design: RobotDesign | None = None,
     task: Task | None = None,
 ) -> Evaluation:
-    """One trial of a policy with all its signals.
+    """Run one trial of a policy and keep all its signals.
 
     Args:
         policy: as in `evaluate`.
@@ -33,6 +33,9 @@ def replay(
         seed: of the starting state; the protocol's by default.
         design: as in `evaluate`.
         task: as in `evaluate`.
+
+    Returns:
+        The evaluation with its one trial.
 
     Raises:
         InputError: as `evaluate`.
@@ -50,11 +53,14 @@ def replay(
 
 
 def motion_of(found: Evaluation, **options: Any) -> Motion:
-    """The animation of a replay: a walk from aside, a T-test from above.
+    """Prepare the animation of a replay: a walk from aside, a T-test from above.
 
     Args:
         found: of `replay`.
         options: of `motion.walk_motion` or `motion.t_test_motion`.
+
+    Returns:
+        The motion to draw.
     """
     trial = found.trials[0]
     if isinstance(found.protocol, TTestProtocol):

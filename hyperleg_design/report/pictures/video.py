@@ -23,7 +23,11 @@ _GIF_COLOURS = 64
 
 
 def check_video(path: Path, size: tuple[int, int]) -> None:
-    """Whether a file can be written, before anything is simulated.
+    """Check that a video can be written, before anything is simulated.
+
+    Args:
+        path: of the file.
+        size: of a frame [px].
 
     Raises:
         InputError: another ending than `KINDS`, an odd or very small size, or a package is missing.
@@ -49,6 +53,9 @@ def write_video(motion: Motion, path: str | Path, *, progress: bool = False) -> 
         motion: what to draw.
         path: ends in .mp4 or .gif.
         progress: show a bar.
+
+    Returns:
+        The path.
 
     Raises:
         InputError: as `check_video`.

@@ -61,7 +61,14 @@ class Row:
 
 
 def table_one(design: Design) -> list[Row]:
-    """Table I and Section II.A recomputed from a design with an active toe."""
+    """Recompute Table I and Section II.A of the paper from a design with an active toe.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        One row for each printed number.
+    """
     masses = mass_table(design)
     rows = [
         Row("Table I", "total mass", "kg", paper.TOTAL_MASS, float(masses.total)),
@@ -112,8 +119,14 @@ def table_one(design: Design) -> list[Row]:
 
 
 def motor_rows(names: tuple[str, ...] = ("U10", "RI70", "RI60")) -> list[Row]:
-    """The paper's power constants beside those that follow from the catalogue's resistance and
-    torque constant.
+    """Compare the paper's power constants with those that follow from the catalogue's resistance
+    and torque constant.
+
+    Args:
+        names: of the motors.
+
+    Returns:
+        One row for each motor.
     """
     rows = []
     for name in names:
@@ -314,8 +327,13 @@ UNITS = {
 
 
 def compare_text(measures: dict[str, Any]) -> str:
-    """Lay out a comparison for a terminal, with a row for each measure and a column for each
-    design.
+    """Write a comparison for a terminal, with a row for each measure and a column for each design.
+
+    Args:
+        measures: of each design, by its name.
+
+    Returns:
+        The text.
     """
     rows: dict[str, list[object]] = {}
     for name in measures:

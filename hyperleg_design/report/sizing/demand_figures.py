@@ -36,13 +36,19 @@ _VARIANT_LABEL = {
 
 
 def stick_figure_strip(demand: Demand, frames: int = 9, spacing: float | None = None) -> Figure:
-    """Snapshots of a motion from its right side, with the floor's force on each foot.
+    """Draw snapshots of a motion from its right side, with the floor's force on each foot.
 
     Args:
         demand: of any motion.
         frames: how many, evenly spaced over the motion.
         spacing: between snapshots beyond what the robot travels [m]; chosen so that they do not
             overlap by default.
+
+    Returns:
+        The figure.
+
+    Raises:
+        InputError: fewer than two frames.
     """
     import matplotlib.pyplot as plt
 
@@ -165,12 +171,15 @@ def _floor(axes: Axes, motion: Motion, picked: np.ndarray, gap: float) -> None:
 
 
 def cycle_figure(demands: Mapping[str, Demand], side: str = "left") -> Figure:
-    """Angles and torques of one leg's joints over a motion, one curve a robot; stance of the first
-    is shaded.
+    """Draw angles and torques of one leg's joints over a motion, with one curve for each robot; the
+    stance of the first is shaded.
 
     Args:
         demands: of the same motion, by label or variant.
         side: `left` or `right`.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 
@@ -223,11 +232,14 @@ def cycle_figure(demands: Mapping[str, Demand], side: str = "left") -> Figure:
 
 
 def operating_points_figure(demands: Mapping[str, Demand]) -> Figure:
-    """Torque against speed at every motor over a motion, both legs, with the envelope of the first
-    robot's motors.
+    """Draw torque against speed at every motor of both legs over a motion, with the envelope of the
+    first robot's motors.
 
     Args:
         demands: of the same motion, by label or variant; the toe's motor is drawn where one has it.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 
@@ -304,10 +316,14 @@ def _envelope(axes: Axes, demand: Demand, motor: str, reach: float) -> None:
 
 
 def margin_figure(demands: Mapping[str, Demand]) -> Figure:
-    """Smallest margin to the envelope, thermal use and Joule heat of every motor, a bar a robot.
+    """Draw the smallest margin to the envelope, the thermal use and the Joule heat of every motor,
+    with one bar for each robot.
 
     Args:
         demands: of the same motion, by label or variant.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 
@@ -354,7 +370,13 @@ def margin_figure(demands: Mapping[str, Demand]) -> Figure:
 
 
 def capability_figure(rows: Sequence[Mapping[str, Any]]) -> Figure:
-    """Largest contact force of one leg by posture, from the rows of `capability.capability_table`.
+    """Draw the largest contact force of one leg by posture.
+
+    Args:
+        rows: of `capability.capability_table`.
+
+    Returns:
+        The figure.
 
     Raises:
         InputError: no rows.

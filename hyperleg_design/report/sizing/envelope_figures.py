@@ -52,8 +52,8 @@ def torque_speed_figure(
     velocity: np.ndarray | None = None,
     posture: str | None = None,
 ) -> Figure:
-    """Envelopes of both ankle motors, and of what the two give to ankle pitch (L+R) and roll (L-R),
-    as the paper's Fig. 4.
+    """Draw the envelopes of both ankle motors, and of what the two give to ankle pitch (L+R) and
+    roll (L-R), as in the paper's Fig. 4.
 
     In the lower panels torque and speed are those of the pair's sum and difference: pitch torque M
     (t_L + t_R) against (w_L + w_R) / 2M, which is the speed of ankle pitch with the knee at rest,
@@ -65,6 +65,9 @@ def torque_speed_figure(
         torque: operating points of one leg, `(t, joints)` [Nm].
         velocity: of the same points, `(t, joints)` [rad/s].
         posture: printed reductions to project with; the design's own by default.
+
+    Returns:
+        The figure.
 
     Raises:
         InputError: a batch of designs, or points whose shapes do not fit.
@@ -245,17 +248,21 @@ def slice_figure(
     pitch_speeds: Sequence[float] = (0.0, 7.0, 10.0),
     posture: str | None = None,
 ) -> Figure:
-    """What two joints below the hip can have together, against the box that their maxima suggest; a
-    row a variant.
+    """Draw what two joints below the hip can have together against the box of their maxima, with
+    one row for each variant.
 
-    Filled: the other joints below the hip at zero torque, at each ankle-pitch speed. Dotted: the
-    others free. Dashed: the box of single-joint maxima, all at zero speed.
+    Filled areas: the other joints below the hip have zero torque, at each ankle-pitch speed. Dotted
+    lines: the others are free. Dashed lines: the box of single-joint maxima. Dotted and dashed
+    lines are at zero speed.
 
     Args:
         design: one robot; its ablations are drawn where it has an active toe, else itself alone.
         variants: ablations, of `VARIANTS`.
         pitch_speeds: up to three speeds of plantar flexion [rad/s], everything else at rest.
         posture: printed reductions; the design's own by default.
+
+    Returns:
+        The figure.
 
     Raises:
         InputError: a batch of designs, an unknown variant, more than three speeds.
@@ -377,8 +384,8 @@ def _slice_legend(figure: Figure, speeds: Sequence[float]) -> None:
 def polyhedron_figure(
     design: Design, pitch_speeds: Sequence[float] = (0.0, 10.0), posture: str | None = None
 ) -> Figure:
-    """What knee, ankle pitch and toe can have together with ankle roll at zero, in 3-D inside the
-    box of their maxima.
+    """Draw what knee, ankle pitch and toe can have together with ankle roll at zero, in 3-D inside
+    the box of their maxima.
 
     Ankle roll takes the toe's place where the toe does not move.
 
@@ -386,6 +393,9 @@ def polyhedron_figure(
         design: one robot.
         pitch_speeds: speeds of plantar flexion [rad/s], a panel each, everything else at rest.
         posture: printed reductions; the design's own by default.
+
+    Returns:
+        The figure.
 
     Raises:
         InputError: a batch of designs.

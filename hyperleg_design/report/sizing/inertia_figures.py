@@ -46,11 +46,14 @@ class Row:
 def comparison_rows(
     designs: Iterable[Design], others: Iterable[OtherRobot] | None = None
 ) -> tuple[Row, ...]:
-    """Designs and other robots, lightest swing first; designs with equal legs share one row.
+    """Measure designs and other robots; designs with equal legs share one row.
 
     Args:
         designs: robots, such as the variants of one.
         others: robots to compare with; all of `other_robots.SOURCES` by default.
+
+    Returns:
+        The rows, the lightest swing first.
 
     Raises:
         InputError: a batch of designs, no design, or `example-robot-data` is not there.
@@ -82,12 +85,15 @@ def comparison_rows(
 def leg_comparison_figure(
     designs: Iterable[Design], others: Iterable[OtherRobot] | None = None
 ) -> Figure:
-    """Share of the leg's mass below the knee, and swing inertia of the leg over leg mass and over
-    total mass, as bars.
+    """Draw the share of the leg's mass below the knee, and the swing inertia of the leg over leg
+    mass and over total mass, as bars.
 
     Args:
         designs: robots, such as the variants of one.
         others: robots to compare with; all of `other_robots.SOURCES` by default.
+
+    Returns:
+        The figure.
 
     Raises:
         InputError: as `comparison_rows`.

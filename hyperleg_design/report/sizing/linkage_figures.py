@@ -17,8 +17,14 @@ if TYPE_CHECKING:
 
 
 def linkage_figure(design: Design) -> Figure:
-    """Ankle-pitch and toe reductions over ankle pitch and toe angle, with both printed postures
-    marked.
+    """Draw ankle-pitch and toe reductions over ankle pitch and toe angle, with both printed
+    postures marked.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        The figure.
     """
     with figure_style():
         import matplotlib.pyplot as plt

@@ -30,7 +30,17 @@ class Context:
     def picture(
         self, name: str, caption: str, make: Callable[[Path], object], *, wide: bool = True
     ) -> Picture | Missing:
-        """A figure made by `make(path)`; a machine that cannot draw it costs this figure only."""
+        """Make a figure; if this machine cannot draw it, only this figure is missing.
+
+        Args:
+            name: of the file, without its ending.
+            caption: of the figure.
+            make: draws the figure into a file.
+            wide: whether it takes the width of the page.
+
+        Returns:
+            The picture, or why it is missing.
+        """
         file = f"{FIGURES}/{name}.png"
         try:
             make(self.folder / file)

@@ -42,7 +42,7 @@ def explorer(
     front: np.ndarray,
     name: str,
 ) -> Explorer:
-    """Points of a sweep for a page.
+    """Prepare the points of a sweep for a page.
 
     Args:
         sweep: whose designs are shown.
@@ -52,6 +52,9 @@ def explorer(
         maps: views to offer by a button: two axes in the measure's colour, or the measure over one.
         front: whether a design is on the Pareto front of its variant, `(n,)`.
         name: of the part, unique in its page.
+
+    Returns:
+        The explorer.
     """
     count = len(table["variant"])
     first = front | _on_maps(sweep, table, maps)
@@ -153,11 +156,14 @@ def _drawings(
 
 
 def side_view(design: RobotDesign) -> list[list[float]]:
-    """Lines from each joint to those behind it and to the pads, seen from the right in the default
-    posture: x and z of begin and end [mm], `(lines, 4)`; z is 0 at the floor.
+    """Compute lines from each joint to those behind it and to the pads, seen from the right in the
+    default posture.
 
     Args:
         design: one robot.
+
+    Returns:
+        x and z of begin and end of each line [mm], `(lines, 4)`; z is 0 at the floor.
     """
     tree = build_tree(design)
     poses = link_poses(tree, default_angles(tree))

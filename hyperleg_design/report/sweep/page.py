@@ -17,11 +17,14 @@ if TYPE_CHECKING:
 
 
 def sweep_content(result: SweepResult, name: str = "designs") -> list[Any]:
-    """What a page says of a sweep.
+    """Write what a page shows of a sweep.
 
     Args:
         result: the finished sweep.
         name: of the sweep's explorer, unique in the page.
+
+    Returns:
+        Texts, tables and figures.
     """
     summary = result.summary
     content: list[Any] = [summary["description"], _axes_text(result)]
@@ -86,6 +89,9 @@ def _axes_text(result: SweepResult) -> str:
 
 def sweep_report(result: SweepResult) -> dict[str, Any]:
     """Write `index.html` into the sweep's folder.
+
+    Args:
+        result: the finished sweep.
 
     Returns:
         `designs`, `rejected` and `files`.

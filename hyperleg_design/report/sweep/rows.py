@@ -16,8 +16,16 @@ from hyperleg_design.sweep.space import Sweep
 
 
 def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:
-    """The table, and the rows on each variant's front; variants that lack an objective are left
-    out.
+    """Find the Pareto front of each variant; variants that lack an objective are left out.
+
+    Args:
+        result: the finished sweep.
+
+    Returns:
+        The table, and the indices of the rows on each variant's front.
+
+    Raises:
+        InputError: no design has all objectives.
     """
     sweep = result.sweep
     table = result.columns(["variant", *(axis.name for axis in sweep.axes), *sweep.objectives])
@@ -37,17 +45,41 @@ def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:
 
 
 def thinned(count: int, most: int) -> np.ndarray:
-    """Evenly spread positions, at most so many."""
+    """Choose evenly spread positions.
+
+    Args:
+        count: number of positions.
+        most: how many are chosen at most.
+
+    Returns:
+        Their indices.
+    """
     return np.arange(count) if count <= most else np.linspace(0, count - 1, most).astype(int)
 
 
 def base_value(axis: Axis, sweep: Sweep) -> Any:
-    """Where the unchanged design stands on an axis; 1 for factors."""
+    """Look up where the unchanged design lies on an axis; 1 for an axis of factors.
+
+    Args:
+        axis: of the sweep.
+        sweep: the definition.
+
+    Returns:
+        The value.
+    """
     return 1.0 if axis.scaled else sweep.base[axis.paths[0]]
 
 
 def base_level(axis: Axis, sweep: Sweep) -> Any:
-    """Level of a grid's axis nearest to the unchanged design."""
+    """Find the level of a grid's axis that is nearest to the unchanged design.
+
+    Args:
+        axis: of the sweep.
+        sweep: the definition.
+
+    Returns:
+        The level.
+    """
     value = base_value(axis, sweep)
     if not axis.numeric:
         return value if value in axis.levels else axis.levels[0]

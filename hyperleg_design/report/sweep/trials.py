@@ -41,6 +41,9 @@ _MOST_FRONT = 30
 def evaluated_report(result: SweepResult) -> dict[str, Any]:
     """Write `evaluated.parquet`, `evaluated.json` and `index.html` into a sweep's folder.
 
+    Args:
+        result: a sweep after `run_trials`.
+
     Returns:
         `designs`, `rejected`, `files`, and `text`, the best designs for a terminal.
     """
@@ -146,13 +149,25 @@ def _followed(sweep: Sweep, designs: pd.DataFrame) -> list[dict[str, Any]]:
 
 
 def objectives_of(sweep: Sweep, designs: pd.DataFrame) -> tuple[str, ...]:
-    """What the front is spanned by: the sweep's objectives that were measured, or the usual."""
+    """Choose the objectives of the front: those of the sweep that were measured, or the usual ones.
+
+    Args:
+        sweep: the definition.
+        designs: one row for each design.
+
+    Returns:
+        Names of the measures.
+    """
     own = tuple(n for n in (*sweep.objectives, *sweep.trial_objectives) if n in designs)
     return own or tuple(n for n in DEFAULT_OBJECTIVES if n in designs)
 
 
 def policies_of(trials: pd.DataFrame) -> list[dict[str, Any]]:
-    """Policies that ran, whether they were trained for what they ran on, and on how many designs.
+    """List the policies that ran, whether they were trained for what they ran on, and on how many
+    designs.
+
+    Args:
+        trials: one row for each trial.
 
     Returns:
         `protocol`, `variant`, `trained`, `policies`, `designs`.
@@ -174,7 +189,14 @@ def policies_of(trials: pd.DataFrame) -> list[dict[str, Any]]:
 
 
 def policy_text(trials: pd.DataFrame) -> str:
-    """Which policies ran on how many designs, and what their numbers say."""
+    """Describe which policies ran on how many designs, and what their numbers mean.
+
+    Args:
+        trials: one row for each trial.
+
+    Returns:
+        The text.
+    """
     parts = [
         f"{row['protocol']}, {row['variant']}: {row['designs']} designs {row['trained']} "
         f"({len(row['policies'])} policies)"
@@ -305,7 +327,17 @@ def _best_tables(
 def best_text(
     sweep: Sweep, chosen: pd.DataFrame, objectives: tuple[str, ...], commands: list[str]
 ) -> str:
-    """The best design by each objective, for a terminal."""
+    """Describe the best design by each objective, for a terminal.
+
+    Args:
+        sweep: the definition.
+        chosen: rows of the best designs.
+        objectives: names of the measures.
+        commands: that build the designs.
+
+    Returns:
+        The text.
+    """
     if chosen.empty:
         return "no design walks without falling"
     firsts = chosen.drop_duplicates("by")

@@ -29,7 +29,14 @@ _SIDE_MARKS = ("circle", "diamond", "square", "cross")
 
 
 def joint_pairs(design: RobotDesign) -> list[tuple[str, str]]:
-    """Pairs of joints of one limb that share motors, or all pairs where none do."""
+    """List the pairs of joints of one limb that share motors, or all pairs where none do.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        Names of the joints.
+    """
     joints = transmission.joint_names(design)
     driven = np.abs(transmission.joint_from_motor(design)) > 1e-9
     shared = [
@@ -48,7 +55,8 @@ def motor_chart(
     *,
     dark: bool = False,
 ) -> go.Figure:
-    """Torque over speed of one motor: each design's envelope, and where a recorded walk used it.
+    """Draw torque over speed of one motor: each design's envelope, and where a recorded walk used
+    it.
 
     Args:
         designs: by label.
@@ -56,6 +64,9 @@ def motor_chart(
         walk: whose operating points are drawn.
         row: tick of the walk to mark.
         dark: for a dark page.
+
+    Returns:
+        The chart.
     """
     import plotly.graph_objects as go
 
@@ -118,13 +129,16 @@ def _points(
 def slice_chart(
     designs: Mapping[str, RobotDesign], pair: tuple[str, str], *, dark: bool = False
 ) -> go.Figure:
-    """Torques that two joints can have together at standstill: with the other joints at zero
-    (filled), and whatever the others have (dotted).
+    """Draw the torques that two joints can have together at standstill: with the other joints at
+    zero (filled), and with any torque at the others (dotted).
 
     Args:
         designs: by label.
         pair: names of two joints of one limb.
         dark: for a dark page.
+
+    Returns:
+        The chart.
     """
     import plotly.graph_objects as go
 
@@ -166,5 +180,12 @@ def _layout(dark: bool, x: str, y: str) -> dict[str, Any]:
 
 
 def motors_of(designs: Sequence[RobotDesign]) -> tuple[str, ...]:
-    """Names of the motors of one limb that any of the designs has."""
+    """List the motors of one limb that any of the designs has.
+
+    Args:
+        designs: robots.
+
+    Returns:
+        Their names.
+    """
     return tuple(dict.fromkeys(n for d in designs for n in transmission.motor_names(d)))

@@ -41,7 +41,11 @@ class RobotView:
         """Points in the base's frame [m] and forces in the world [N] of what `play` shows."""
 
     def show(self, design: RobotDesign) -> None:
-        """Draw a design in its default posture, in place of what was shown."""
+        """Draw a design in its default posture, in place of what was shown.
+
+        Args:
+            design: one robot.
+        """
         self._server.scene.remove_by_name(self._name)
         self._links, self._arrows = {}, None
         self.tree = build_tree(design)
@@ -108,7 +112,16 @@ class RobotView:
 
 
 def put_solid(server: Any, name: str, solid: Solid) -> Any:
-    """Add a solid to viser's scene; returns its handle."""
+    """Add a solid to viser's scene.
+
+    Args:
+        server: viser's server.
+        name: of the node.
+        solid: what is added.
+
+    Returns:
+        Its handle.
+    """
     mesh = _mesh(solid)
     return server.scene.add_mesh_simple(
         name,
@@ -138,7 +151,14 @@ def _mesh(solid: Solid) -> trimesh.Trimesh:
 
 
 def quaternion(rotation: np.ndarray) -> np.ndarray:
-    """Quaternion w x y z of a rotation `(3, 3)`, `(4,)`."""
+    """Convert a rotation to a quaternion.
+
+    Args:
+        rotation: `(3, 3)`.
+
+    Returns:
+        w x y z, `(4,)`.
+    """
     from scipy.spatial.transform import Rotation
 
     return np.asarray(Rotation.from_matrix(rotation).as_quat())[[3, 0, 1, 2]]

@@ -54,10 +54,13 @@ class Parameter:
 
 
 def parameters_of(design: RobotDesign) -> tuple[Parameter, ...]:
-    """The sliders of a design: its reductions, masses and lengths.
+    """List the sliders of a design: its reductions, masses and lengths.
 
     Args:
         design: one robot of any family.
+
+    Returns:
+        The parameters.
     """
     if isinstance(design, TreeDesign):
         return _of_tree(design)
@@ -108,12 +111,15 @@ def _length(design: TreeDesign, link: str) -> tuple[tuple[str, ...], float]:
 def changed(
     design: RobotDesign, parameters: tuple[Parameter, ...], factors: Mapping[str, float]
 ) -> RobotDesign:
-    """The design with sliders moved.
+    """Change a design as its sliders were moved.
 
     Args:
         design: as loaded.
         parameters: of `parameters_of`.
         factors: by label of the parameter [-]; those at 1 change nothing.
+
+    Returns:
+        The changed design.
 
     Raises:
         InputError: the values make no robot; names the field.

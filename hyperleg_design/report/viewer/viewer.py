@@ -56,7 +56,11 @@ def check_installed() -> None:
 
 
 def check_port(host: str, port: int) -> None:
-    """Whether a server can listen there.
+    """Check that a server can listen on a port.
+
+    Args:
+        host: address.
+        port: number of the port.
 
     Raises:
         InputError: the port is taken or not allowed, or the host is not this machine's.
@@ -266,8 +270,11 @@ class Viewer:
         self.rebuild(label)
 
     def rebuild(self, label: str) -> None:
-        """Make the robot that the sliders say; one that cannot be made is told, and the robot
-        stays.
+        """Make the robot that the sliders describe; if it cannot be made, the page states why and
+        the robot stays.
+
+        Args:
+            label: of the robot.
         """
         with self._lock:
             factors = {name: slider.value for name, slider in self._sliders[label].items()}
@@ -285,7 +292,11 @@ class Viewer:
             self._refresh()
 
     def show_time(self, seconds: float) -> None:
-        """Show the walk at a time from its start [s]."""
+        """Show the walk at a time.
+
+        Args:
+            seconds: from its start [s].
+        """
         walk = self._walk
         if walk is None:
             return
@@ -371,10 +382,13 @@ def _height(design: RobotDesign) -> float:
 
 
 def masses_text(designs: Mapping[str, RobotDesign]) -> str:
-    """Masses of some designs beside each other, as a Markdown table [kg].
+    """Write the masses of some designs beside each other, as a Markdown table [kg].
 
     Args:
         designs: one robot each, by label.
+
+    Returns:
+        The table.
     """
     columns = {label: _masses(design) for label, design in designs.items()}
     rows = list(dict.fromkeys(name for column in columns.values() for name in column))

@@ -56,7 +56,14 @@ class RecordedWalk:
         return float(self.log.time[-1] - self.log.time[0])
 
     def row(self, time: float) -> int:
-        """Last tick at or before a time from the start [s]."""
+        """Find the last tick at or before a time.
+
+        Args:
+            time: from the start [s].
+
+        Returns:
+            Its index.
+        """
         at = int(np.searchsorted(self.log.time - self.log.time[0], time, "right")) - 1
         return min(max(at, 0), len(self.log.time) - 1)
 
@@ -66,12 +73,26 @@ class RecordedWalk:
         return tuple(joint.name for joint in build_tree(self.design).moving)
 
     def angles(self, row: int) -> dict[str, float]:
-        """Joint angles at a tick [rad], by joint; zero where the log does not know one."""
+        """Look up the joint angles at a tick.
+
+        Args:
+            row: index of the tick.
+
+        Returns:
+            Angles by joint [rad]; zero where the log does not know one.
+        """
         values = (self.log.column(f"position/{name}")[row] for name in self._joints)
         return {n: float(np.nan_to_num(v)) for n, v in zip(self._joints, values, strict=True)}
 
     def base(self, row: int) -> Pose | None:
-        """Rotation and position [m] of the base in the world; None where the log does not know."""
+        """Look up the pose of the base at a tick.
+
+        Args:
+            row: index of the tick.
+
+        Returns:
+            Rotation and position [m] in the world; None where the log does not know them.
+        """
         if not (self.log.has("base_position", "x") and self.log.has("base_orientation", "w")):
             return None
         quaternion = self.log.vector("base_orientation")[row]
@@ -83,7 +104,7 @@ class RecordedWalk:
     def contacts(
         self, row: int, tree: Tree, poses: Mapping[str, Pose]
     ) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Contact forces at a tick: point in the base's frame [m] and force in the world [N].
+        """Compute the contact forces at a tick.
 
         Forces of the pads of one link are added, at their centre of pressure.
 
@@ -91,6 +112,9 @@ class RecordedWalk:
             row: tick.
             tree: of the robot.
             poses: of its links in the base's frame.
+
+        Returns:
+            Point in the base's frame [m] and force in the world [N] of each contact.
         """
         feet = self.log.feet
         contacts = []
@@ -117,10 +141,14 @@ class RecordedWalk:
         return contacts
 
     def moving(self, rate: float) -> Poses:
-        """The motion at even times; a base that the log does not know stands still and upright.
+        """Sample the motion at even times; a base that the log does not know stands still and
+        upright.
 
         Args:
             rate: samples a second.
+
+        Returns:
+            Poses over time.
         """
         rows = [self.row(t) for t in np.arange(0.0, self.duration + 1e-9, 1 / rate)]
         still = np.eye(3), np.array([0.0, 0.0, -lowest_point(*self._first())])
@@ -141,8 +169,13 @@ class RecordedWalk:
         return tree, link_poses(tree, self.angles(0))
 
     def motor_points(self, motor: str) -> tuple[np.ndarray, np.ndarray]:
-        """Speeds [rad/s] and torques [Nm] of a motor at all ticks, `(t,)` each; NaN where
-        unknown.
+        """Look up the operating points of a motor.
+
+        Args:
+            motor: name of the motor.
+
+        Returns:
+            Speeds [rad/s] and torques [Nm] at all ticks, `(t,)` each; NaN where unknown.
         """
         return self.log.column(f"motor_velocity/{motor}"), self.log.column(f"motor_torque/{motor}")
 
@@ -164,7 +197,7 @@ class Poses:
 
     @property
     def samples(self) -> int:
-        """In each signal."""
+        """The number of samples in each signal."""
         return len(self.base_position)
 
 
@@ -174,11 +207,14 @@ def _force(log: Log, name: str, row: int) -> np.ndarray:
 
 
 def walk_of_file(path: str | Path, design: RobotDesign | None = None) -> RecordedWalk:
-    """The motion in a Parquet log, such as `hyperleg evaluate --logs` writes.
+    """Read the motion in a Parquet log, such as `hyperleg evaluate --logs` writes.
 
     Args:
         path: of the log.
         design: the robot that was recorded; what the log names by default.
+
+    Returns:
+        The motion.
 
     Raises:
         InputError: no whole log, no robot, or a robot whose joints the log does not hold.
@@ -196,13 +232,16 @@ def walk_of_file(path: str | Path, design: RobotDesign | None = None) -> Recorde
 def walk_of_policy(
     policy: str | Path, design: Any = None, *, protocol: str | None = None, seed: int | None = None
 ) -> RecordedWalk:
-    """One trial of a policy.
+    """Run one trial of a policy.
 
     Args:
         policy: ONNX file, or name of a shipped training such as walk-toe-0.
         design: robot to run it on; the policy's own by default.
         protocol: walk, t_test, or a YAML file; what suits the policy's task by default.
         seed: of the starting state; the protocol's by default.
+
+    Returns:
+        Its motion.
 
     Raises:
         InputError: no such policy, or one that does not fit the robot.

@@ -62,8 +62,14 @@ _ONE_SEED = "Rests on fewer than three trainings a side, so it tells nothing abo
 
 
 def rows_beside_paper(evaluated: Evaluated) -> dict[str, list[PaperRow]]:
-    """Every printed number beside ours, by table and group; tables of groups that lack one of the
-    paper's two robots are left out.
+    """Put every printed number beside ours, by table and group; groups that lack one of the paper's
+    two robots are left out.
+
+    Args:
+        evaluated: the policies with their trials.
+
+    Returns:
+        Rows by table and group.
     """
     rows_by_table = {}
     for kind, place, printed in (
@@ -77,7 +83,14 @@ def rows_beside_paper(evaluated: Evaluated) -> dict[str, list[PaperRow]]:
 
 
 def row_facts(row: PaperRow) -> dict[str, Any]:
-    """A row as plain numbers and texts, None where there is none."""
+    """Write a row as plain numbers and texts.
+
+    Args:
+        row: the row.
+
+    Returns:
+        Values by name, None where there is none.
+    """
 
     def plain(value: float) -> float | None:
         return float(value) if math.isfinite(value) else None
@@ -112,7 +125,15 @@ def row_facts(row: PaperRow) -> dict[str, Any]:
 
 
 def beside(rows: Sequence[PaperRow], caption: str) -> list[Any]:
-    """Printed numbers, ours, and verdicts; below, why some differ."""
+    """Tabulate printed numbers, ours and verdicts, and explain below why some differ.
+
+    Args:
+        rows: of one table and group.
+        caption: of the table.
+
+    Returns:
+        Parts of a page.
+    """
     cells: list[list[Any]] = []
     for row in rows:
         printed, change = row.printed, row.difference
@@ -161,7 +182,14 @@ def beside(rows: Sequence[PaperRow], caption: str) -> list[Any]:
 
 
 def toe_sentence(rows: Sequence[PaperRow]) -> str:
-    """What can be said about the toe from a table, in one paragraph."""
+    """State in one paragraph what can be concluded about the toe from a table.
+
+    Args:
+        rows: of the table.
+
+    Returns:
+        The paragraph.
+    """
     if any(row.difference.verdict == statistics.TOO_FEW_SEEDS for row in rows):
         return _ONE_SEED
     different = [r for r in rows if r.difference.verdict == statistics.DIFFERS]
@@ -182,7 +210,16 @@ def toe_sentence(rows: Sequence[PaperRow]) -> str:
 
 
 def differences(evaluated: Evaluated, group: str, kind: str) -> Details:
-    """Toe against ablation in many measures: unpaired, and paired by seed."""
+    """Compare the toe with its ablation in many measures, unpaired and paired by seed.
+
+    Args:
+        evaluated: the policies with their trials.
+        group: of trainings.
+        kind: of protocol.
+
+    Returns:
+        A table that is folded away.
+    """
     table = evaluated.table(group)
     rows = []
     for name in SUMMARY[kind]:
@@ -247,7 +284,14 @@ def differences(evaluated: Evaluated, group: str, kind: str) -> Details:
 
 
 def short(estimate: Estimate) -> str:
-    """Mean, interval and how many trials gave no value."""
+    """Write mean, interval and how many trials gave no value.
+
+    Args:
+        estimate: the estimate.
+
+    Returns:
+        The text.
+    """
     if not math.isfinite(estimate.mean):
         return "–"
     return interval(estimate.mean, estimate.low, estimate.high, "") + (
@@ -256,7 +300,17 @@ def short(estimate: Estimate) -> str:
 
 
 def interval(mean: float, low: float, high: float, unit: str) -> str:
-    """Mean with its interval, where there is one."""
+    """Write a mean with its interval, where there is one.
+
+    Args:
+        mean: the mean.
+        low: lower end of the interval.
+        high: upper end of the interval.
+        unit: of the numbers.
+
+    Returns:
+        The text.
+    """
     if not math.isfinite(mean):
         return "–"
     text = (
@@ -268,7 +322,16 @@ def interval(mean: float, low: float, high: float, unit: str) -> str:
 
 
 def percent(mean: float, low: float, high: float) -> str:
-    """Relative change with its interval, where there is one."""
+    """Write a relative change with its interval, where there is one.
+
+    Args:
+        mean: the change [-].
+        low: lower end of the interval.
+        high: upper end of the interval.
+
+    Returns:
+        The text, in per cent.
+    """
     if not math.isfinite(mean):
         return "–"
     return f"{100 * mean:+.1f} %" + (
@@ -277,7 +340,14 @@ def percent(mean: float, low: float, high: float) -> str:
 
 
 def verdict(text: str) -> Any:
-    """A verdict as a marked cell."""
+    """Mark a verdict as a cell of a table.
+
+    Args:
+        text: the verdict.
+
+    Returns:
+        The cell.
+    """
     return Cell(text, _MARK.get(text, "note")) if text else "–"
 
 

@@ -51,8 +51,13 @@ class Evaluated:
     gait clock and were trained for all of these speeds."""
 
     def groups(self, kind: str) -> list[str]:
-        """Groups of trainings that were run under a kind of protocol, in the order of their
-        names.
+        """List the groups of trainings that were run under a kind of protocol.
+
+        Args:
+            kind: of protocol.
+
+        Returns:
+            Names of the groups, in their order.
         """
         return list(
             dict.fromkeys(
@@ -63,7 +68,14 @@ class Evaluated:
         )
 
     def designs(self, group: str) -> list[str]:
-        """Designs of a group, the paper's two first."""
+        """List the designs of a group, the paper's two first.
+
+        Args:
+            group: of trainings.
+
+        Returns:
+            Names of the designs.
+        """
         names = dict.fromkeys(p.design for p in self.policies if p.group == group)
         return sorted(
             names,
@@ -71,25 +83,57 @@ class Evaluated:
         )
 
     def of(self, group: str, design: str, *, late: bool = True) -> list[Evaluation]:
-        """Evaluations of a group and design, by seed, the last policy of each training first."""
+        """Collect the evaluations of a group and design.
+
+        Args:
+            group: of trainings.
+            design: name of the design.
+            late: whether policies before the last of a training count, too.
+
+        Returns:
+            Evaluations by seed, the last policy of each training first.
+        """
         pairs = zip(self.policies, self.evaluations, strict=True)
         return [
             e for p, e in pairs if (p.group, p.design) == (group, design) and (late or p.late == 0)
         ]
 
     def shown(self, group: str, design: str) -> Trial | None:
-        """A trial of a group and design whose signals are there."""
+        """Find a trial of a group and design whose signals were kept.
+
+        Args:
+            group: of trainings.
+            design: name of the design.
+
+        Returns:
+            The trial; None where there is none.
+        """
         return next(
             (evaluation.trials[0] for evaluation in self.of(group, design) if evaluation.trials),
             None,
         )
 
     def seeds(self, group: str, design: str) -> list[int]:
-        """Trainings of a group and design."""
+        """List the trainings of a group and design.
+
+        Args:
+            group: of trainings.
+            design: name of the design.
+
+        Returns:
+            Their seeds.
+        """
         return sorted({p.seed for p in self.policies if (p.group, p.design) == (group, design)})
 
     def table(self, group: str) -> pd.DataFrame:
-        """One row a trial of a group; `variant` and `seed` as the trainings' folders say."""
+        """Tabulate all trials of a group.
+
+        Args:
+            group: of trainings.
+
+        Returns:
+            One row for each trial; `variant` and `seed` are those of the trainings' folders.
+        """
         chosen = [
             (p, e) for p, e in zip(self.policies, self.evaluations, strict=True) if p.group == group
         ]
@@ -198,13 +242,27 @@ def evaluate_shipped(
 
 
 def missing_trainings(policies: Sequence[Shipped]) -> list[str]:
-    """Names of the trainings of the shipped campaign that none of the policies comes from."""
+    """List the trainings of the shipped campaign that none of the policies comes from.
+
+    Args:
+        policies: that are there.
+
+    Returns:
+        Names of the trainings.
+    """
     there = {p.training for p in policies}
     return [run.name for run in load_campaign().runs if run.name not in there]
 
 
 def missing_text(names: Sequence[str]) -> str:
-    """Names of trainings by group and design, such as `walk toe (seed 0, 1)`."""
+    """Write names of trainings by group and design, such as `walk toe (seed 0, 1)`.
+
+    Args:
+        names: of the trainings.
+
+    Returns:
+        The text.
+    """
     seeds: dict[str, list[str]] = {}
     for name in names:
         training, seed = name.rsplit("-", 1)
@@ -232,7 +290,14 @@ def coverage(folder: str | Path | None = None) -> dict[str, list[str]]:
 
 
 def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:
-    """`coverage` as one sentence; empty where nothing is missing."""
+    """Write `coverage` as one sentence.
+
+    Args:
+        trainings: names of those evaluated and of those missing.
+
+    Returns:
+        The sentence; empty where nothing is missing.
+    """
     evaluated, missing = trainings["evaluated"], trainings["missing"]
     if not missing:
         return ""

@@ -26,11 +26,14 @@ _HIGHEST = {"cost_of_transport": 1.5}
 
 
 def learning_figure(policies: Sequence[Shipped]) -> Figure:
-    """What trainings were measured on over their policy steps, a row a group, a line a training,
-    coloured by design.
+    """Draw what trainings were measured on over their policy steps, with a row for each group and a
+    line for each training, coloured by design.
 
     Args:
         policies: of which each training is drawn once.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 

@@ -119,7 +119,17 @@ def evaluate_with_bar(
     progress: bool = True,
     **options: Any,
 ) -> Evaluated:
-    """`evaluate_shipped` with a progress bar."""
+    """Evaluate the shipped policies with a progress bar.
+
+    Args:
+        policies: folder of trainings; the shipped ones by default.
+        workers: processes.
+        progress: whether the bar is shown.
+        options: of `evaluate_shipped`.
+
+    Returns:
+        The policies with their trials.
+    """
     from tqdm import tqdm
 
     with tqdm(disable=not progress, desc="policies", unit="evaluation") as bar:
@@ -133,14 +143,28 @@ def evaluate_with_bar(
 
 
 def read_tables(out: str | Path) -> dict[str, list[dict[str, Any]]]:
-    """`tables.json` of a folder written by `run_paper`; empty where there was no policy."""
+    """Read the `tables.json` of a folder that `run_paper` wrote.
+
+    Args:
+        out: the folder.
+
+    Returns:
+        Rows by table; empty where there was no policy.
+    """
     path = Path(out) / TABLES
     tables: dict[str, list[dict[str, Any]]] = json.loads(path.read_text()) if path.is_file() else {}
     return tables
 
 
 def tables_text(tables: dict[str, list[dict[str, Any]]]) -> str:
-    """Lay out the content of `tables.json` as text for a terminal."""
+    """Write the content of `tables.json` as text for a terminal.
+
+    Args:
+        tables: rows by table.
+
+    Returns:
+        The text.
+    """
     if not tables:
         return "no policies of both of the paper's robots: no table to put beside the paper's"
     texts = []

@@ -39,11 +39,18 @@ _MARK = {DIFFERENT: "good", EQUIVALENT: "good"}
 
 
 def studies(evaluated: Evaluated, plan: AnalysisPlan) -> list[dict[str, str]]:
-    """Groups of trainings that are analysed together, by protocol: each group of walks that has
-    both arms, with the T-test that belongs to it.
+    """Find the groups of trainings that are analysed together, by protocol.
 
-    The T-test of a group is the one that was trained with a gait clock where the walk was, or
-    without where it was not; the first one where there is none of that kind.
+    These are each group of walks that has both arms, with the T-test that belongs to it: the one
+    that was trained with a gait clock where the walk was, or without where it was not, or the first
+    one where there is none of that kind.
+
+    Args:
+        evaluated: the policies with their trials.
+        plan: names the arms.
+
+    Returns:
+        Names of the groups by protocol, for each study.
     """
     both = {plan.active, plan.compared}
     runs = [g for g in evaluated.groups(T_TEST) if both <= set(evaluated.designs(g))]
@@ -57,7 +64,15 @@ def studies(evaluated: Evaluated, plan: AnalysisPlan) -> list[dict[str, str]]:
 def planned_rows(
     evaluated: Evaluated, plan: AnalysisPlan | None = None
 ) -> dict[str, list[PlannedRow]]:
-    """Rows of the plan of each of the `studies`, by the names of their groups."""
+    """Compute the rows of the plan for each of the `studies`.
+
+    Args:
+        evaluated: the policies with their trials.
+        plan: the shipped one by default.
+
+    Returns:
+        Rows by the names of the study's groups.
+    """
     plan = plan or load_plan()
     tables = {}
     for study in studies(evaluated, plan):
@@ -67,7 +82,15 @@ def planned_rows(
 
 
 def planned(evaluated: Evaluated, plan: AnalysisPlan | None = None) -> Part:
-    """Tables of the planned outcomes, a primary and a secondary one a study."""
+    """Tabulate the planned outcomes, with a primary and a secondary table for each study.
+
+    Args:
+        evaluated: the policies with their trials.
+        plan: the shipped one by default.
+
+    Returns:
+        A part of a page.
+    """
     plan = plan or load_plan()
     primary = ", ".join(outcome.name.replace("_", " ") for outcome in plan.primary)
     content: list[Any] = [
@@ -94,7 +117,14 @@ def planned(evaluated: Evaluated, plan: AnalysisPlan | None = None) -> Part:
 
 
 def row_numbers(row: PlannedRow) -> dict[str, Any]:
-    """A row as plain numbers and texts, None where there is none."""
+    """Write a row as plain numbers and texts.
+
+    Args:
+        row: of the plan.
+
+    Returns:
+        Values by name, None where there is none.
+    """
     keys = ("active", "compared", "change", "low", "high", "p_value", "corrected", "detectable")
     numbers = {key: getattr(row, key) for key in keys}
     return {

@@ -32,8 +32,15 @@ from hyperleg_design.report.walks.walk_figures import operating_points_figure
 
 
 def parts(evaluated: Evaluated, draw: Drawer) -> list[Part]:
-    """All parts that the policies that are there allow, in the order of a page; what is missing is
-    said in the first.
+    """Make all parts that the policies allow, in the order of a page; the first states what is
+    missing.
+
+    Args:
+        evaluated: the policies with their trials.
+        draw: draws figures into the page's folder.
+
+    Returns:
+        The parts.
     """
     list_of_parts = [_what(evaluated)]
     if planned_rows(evaluated):

@@ -20,6 +20,9 @@ def robustness_figure(points: Sequence[CurvePoint]) -> Figure:
 
     Args:
         points: of `robustness.curves`, at least one.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 

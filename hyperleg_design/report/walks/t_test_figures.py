@@ -28,12 +28,15 @@ _GREY, _COURSE = "#6b7280", "#1d2129"
 
 
 def t_test_figure(runs: Mapping[str, Sequence[Evaluation]], step: float) -> Figure:
-    """Layout of the course, the ways of all trials coloured by speed, a panel a design, and speed
-    over the way below.
+    """Draw the course, the ways of all trials coloured by speed with a panel for each design, and
+    the speed over the way below.
 
     Args:
         runs: evaluations under one T-test protocol by design.
         step: between places of a path [s].
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
     from matplotlib.collections import LineCollection
@@ -94,11 +97,14 @@ def t_test_figure(runs: Mapping[str, Sequence[Evaluation]], step: float) -> Figu
 
 
 def speeds(path: np.ndarray, step: float) -> np.ndarray:
-    """Speed at each place of a path, a moving mean over `SMOOTHING` [m/s], `(t, 2)` -> `(t,)`.
+    """Compute the speed at each place of a path, as a moving mean over `SMOOTHING`.
 
     Args:
-        path: places [m].
+        path: places at even times, `(t, 2)` [m].
         step: between them [s].
+
+    Returns:
+        The speeds [m/s], `(t,)`.
     """
     raw = np.linalg.norm(np.gradient(path, step, axis=0), axis=-1)
     width = min(len(raw), max(1, round(SMOOTHING / step)))

@@ -41,12 +41,16 @@ def stretch_means(
 
 
 def time_table(runs: Mapping[str, Sequence[Evaluation]], group: str, step: float) -> Any:
-    """A row a straight or turn: time and speeds of each design, and the paper's mean speed below.
+    """Tabulate time and speeds of each design on every straight and turn, with the paper's mean
+    speed below.
 
     Args:
         runs: evaluations by design.
         group: of trainings, for the caption.
         step: between two points of their paths [s].
+
+    Returns:
+        The table; a sentence where no trial arrived.
     """
     means = {design: stretch_means(some, step) for design, some in runs.items()}
     means = {design: some for design, some in means.items() if some}

@@ -25,11 +25,14 @@ CAUSE_COLOURS = ("#c8602a", "#8172b3", "#6b7280", "#1d2129")
 
 
 def change_figure(groups: Mapping[str, Sequence[PaperRow]]) -> Figure:
-    """Relative change with the toe against without, a panel a group: ours with interval, the
-    paper's beside it.
+    """Draw the relative change that the toe makes, with a panel for each group: ours with its
+    interval, and the paper's beside it.
 
     Args:
         groups: rows by the name of the group.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 
@@ -86,11 +89,14 @@ def change_figure(groups: Mapping[str, Sequence[PaperRow]]) -> Figure:
 
 
 def attribution_figure(shares: Mapping[str, Sequence[Share]]) -> Figure:
-    """What each step of the ladder adds when it takes away toe joint, torque or mass, relative to
-    the robot that still has it.
+    """Draw what each step of the ladder adds when it takes away toe joint, torque or mass, relative
+    to the robot that still has it.
 
     Args:
         shares: by the name of the measure, as `attribution.attribute` gives them.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 

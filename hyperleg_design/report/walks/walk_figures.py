@@ -30,14 +30,17 @@ _DOTS = 4000
 
 
 def cycle_power_figure(walks: Mapping[str, Sequence[Evaluation]]) -> Figure:
-    """Power of the right leg over the normalised gait cycle: mechanical power of each joint group
-    above, Joule heat and total below.
+    """Draw the power of the right leg over the normalised gait cycle: mechanical power of each
+    joint group above, Joule heat and total below.
 
-    Lines are means over policies of their mean strides; bands span the policies' mean strides, or,
-    where there is one policy, one standard deviation over its strides.
+    Lines are means over policies of their mean strides. Bands span the policies' mean strides, or
+    one standard deviation over the strides where there is one policy.
 
     Args:
         walks: evaluations by design; those without a steady stride are passed over.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 
@@ -113,12 +116,15 @@ def _band(axes: Axes, policies: Sequence[np.ndarray], colour: str, label: str) -
 def impact_band_figure(
     band: Mapping[str, Mapping[float, Sequence[Evaluation]]], stiffness: Mapping[float, float]
 ) -> Figure:
-    """Impact measures over the stiffness of the pad, by design, with 95 % intervals where there are
-    several seeds.
+    """Draw impact measures over the stiffness of the pad, by design, with 95 % intervals where
+    there are several seeds.
 
     Args:
         band: evaluations by design and time constant of the contact [s].
         stiffness: of the pad under one heel that each time constant stands for [N/m].
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 
@@ -171,10 +177,14 @@ def impact_band_figure(
 
 
 def operating_points_figure(trials: Mapping[str, Trial]) -> Figure:
-    """Torque against speed of every motor, both legs, with its envelope; one colour a design.
+    """Draw torque against speed of every motor of both legs, with its envelope and one colour for
+    each design.
 
     Args:
         trials: one by design; the toe's motor is drawn where one has it.
+
+    Returns:
+        The figure.
     """
     import matplotlib.pyplot as plt
 
