@@ -15,6 +15,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.bearing import headings
 from hyperleg_design.evaluation.course import in_start_frame
+from hyperleg_design.evaluation.measures import OUTCOMES
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, policy_name
 from hyperleg_design.evaluation.protocol import protocol_mapping
 from hyperleg_design.evaluation.rollout import ARRIVED
@@ -417,6 +418,17 @@ def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
         InputError: no such column.
     """
     return [np.concatenate(seed) for seed in by_checkpoint(table, measure).values()]
+
+
+def counted(table: pd.DataFrame, measure: str) -> pd.Series:
+    """A measure of the rows of a trial table as it counts in means over trials: NaN for trials that
+    fell, except for how trials ended.
+
+    A fall turns height into motion, so the cost of transport of a trial that fell may even be
+    negative; falls are counted beside the means.
+    """
+    values = table[measure]
+    return values if measure in OUTCOMES else values.where(~(table["fell"] > 0))
 
 
 def by_checkpoint(table: pd.DataFrame, measure: str) -> dict[str, list[np.ndarray]]:

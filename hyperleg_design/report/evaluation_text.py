@@ -6,24 +6,19 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.evaluation.measures import OUTCOMES, T_TEST, WALK
-from hyperleg_design.evaluation.result import by_checkpoint, trial_table
+from hyperleg_design.evaluation.measures import OUTCOMES, measure_of
+from hyperleg_design.evaluation.result import by_checkpoint, counted, trial_table
 from hyperleg_design.evaluation.statistics import Estimate, estimate, share
 from hyperleg_design.report.text import table
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
 
-UNITS = {
-    name: measure.unit
-    for table_of in (OUTCOMES, WALK, T_TEST)
-    for name, measure in table_of.items()
-}
-"""Unit of each measure."""
-
 
 def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
     """Summarise evaluations: the mean of every measure, with its interval over seeds and trials.
+
+    Means are over the trials that did not fall, but for how trials ended; see `counted`.
 
     Args:
         evaluations: trials of one or more policies, with the same measures.
@@ -32,7 +27,7 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
         One row for each protocol, variant, design and measure, with `variant`, `design`,
         `trained` (see `TrainingFit`), `protocol`, `measure`, `unit` (empty for a number without
         unit), `mean`, `low` and `high` (None where there is no interval), `seeds`, `trials`, and
-        `missing`, the number of trials without a value.
+        `missing`, the number of trials without a value, those that fell among them.
     """
     trials = trial_table(evaluations)
     rows = []
@@ -42,7 +37,11 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
             if measure not in part:
                 continue
             interval = (share if measure in OUTCOMES else estimate)(
-                list(by_checkpoint(part, measure).values())
+                list(
+                    by_checkpoint(
+                        part.assign(**{measure: counted(part, measure)}), measure
+                    ).values()
+                )
             )
             rows.append(
                 {
@@ -51,7 +50,7 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
                     "trained": str(trained),
                     "protocol": str(protocol),
                     "measure": measure,
-                    "unit": UNITS.get(measure, ""),
+                    "unit": measure_of(measure).unit,
                     **_plain(interval),
                 }
             )

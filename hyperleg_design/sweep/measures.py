@@ -15,11 +15,12 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.reading import summary_line
-from hyperleg_design.robot import consistency, dimensions, masses, transmission
+from hyperleg_design.robot import consistency, dimensions, masses, transmission, tree_limb
 from hyperleg_design.robot.bodies import Inertial
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.inertials import inertials
+from hyperleg_design.robot.load import FAMILIES
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.robot.tree_design import TreeDesign
@@ -29,8 +30,10 @@ from hyperleg_design.sizing.inertia import LegInertia, leg_inertia
 from hyperleg_design.sweep import reference_loads
 from hyperleg_design.sweep.reference_loads import StaticLoad
 
-BELOW_HIP = JOINTS[3:]
-"""Joints that share motors."""
+HYPERLEG, TREE = FAMILIES
+BOTH = FAMILIES
+"""Families of the measures that every design has."""
+SEGMENTS = ("pelvis", "thigh", "shank", "foot", "toe")
 
 PUSH_OFF_DIRECTION = {"knee": -1.0, "ankle_pitch": 1.0}
 """Joint speeds of `push_off_power` over each other: knee extension and plantar flexion alike, the
@@ -105,8 +108,12 @@ class Measure:
     """Suffixes of its columns; empty for one column named after it."""
     doc: str
     compute: Callable[[Batch], np.ndarray]
-    trees: bool = False
-    """Whether a design that writes its tree out has it; its parts are then that design's joints."""
+    families: tuple[str, ...] = (HYPERLEG,)
+    """Families of the designs that have it."""
+    usual: bool = True
+    """Whether a sweep that does not say which measures it wants computes it."""
+    parts_of: Callable[[Any], Iterable[str]] = transmission.joint_names
+    """Parts of a design that writes its tree out: its joints by default."""
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -123,7 +130,7 @@ class Measure:
             One name for each part, or one for the whole robot.
         """
         tree = self.parts and isinstance(design, TreeDesign)
-        parts = transmission.joint_names(design) if tree and design else self.parts
+        parts = self.parts_of(design) if tree else self.parts
         return tuple(f"{self.name}.{part}" for part in parts) or (self.name,)
 
 
@@ -132,16 +139,26 @@ MEASURES: dict[str, Measure] = {}
 
 
 def measure(
-    unit: str, better: str, parts: tuple[str, ...] = (), *, trees: bool = False
+    unit: str,
+    better: str,
+    parts: tuple[str, ...] = (),
+    *,
+    families: tuple[str, ...] = (HYPERLEG,),
+    usual: bool = True,
+    name: str = "",
+    parts_of: Callable[[Any], Iterable[str]] = transmission.joint_names,
 ) -> Callable[[Callable[[Batch], np.ndarray]], Callable[[Batch], np.ndarray]]:
-    """Register a function as the measure of its name; its docstring is the measure's.
+    """Register a function as a measure; its docstring is the measure's.
 
     Args:
         unit: of the values; empty without one.
         better: `low` or `high`, the direction that is better.
         parts: joints or motors that the measure has a value for each of; empty for one value a
             design.
-        trees: whether designs that describe their own tree have the measure, too.
+        families: of the designs that have the measure.
+        usual: whether sweeps that do not list their measures compute it.
+        name: of the measure; that of the function by default.
+        parts_of: gives the parts of a design that describes its own tree; its joints by default.
 
     Returns:
         A decorator, which returns the function unchanged.
@@ -151,12 +168,14 @@ def measure(
     """
 
     def register(function: Callable[[Batch], np.ndarray]) -> Callable[[Batch], np.ndarray]:
-        name = function.__name__
-        if name in MEASURES or better not in ("low", "high") or not summary_line(function):
+        title, doc = name or function.__name__, summary_line(function)
+        if title in MEASURES or better not in ("low", "high") or not doc:
             raise ValueError(
-                f"measure {name} is there already, or lacks a docstring or a direction"
+                f"measure {title} is there already, or lacks a docstring or a direction"
             )
-        MEASURES[name] = Measure(name, unit, better, parts, summary_line(function), function, trees)
+        MEASURES[title] = Measure(
+            title, unit, better, parts, doc, function, families, usual, parts_of
+        )
         return function
 
     return register
@@ -184,8 +203,8 @@ def measures_of(design: RobotDesign) -> tuple[str, ...]:
     Returns:
         Names of the measures.
     """
-    tree = isinstance(design, TreeDesign)
-    return tuple(name for name, entry in MEASURES.items() if entry.trees or not tree)
+    family = TREE if isinstance(design, TreeDesign) else HYPERLEG
+    return tuple(name for name, entry in MEASURES.items() if family in entry.families)
 
 
 def measure_of(column: str) -> Measure:
@@ -196,8 +215,18 @@ def measure_of(column: str) -> Measure:
 
     Returns:
         The measure.
+
+    Raises:
+        KeyError: no such column.
     """
-    return MEASURES[column.split(".")[0]]
+    if column in MEASURES:
+        return MEASURES[column]
+    parts = column.split(".")
+    for end in range(len(parts) - 1, 0, -1):
+        entry = MEASURES.get(".".join(parts[:end]))
+        if entry is not None and entry.parts:
+            return entry
+    raise KeyError(column)
 
 
 def label(column: str) -> str:
@@ -219,7 +248,7 @@ def evaluate(design: RobotDesign, names: Iterable[str] | None = None) -> dict[st
 
     Args:
         design: a robot or batch.
-        names: of `MEASURES`; all by default.
+        names: of `MEASURES`; all that the design has by default.
 
     Returns:
         By column, `(n,)` each (`(1,)` for one robot).
@@ -243,13 +272,13 @@ def evaluate(design: RobotDesign, names: Iterable[str] | None = None) -> dict[st
     return columns
 
 
-@measure("kg", "low", trees=True)
+@measure("kg", "low", families=BOTH)
 def total_mass(batch: Batch) -> np.ndarray:
     """Mass of the whole robot."""
     return np.asarray(dimensions.total_mass(batch.design))
 
 
-@measure("kg", "low", trees=True)
+@measure("kg", "low", families=BOTH)
 def leg_mass(batch: Batch) -> np.ndarray:
     """Mass of a single leg."""
     return np.asarray(dimensions.limb_mass(batch.design))
@@ -265,6 +294,49 @@ def leg_length(batch: Batch) -> np.ndarray:
 def height(batch: Batch) -> np.ndarray:
     """Height of the robot from the sole to the top of the pelvis, legs straight."""
     return consistency.leg_length(batch.design) + batch.design.pelvis.height
+
+
+@measure("kg", "low", SEGMENTS, usual=False)
+def segment_mass(batch: Batch) -> np.ndarray:
+    """Mass of the pelvis, and of each segment of one leg."""
+    return _stacked([getattr(batch.masses, segment) for segment in SEGMENTS], batch.size)
+
+
+@measure("kg", "low", families=(TREE,), usual=False)
+def limb_mass(batch: Batch) -> np.ndarray:
+    """Mass of a single limb."""
+    return np.asarray(dimensions.limb_mass(batch.design))
+
+
+@measure("m", "low", families=(TREE,), usual=False)
+def standing_height(batch: Batch) -> np.ndarray:
+    """Height of the base over the floor in the default posture."""
+    return np.asarray(dimensions.standing_height(batch.design))
+
+
+def _links(design: Any) -> tuple[str, ...]:
+    return tuple(tree_limb.limb_masses(design).links)
+
+
+@measure("kg", "low", ("LINK",), families=(TREE,), usual=False, parts_of=_links)
+def link_mass(batch: Batch) -> np.ndarray:
+    """Mass of each link of one limb."""
+    links = tree_limb.limb_masses(batch.design).links.values()
+    return _stacked([body.mass for body in links], batch.size)
+
+
+@measure("kg m^2", "low", ("JOINT",), families=(TREE,), usual=False)
+def link_inertia(batch: Batch) -> np.ndarray:
+    """Inertia about each joint of what is behind it in the default posture, without rotors."""
+    default = tree_limb.default_position(batch.design)
+    joints = transmission.joint_names(batch.design)
+    behind = [tree_limb.behind(batch.design, joint, default)[2] for joint in joints]
+    return _stacked(behind, batch.size)
+
+
+def _stacked(values: list[Any], size: int) -> np.ndarray:
+    """One column a value, `(n, columns)`."""
+    return np.stack([np.broadcast_to(np.asarray(v, float), (size,)) for v in values], -1)
 
 
 @measure("", "low")
@@ -287,7 +359,7 @@ def gyration_over_length(batch: Batch) -> np.ndarray:
     return batch.leg.gyration_over_length
 
 
-@measure("kg", "low", trees=True)
+@measure("kg", "low", families=BOTH)
 def actuator_mass(batch: Batch) -> np.ndarray:
     """Motors and gears of one leg."""
     return sum(
@@ -299,7 +371,7 @@ def actuator_mass(batch: Batch) -> np.ndarray:
     )
 
 
-@measure("Nm", "high", JOINTS, trees=True)
+@measure("Nm", "high", JOINTS, families=BOTH)
 def max_joint_torque(batch: Batch) -> np.ndarray:
     """Largest torque of each joint whatever the others do, standing, derated, as Table I of the
     paper.
@@ -307,31 +379,29 @@ def max_joint_torque(batch: Batch) -> np.ndarray:
     return transmission.max_joint_torque(batch.design, "standing")
 
 
-@measure("Nm", "high", BELOW_HIP, trees=True)
+@measure("Nm", "high", JOINTS, families=BOTH)
 def torque_alone(batch: Batch) -> np.ndarray:
-    """Largest torque of each joint below the hip while the others there have none, walking, at
-    standstill, not derated.
+    """Largest torque of each joint while the others have none, walking, at standstill, not
+    derated.
     """
-    matrix, peak = batch.below_hip()
-    return np.stack(
-        [zonotope.alone(matrix, -peak, peak, joint) for joint in range(matrix.shape[-2])], -1
-    )
+    matrix, peak = batch.walking, batch.envelope.peak_torque
+    return np.stack([zonotope.alone(matrix, -peak, peak, j) for j in range(matrix.shape[-2])], -1)
 
 
-@measure("Nm", "low", JOINTS, trees=True)
+@measure("Nm", "low", JOINTS, families=BOTH)
 def coulomb_friction(batch: Batch) -> np.ndarray:
     """Coulomb friction of each joint by the design's law of friction."""
     moving = len(transmission.joint_names(batch.design))
     return joint_friction(batch.design)[0][..., :moving]
 
 
-@measure("rad/s", "high", JOINTS, trees=True)
+@measure("rad/s", "high", JOINTS, families=BOTH)
 def single_joint_speed(batch: Batch) -> np.ndarray:
     """No-load speed of each joint while the others stand still, walking."""
     return transmission.single_joint_speed(batch.design, "walking")
 
 
-@measure("Nm", "high", trees=True)
+@measure("Nm", "high", families=BOTH)
 def zonotope_size(batch: Batch) -> np.ndarray:
     """Edge of the cube whose volume is that of the torques which the joints below the hip can have
     together, walking.
@@ -340,7 +410,7 @@ def zonotope_size(batch: Batch) -> np.ndarray:
     return zonotope.volume(matrix, -peak, peak) ** (1.0 / matrix.shape[-2])
 
 
-@measure("", "high", trees=True)
+@measure("", "high", families=BOTH)
 def zonotope_to_box_volume(batch: Batch) -> np.ndarray:
     """Share of the box of single-joint maxima that the joints below the hip can reach together,
     walking.
@@ -349,13 +419,13 @@ def zonotope_to_box_volume(batch: Batch) -> np.ndarray:
     return zonotope.zonotope_to_box_volume(matrix, -peak, peak)
 
 
-@measure("kg m^2", "low", JOINTS, trees=True)
+@measure("kg m^2", "low", JOINTS, families=BOTH)
 def reflected_inertia(batch: Batch) -> np.ndarray:
     """Rotor inertia at each joint, the diagonal of M diag(J) M^T, walking."""
     return np.diagonal(leg_reflected_inertia(batch.design, "walking"), axis1=-2, axis2=-1)
 
 
-@measure("kg m^2", "low", trees=True)
+@measure("kg m^2", "low", families=BOTH)
 def reflected_inertia_norm(batch: Batch) -> np.ndarray:
     """Rotor inertia of the joints below the hip in its worst direction, the spectral norm of M
     diag(J) M^T, walking.
@@ -367,6 +437,36 @@ def reflected_inertia_norm(batch: Batch) -> np.ndarray:
 def _holding_heat(batch: Batch, load: StaticLoad) -> np.ndarray:
     tau = transmission.motor_torque(batch.walking, load.torque, batch.envelope.power_constant)
     return np.sum(batch.envelope.power_constant * tau**2, -1)
+
+
+@measure("Nm", "high", JOINTS, usual=False, name="joint_limits.max_torque")
+def joint_limits_max_torque(batch: Batch) -> np.ndarray:
+    """Largest torque of each joint whatever the others do, walking, at standstill, not derated."""
+    return transmission.joint_torque(np.abs(batch.walking), batch.envelope.peak_torque)
+
+
+@measure("Nm", "high", JOINTS, usual=False, name="joint_limits.torque_alone")
+def joint_limits_torque_alone(batch: Batch) -> np.ndarray:
+    """Largest torque of each joint while the others have none, walking, at standstill, not
+    derated; the same as `torque_alone`.
+    """
+    return torque_alone(batch)
+
+
+@measure("rad/s", "high", JOINTS, usual=False, name="joint_limits.speed")
+def joint_limits_speed(batch: Batch) -> np.ndarray:
+    """No-load speed of each joint while the others stand still, walking; the same as
+    `single_joint_speed`.
+    """
+    return single_joint_speed(batch)
+
+
+@measure("kg m^2", "low", JOINTS, usual=False, name="joint_limits.reflected_inertia")
+def joint_limits_reflected_inertia(batch: Batch) -> np.ndarray:
+    """Rotor inertia at each joint, the diagonal of M diag(J) M^T, walking; the same as
+    `reflected_inertia`.
+    """
+    return reflected_inertia(batch)
 
 
 @measure("W", "low")

@@ -7,6 +7,7 @@ enough where only one of the protocols at hand has it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -18,6 +19,8 @@ from hyperleg_design.sweep import measures as sizing
 
 PROTOCOLS = {"walk": trial_measures.WALK, "t_test": trial_measures.T_TEST}
 """Measures of trials by protocol."""
+_WAYPOINT = re.compile(r"waypoint_[1-9]\d*")
+"""Measures that a T-test has for each waypoint of its course."""
 _BETTER = {trial_measures.LESS: "low", trial_measures.MORE: "high", trial_measures.NEITHER: ""}
 
 
@@ -55,6 +58,48 @@ def entries() -> dict[str, Entry]:
     return known
 
 
+def entry(name: str) -> Entry:
+    """Look up a measure by its full name.
+
+    Joints of a design that writes its tree out and arrivals at waypoints, which only some designs
+    and protocols have, are among them.
+
+    Args:
+        name: full, such as `walk.cost_of_transport`.
+
+    Returns:
+        The entry of the registry.
+
+    Raises:
+        KeyError: no such measure.
+    """
+    known = entries()
+    if name in known:
+        return known[name]
+    protocol, _, rest = name.partition(".")
+    if is_waypoint(protocol, rest):
+        arrival = trial_measures.measure_of(rest)
+        return Entry(name, arrival.unit, _BETTER[arrival.better], arrival.meaning, protocol)
+    measure = sizing.measure_of(name)
+    if sizing.TREE not in measure.families:
+        raise KeyError(name)
+    return Entry(name, measure.unit, measure.better, measure.doc)
+
+
+def is_waypoint(protocol: str, name: str) -> bool:
+    """Whether a measure of a trial is the time of arrival at a waypoint of a protocol's course."""
+    return protocol == "t_test" and bool(_WAYPOINT.fullmatch(name))
+
+
+def is_measure(name: str) -> bool:
+    """Whether a full name is that of a measure; see `entry`."""
+    try:
+        entry(name)
+    except KeyError:
+        return False
+    return True
+
+
 def resolve(name: str, protocols: Sequence[str] = (), where: str = "measures") -> Entry:
     """Find a measure by its full name or by its name in a trial.
 
@@ -69,22 +114,20 @@ def resolve(name: str, protocols: Sequence[str] = (), where: str = "measures") -
     Raises:
         InputError: no such measure, one of a protocol that is not run, or one of several.
     """
-    known = entries()
-    if name in known and not known[name].protocol:
-        return known[name]
-    if name in known:
-        if known[name].protocol not in protocols:
+    if is_measure(name):
+        match = entry(name)
+        if match.protocol and match.protocol not in protocols:
             raise InputError(
-                where, "", name, f"needs that {known[name].protocol} is evaluated (--evaluate)"
+                where, "", name, f"needs that {match.protocol} is evaluated (--evaluate)"
             )
-        return known[name]
-    at_hand = [p for p in protocols if f"{p}.{name}" in known]
+        return match
+    at_hand = [p for p in protocols if is_measure(f"{p}.{name}")]
     if len(at_hand) == 1:
-        return known[f"{at_hand[0]}.{name}"]
+        return entry(f"{at_hand[0]}.{name}")
     if at_hand:
         full = " or ".join(f"{p}.{name}" for p in at_hand)
         raise InputError(where, "", name, f"is measured by several protocols; give {full}")
-    having = [p for p in PROTOCOLS if f"{p}.{name}" in known]
+    having = [p for p in PROTOCOLS if is_measure(f"{p}.{name}")]
     if having:
         raise InputError(
             where, "", name, f"needs that {' or '.join(having)} is evaluated (--evaluate)"
@@ -93,7 +136,7 @@ def resolve(name: str, protocols: Sequence[str] = (), where: str = "measures") -
         where,
         "",
         name,
-        parameters.unknown(name, sorted(known)).replace("such field", "such measure")
+        parameters.unknown(name, sorted(entries())).replace("such field", "such measure")
         + "; hyperleg list measures shows all",
     )
 
@@ -107,6 +150,6 @@ def label(name: str) -> str:
     Returns:
         The text.
     """
-    entry = entries()[name]
+    unit = entry(name).unit
     text = name.replace("_", " ").replace(".", ", ")
-    return f"{text} [{entry.unit.replace('^2', '²')}]" if entry.unit else text
+    return f"{text} [{unit.replace('^2', '²')}]" if unit else text

@@ -9,6 +9,7 @@ was killed, and `optuna-dashboard` shows it while it runs.
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import json
 import re
@@ -28,7 +29,7 @@ from hyperleg_design.evaluation.protocol import protocol_mapping
 from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.evaluate import evaluate_samples
 from hyperleg_design.sweep.jobs import completed
-from hyperleg_design.sweep.space import Sweep
+from hyperleg_design.sweep.space import Sweep, with_columns
 from hyperleg_design.sweep.trial_runs import BATCH, Plan, evaluate_values, kind_of
 from hyperleg_design.sweep.trial_table import design_table
 
@@ -110,7 +111,7 @@ class Search:
     @property
     def directions(self) -> list[str]:
         """`minimize` or `maximize` for each objective."""
-        better = [registry.entries()[name].better for name in self.objectives]
+        better = [registry.entry(name).better for name in self.objectives]
         return ["maximize" if b == "high" else "minimize" for b in better]
 
     def digest(self) -> str:
@@ -147,7 +148,16 @@ def search_of(
     if not chosen or len(set(chosen)) < len(chosen):
         raise InputError("search", "objectives", list(names), "expects different measures")
     bounds = tuple(read_constraint(text, protocols) for text in constraints)
-    return Search(sweep, plan, chosen, bounds or usual_constraints(protocols))
+    bounds = bounds or usual_constraints(protocols)
+    named = [*chosen, *(bound.name for bound in bounds)]
+    needed = with_columns(sweep.measures, named, sweep.base)
+    space = dataclasses.replace(sweep, measures=needed)
+    at_hand = measures.columns(needed, sweep.base)
+    for name in named:
+        if not registry.entry(name).protocol and name not in at_hand:
+            remedy = f"is no measure of {sweep.base.name}; hyperleg list measures shows all"
+            raise InputError("search", "", name, remedy)
+    return Search(space, plan, chosen, bounds)
 
 
 @contextmanager

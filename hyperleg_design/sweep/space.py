@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -48,6 +48,7 @@ SAMPLINGS = ("grid", "random", "sobol", "latin_hypercube")
 MAX_DESIGNS = 10_000_000
 """Above this a definition is taken for a mistake."""
 
+_NOT_AMONG = "is not among the sweep's measures; add it there"
 _KEYS = (
     "name",
     "description",
@@ -268,11 +269,14 @@ def sweep_from_mapping(
             remedy = f"only {PASSIVE} has a spring at the toe; expects variants: [{PASSIVE}]"
             raise InputError(where, f"axes.{axis.name}", list(variants), remedy)
     chosen = _measures(data.get("measures"), base, where)
+    if "measures" not in data:
+        chosen = _with_named(data, chosen, base)
     evaluated = _evaluated(data.get("evaluate", []), where)
     if evaluated:
         walker(base, f"{where}: evaluate")
-    objectives = _columns(data.get("objectives", []), chosen, evaluated, where, "objectives")
-    maps = _maps(data.get("maps", []), axes, chosen, evaluated, where)
+    available = measures.columns(chosen, base)
+    objectives = _columns(data.get("objectives", []), available, evaluated, where, "objectives")
+    maps = _maps(data.get("maps", []), axes, available, evaluated, where)
     return Sweep(
         name=str(data.get("name", name)),
         description=str(data.get("description", "")).strip(),
@@ -407,7 +411,8 @@ def _whole(value: Any, low: int, high: int, where: str, field: str) -> int:
 
 def _measures(value: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
     known = list(measures.measures_of(base))
-    chosen = known if value is None else value
+    usual = [name for name in known if measures.MEASURES[name].usual]
+    chosen = usual if value is None else value
     if not isinstance(chosen, list) or not chosen:
         raise InputError(where, "measures", chosen, f"expects a list of some of {', '.join(known)}")
     for name in chosen:
@@ -421,6 +426,38 @@ def _measures(value: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
     return tuple(name for name in known if name in chosen)
 
 
+def _with_named(
+    data: Mapping[str, Any], chosen: tuple[str, ...], base: RobotDesign
+) -> tuple[str, ...]:
+    """The measures of a sweep that does not list them, with those that its objectives and maps
+    name.
+    """
+    maps, objectives = data.get("maps"), data.get("objectives")
+    named = list(objectives) if isinstance(objectives, list) else []
+    named += [m.get("measure") for m in maps or () if isinstance(m, Mapping)]
+    return with_columns(chosen, [str(name) for name in named], base)
+
+
+def with_columns(
+    chosen: tuple[str, ...], columns: Iterable[str], base: RobotDesign
+) -> tuple[str, ...]:
+    """Measures together with those that some columns belong to, in the order of `measures_of`.
+
+    Args:
+        chosen: names of measures.
+        columns: names of columns, such as `max_joint_torque.knee`; those that no measure of the
+            design has are left out.
+        base: the design.
+    """
+    wanted = set(columns)
+    known = measures.measures_of(base)
+    return tuple(
+        name
+        for name in known
+        if name in chosen or wanted & set(measures.MEASURES[name].columns_of(base))
+    )
+
+
 def _evaluated(value: Any, where: str) -> tuple[str, ...]:
     known = list(registry.PROTOCOLS)
     if not isinstance(value, list) or any(name not in known for name in value):
@@ -429,20 +466,27 @@ def _evaluated(value: Any, where: str) -> tuple[str, ...]:
 
 
 def _of_trials(name: str) -> bool:
-    return bool(registry.entries()[name].protocol)
+    return bool(registry.entry(name).protocol)
 
 
 def _columns(
-    value: Any, chosen: tuple[str, ...], evaluated: tuple[str, ...], where: str, field: str
+    value: Any,
+    available: tuple[str, ...],
+    evaluated: tuple[str, ...],
+    where: str,
+    field: str,
 ) -> tuple[str, ...]:
     """Full names of measures that the sweep computes, or that its trials give."""
     if not isinstance(value, list):
         raise InputError(where, field, value, "expects a list of measures")
-    names, columns = [], measures.columns(chosen)
+    names = []
     for name in value:
         entry = registry.resolve(str(name), evaluated, f"{where}: {field}")
-        if not entry.protocol and entry.name not in columns:
-            raise InputError(where, field, name, "is not among the sweep's measures; add it there")
+        if not entry.protocol and entry.name not in available:
+            measure = measures.measure_of(entry.name).name
+            own = [c for c in available if c.startswith(f"{measure}.")]
+            remedy = f"expects one of {', '.join(own)}" if own else _NOT_AMONG
+            raise InputError(where, field, name, remedy)
         names.append(entry.name)
     return tuple(names)
 
@@ -450,7 +494,7 @@ def _columns(
 def _maps(
     value: Any,
     axes: tuple[Axis, ...],
-    chosen: tuple[str, ...],
+    available: tuple[str, ...],
     evaluated: tuple[str, ...],
     where: str,
 ) -> tuple[Map, ...]:
@@ -473,6 +517,6 @@ def _maps(
                     entry[key],
                     f"expects different ones of the numeric axes {', '.join(known)}",
                 )
-        (measure,) = _columns([entry["measure"]], chosen, evaluated, where, "maps.measure")
+        (measure,) = _columns([entry["measure"]], available, evaluated, where, "maps.measure")
         maps.append(Map(entry["x"], entry.get("y", ""), measure))
     return tuple(maps)

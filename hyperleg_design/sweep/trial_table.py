@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.evaluation.measures import OUTCOMES
+from hyperleg_design.evaluation.result import counted
 from hyperleg_design.evaluation.statistics import estimate, share
 from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.pareto import nondominated
@@ -94,12 +95,10 @@ def _of_protocol(protocol: str, part: pd.DataFrame) -> dict[str, Any]:
         return {"reason": str(part["reason"].iloc[0]), "trials": 0}
     row: dict[str, Any] = {"trials": len(part), "reason": ""}
     known = registry.PROTOCOLS[protocol]
-    walked = part.where(~(part["fell"] > 0))
-    for name in known:
+    for name in (*known, *(c for c in map(str, part) if registry.is_waypoint(protocol, c))):
         if name not in part:
             continue
-        rows = part if name in OUTCOMES else walked
-        groups = [own.to_numpy(float) for _, own in rows[name].groupby(part["seed"])]
+        groups = [own.to_numpy(float) for _, own in counted(part, name).groupby(part["seed"])]
         if name in SHOWN[protocol]:
             function = share if name in OUTCOMES else estimate
             interval = function(groups, resamples=_RESAMPLES)
@@ -223,7 +222,7 @@ def front(designs: pd.DataFrame, objectives: Sequence[str], seed: int = 0) -> pd
     """
     import pandas as pd
 
-    better = [registry.entries()[name].better or "low" for name in objectives]
+    better = [registry.entry(name).better or "low" for name in objectives]
     parts = []
     for _, part in designs.groupby("variant", sort=False):
         own = part[walks(part)].copy()
@@ -274,7 +273,7 @@ def best(designs: pd.DataFrame, objectives: Sequence[str], count: int = 5) -> pd
     good = designs[walks(designs)]
     parts = []
     for name in objectives:
-        ascending = registry.entries()[name].better != "high"
+        ascending = registry.entry(name).better != "high"
         own = good[np.isfinite(good[name].astype(float))].sort_values(
             name, ascending=ascending, kind="stable"
         )

@@ -51,7 +51,7 @@ def test_ranges_are_of_the_table(result):
     missing = set(result.summary["range"]["toe"]) - set(
         result.summary["range"]["toe_removed_matched"]
     )
-    assert missing == {c for c in measures.columns(measures.MEASURES) if c.endswith(".toe")}
+    assert missing == {c for c in measures.columns(result.sweep.measures) if c.endswith(".toe")}
 
 
 def test_fronts_are_those_of_each_variant(result):

@@ -49,7 +49,7 @@ def test_columns_carry_units_and_other_tools_read_them(tmp_path, parts):
     table.join(SWEEP, parts, path, {"seed": 1})
     schema = pq.read_schema(path)
     assert json.loads(schema.metadata[b"hyperleg_sweep"]) == {"seed": 1}
-    for column in measures.columns(measures.MEASURES):
+    for column in measures.columns(SWEEP.measures):
         assert schema.field(column).metadata[b"unit"].decode() == measures.measure_of(column).unit
     assert schema.field("toe.mass").metadata[b"unit"] == b"kg"
     frame = pd.read_parquet(path)

@@ -345,13 +345,13 @@ def compare_text(measures: dict[str, Any]) -> str:
 
 def _unit(key: str) -> str:
     """Unit of a row of the comparison; `-` for a number without unit, empty for a text."""
-    from hyperleg_design.report.evaluation_text import UNITS as OF_TRIALS
+    from hyperleg_design.evaluation.measures import measure_of
 
     group, *path = key.split(".")
     if group == "variant" or path[-1:] == ["policy"]:
         return ""
     if group.startswith("evaluated "):
-        return OF_TRIALS.get(path[0], "") or "-"
+        return measure_of(path[0]).unit or "-"
     return UNITS.get(group) or UNITS.get(key) or "-"
 
 
