@@ -68,7 +68,14 @@ class Check:
             raise InputError(self.name, finding.signal, None, f"{finding.what}; {finding.remedy}")
 
     def with_findings(self, findings: Sequence[Finding]) -> Check:
-        """The same with further findings, in the order of their severity."""
+        """Copy the check with further findings, in the order of their severity.
+
+        Args:
+            findings: to be added.
+
+        Returns:
+            The copy.
+        """
         every = sorted([*self.findings, *findings], key=lambda f: SEVERITIES.index(f.severity))
         return dataclasses.replace(self, findings=tuple(every))
 
@@ -78,7 +85,14 @@ class Check:
         return tuple(e.effect for e in self.excitation if e.shown)
 
     def column(self, name: str) -> Column:
-        """Facts of one column."""
+        """Look up the facts of one column.
+
+        Args:
+            name: of the column.
+
+        Returns:
+            The facts.
+        """
         return next(c for c in self.columns if c.column == name)
 
     def mapping(self) -> dict[str, Any]:
@@ -92,12 +106,15 @@ class Check:
 
 
 def check_log(log: Log, subject: Subject | None = None) -> Check:
-    """Look a log through.
+    """Check one log.
 
     Args:
         log: what was read.
         subject: the robot it is said to be of; without it names and ranges of joints are not
             compared.
+
+    Returns:
+        Sampling, columns, findings, and what the log can show.
     """
     sampling, columns = sampling_of(log.time), columns_of(log)
     refused = unusable(log, subject)

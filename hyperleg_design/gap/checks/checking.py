@@ -34,6 +34,9 @@ def check_sources(
         out: folder for `check.json` and every log as Parquet, beside those written before; nothing
             is written by default.
 
+    Returns:
+        One check for each log.
+
     Raises:
         InputError: no source, one that cannot be opened, or a robot that cannot be read.
         OutputError: the folder cannot be written.

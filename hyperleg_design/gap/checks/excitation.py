@@ -22,15 +22,30 @@ SEGMENT = 16384
 
 
 def excitation_of(log: Log, subject: Subject | None = None) -> tuple[Excitation, ...]:
-    """What a log can say of each effect; with a coupled robot, motors count for all joints they
-    move.
+    """Find out what a log can show of each effect; with a coupled robot, motors count for all
+    joints that they move.
+
+    Args:
+        log: the log.
+        subject: the robot; without it the log alone counts.
+
+    Returns:
+        One entry for each effect of the catalogue.
     """
     motion = motion_of(log, subject)
     return tuple(effect.excited(log, motion) for effect in EFFECTS.values())
 
 
 def motion_of(log: Log, subject: Subject | None) -> Motion:
-    """Facts of each joint of a log by which effects know whether it shows them."""
+    """Collect the facts of each joint by which effects know whether a log shows them.
+
+    Args:
+        log: the log.
+        subject: the robot, if it is known.
+
+    Returns:
+        The facts.
+    """
     joints = list(log.joints)
     position = log.stack("position", joints)
     rate = 1 / log.step

@@ -45,6 +45,9 @@ def take_in(
             references.
         references: of the healthy robot.
 
+    Returns:
+        The robot, and checks and signals of all logs.
+
     Raises:
         InputError: no log to test, a log that cannot be opened or is not fit, a robot that does not
         go with the logs.
@@ -63,7 +66,14 @@ def take_in(
 def open_logs(
     sources: Sequence[str | os.PathLike[str]], references: Sequence[str | os.PathLike[str]] = ()
 ) -> tuple[list[Log], list[Log]]:
-    """Logs to be tested, and those of the healthy robot: named so, or by their own metadata.
+    """Open the logs to be tested and those of the healthy robot.
+
+    Args:
+        sources: files or folders; logs whose metadata say so count as references.
+        references: files or folders of the healthy robot.
+
+    Returns:
+        The logs to be tested, and the references.
 
     Raises:
         InputError: no log to test, or one that cannot be opened.

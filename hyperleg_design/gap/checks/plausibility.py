@@ -29,7 +29,15 @@ RPM = 30 / math.pi
 
 
 def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
-    """All that does not fit."""
+    """Find what does not fit in a log: units, signs, swapped joints, stuck sensors, another robot.
+
+    Args:
+        log: the log.
+        subject: the robot; without it the log alone is checked.
+
+    Returns:
+        The findings.
+    """
     found = [
         *_motion(log),
         *_targets(log, subject),

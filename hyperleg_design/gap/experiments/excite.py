@@ -77,29 +77,64 @@ class Experiment:
     notes: tuple[str, ...]
 
     def motion(self, name: str) -> Motion:
-        """By name."""
+        """Look up a motion.
+
+        Args:
+            name: of the motion.
+
+        Returns:
+            The motion.
+        """
         return next(m for m in self.motions if m.name == name)
 
     def gram(self, names: Sequence[str] | None = None) -> np.ndarray:
-        """Information of some motions, all by default."""
+        """Sum the information of some motions.
+
+        Args:
+            names: of the motions; all by default.
+
+        Returns:
+            Fisher information, `(c, c)`.
+        """
         return info.summed(
             self.grams, names if names is not None else [m.name for m in self.motions]
         )
 
     def apart(self, pair: Pair, names: Sequence[str] | None = None) -> float:
-        """How far a pair is told apart by some motions: the less clear of the two [standard
-        deviations].
+        """Compute how far two look-alikes are told apart by some motions.
+
+        Args:
+            pair: of look-alikes.
+            names: of the motions; all by default.
+
+        Returns:
+            The distance of the less clear of the two [standard deviations].
         """
         return apart(self.gram(names), self.blocks, pair)
 
     def shown(self, place: Place, names: Sequence[str] | None = None) -> float:
-        """How far an effect of usual size stands out [standard deviations]."""
+        """Compute how far an effect of usual size stands out.
+
+        Args:
+            place: effect and location.
+            names: of the motions; all by default.
+
+        Returns:
+            The distance [standard deviations].
+        """
         return info.strength(self.gram(names), self.blocks, place)
 
 
 def apart(gram: np.ndarray, blocks: Blocks, pair: Pair) -> float:
-    """Standard deviations that are left of each of a pair after the other explained what it can;
-    the lesser.
+    """Compute what is left of each of two effects after the other explained what it can.
+
+    Args:
+        gram: Fisher information, `(c, c)`.
+        blocks: of the robot.
+        pair: of look-alikes.
+
+    Returns:
+        The lesser of the two [standard deviations].
     """
     return min(
         info.distinction(gram, blocks, pair.first, [pair.second]),
@@ -125,6 +160,9 @@ def design_experiment(
         torque: whether motor torque or current is measured.
         seed: of the Fourier series' phases.
         progress: show a bar.
+
+    Returns:
+        The motions, their information, and the shortest set.
 
     Raises:
         InputError: a floating base, a rate or noise out of range.
@@ -176,7 +214,15 @@ def design_experiment(
 
 
 def pairs_of(subject: Subject, blocks: Blocks) -> tuple[Pair, ...]:
-    """Look-alikes joint by joint."""
+    """List the look-alikes joint by joint.
+
+    Args:
+        subject: the robot.
+        blocks: of the robot.
+
+    Returns:
+        The pairs that can sit on this robot.
+    """
     found: list[Pair] = []
     for first, second, by in LOOK_ALIKES:
         for index, joint in enumerate(subject.joints):
@@ -191,8 +237,17 @@ def pairs_of(subject: Subject, blocks: Blocks) -> tuple[Pair, ...]:
 
 
 def place_at(effect: str, joint: int, subject: Subject, blocks: Blocks) -> Place | None:
-    """Where an effect sits that acts on a joint most: the joint, its main motor, the link that it
-    carries, or the robot.
+    """Find where an effect sits that acts on a joint most: the joint, its main motor, the link that
+    it carries, or the robot.
+
+    Args:
+        effect: its identifier.
+        joint: index of the joint.
+        subject: the robot.
+        blocks: of the robot.
+
+    Returns:
+        Effect and location; None where the effect cannot sit there.
     """
     known = [location for name, location in blocks.places if name == effect]
     motor = subject.motors[int(np.argmax(np.abs(subject.joint_from_motor[joint])))]
@@ -214,14 +269,19 @@ def shortest_set(
     blocks: Blocks,
     pairs: Sequence[Pair],
 ) -> tuple[str, ...]:
-    """Motions that together tell what all can, chosen one by one by what each adds a second, and
-    without those not needed.
+    """Choose motions that together show what all motions can show.
+
+    They are added one by one, by what each adds per second; then those that are not needed are
+    taken out.
 
     Args:
         grams: information by motion.
         lengths: of the motions [s].
         blocks: of the robot.
         pairs: look-alikes.
+
+    Returns:
+        Names of the motions.
     """
     names = list(grams)
 
@@ -292,7 +352,15 @@ def _notes(subject: Subject, torque: bool) -> tuple[str, ...]:
 
 
 def inseparable(experiment: Experiment) -> tuple[Pair, ...]:
-    """Look-alikes that both show, or would, and that all motions together cannot tell apart."""
+    """List the look-alikes that both show, or would, and that all motions together cannot tell
+    apart.
+
+    Args:
+        experiment: the plan.
+
+    Returns:
+        The pairs.
+    """
     gram = experiment.gram()
     return tuple(
         pair
@@ -306,7 +374,14 @@ def inseparable(experiment: Experiment) -> tuple[Pair, ...]:
 
 
 def hidden(experiment: Experiment) -> tuple[Place, ...]:
-    """Effects at places where, at their usual size, no motion shows them."""
+    """List the effects at places where, at their usual size, no motion shows them.
+
+    Args:
+        experiment: the plan.
+
+    Returns:
+        Effects and locations.
+    """
     gram = experiment.gram()
     return tuple(
         place
@@ -316,7 +391,14 @@ def hidden(experiment: Experiment) -> tuple[Place, ...]:
 
 
 def plan_mapping(experiment: Experiment) -> dict[str, Any]:
-    """The plan as JSON holds it."""
+    """Write the plan as JSON holds it.
+
+    Args:
+        experiment: the plan.
+
+    Returns:
+        Nested mappings.
+    """
     subject, blocks = experiment.subject, experiment.blocks
     chosen = experiment.gram(experiment.chosen)
     grams = {m.name: experiment.grams[m.name] for m in experiment.motions}
@@ -417,7 +499,17 @@ def _number(value: float) -> float | None:
 def write_motion(
     folder: Path, experiment: Experiment, motion: Motion, kinds: Sequence[str]
 ) -> list[Path]:
-    """Targets of one motion as CSV, as a Parquet log, or both."""
+    """Write the targets of one motion.
+
+    Args:
+        folder: to write to.
+        experiment: the plan.
+        motion: the motion.
+        kinds: `csv`, `parquet` (a log), or both.
+
+    Returns:
+        The files.
+    """
     subject = experiment.subject
     driven = [i for i in range(len(subject.joints)) if not subject.passive[i]]
     written = []
@@ -482,6 +574,9 @@ def excite(
         overrides: of a design.
         progress: show a bar.
 
+    Returns:
+        The plan.
+
     Raises:
         InputError: a robot that cannot be read, a floating base, a number out of range.
         InfeasibleError: no motion fits.
@@ -507,7 +602,14 @@ def excite(
 
 
 def fixed_subject(robot: str, overrides: Sequence[str] = ()) -> Subject:
-    """A robot with its base held.
+    """Load a robot with its base held.
+
+    Args:
+        robot: a design, MJCF or URDF.
+        overrides: of a design, `path=value` each.
+
+    Returns:
+        The nominal model.
 
     Raises:
         InputError: it cannot be read.

@@ -28,7 +28,16 @@ class Experiment:
     """Time that it takes, assumed."""
 
     def separates(self, one: str, other: str) -> bool:
-        """Whether it tells two effects apart: one of them says so of the other."""
+        """Decide whether this experiment tells two effects apart: one of them states it of the
+        other.
+
+        Args:
+            one: identifier of an effect.
+            other: identifier of another effect.
+
+        Returns:
+            True if it does.
+        """
         return self._tells(one, other) or self._tells(other, one)
 
     def _tells(self, one: str, other: str) -> bool:
@@ -140,7 +149,15 @@ def separating(causes: Sequence[Cause]) -> Experiment | None:
 
 
 def as_mapping(experiment: Experiment, causes: Sequence[Cause]) -> dict[str, Any]:
-    """As `diagnosis.json` holds it."""
+    """Write an experiment as `diagnosis.json` holds it.
+
+    Args:
+        experiment: the experiment.
+        causes: look-alikes, the first of which it separates from others.
+
+    Returns:
+        Name, instruction, time, and the causes that it separates.
+    """
     first = causes[0]
     told = [c for c in causes[1:] if experiment is ALONE or experiment.separates(first[0], c[0])]
     return {

@@ -59,22 +59,44 @@ class Blocks:
 
     @property
     def columns(self) -> int:
-        """In all."""
+        """The number of columns of all blocks."""
         return self.start[-1] + len(self.parameters[-1]) + 1 if self.places else 0
 
     def span(self, place: Place) -> np.ndarray:
-        """Columns of a place's parameters."""
+        """Find the columns of a place's parameters.
+
+        Args:
+            place: effect and location.
+
+        Returns:
+            Their indices.
+        """
         at = self.places.index(place)
         return np.arange(self.start[at], self.start[at] + len(self.parameters[at]))
 
     def trace(self, place: Place) -> int:
-        """Column of its trace."""
+        """Find the column of a place's trace.
+
+        Args:
+            place: effect and location.
+
+        Returns:
+            Its index.
+        """
         at = self.places.index(place)
         return self.start[at] + len(self.parameters[at])
 
 
 def blocks_of(subject: Subject, effects: Iterable[str] | None = None) -> Blocks:
-    """Blocks of a robot's effects, all that can sit on it by default."""
+    """Lay out the columns of a robot's effects.
+
+    Args:
+        subject: the robot.
+        effects: identifiers; all that can sit on the robot by default.
+
+    Returns:
+        The blocks.
+    """
     places: list[Place] = []
     start: list[int] = []
     names: list[tuple[str, ...]] = []
@@ -92,12 +114,15 @@ def blocks_of(subject: Subject, effects: Iterable[str] | None = None) -> Blocks:
 
 
 def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np.ndarray:
-    """Fisher information of one motion `(c, c)`.
+    """Compute the Fisher information of one motion.
 
     Args:
         signals: of the motion.
         blocks: of its robot.
         noise: standard deviation over the strength of joints and motors [-].
+
+    Returns:
+        The information, `(c, c)`.
     """
     subject = signals.subject
     scales = {
@@ -190,8 +215,17 @@ def _filtered(values: np.ndarray, step: float) -> np.ndarray:
 
 
 def scales_of(one: Effect, location: str, subject: Subject, values: np.ndarray) -> np.ndarray:
-    """Size of each parameter by which derivatives are taken: its usual distance, or its value where
-    that is less `(parameters,)`.
+    """Compute the size of each parameter by which derivatives are taken: its usual distance, or its
+    value where that is less.
+
+    Args:
+        one: the effect.
+        location: where it sits.
+        subject: the robot.
+        values: of the parameters.
+
+    Returns:
+        The sizes, `(parameters,)`.
     """
     usual = np.abs(one.usual(location, subject))
     return np.where(values == 0, usual, np.minimum(usual, np.abs(values)))
@@ -200,8 +234,16 @@ def scales_of(one: Effect, location: str, subject: Subject, values: np.ndarray) 
 def standard_deviations(
     gram: np.ndarray, blocks: Blocks, place: Place, subject: Subject
 ) -> dict[str, float]:
-    """Of an effect's parameters in their own units while its others are fitted; infinite where
-    these data do not show one.
+    """Compute the standard deviations of an effect's parameters while its others are fitted.
+
+    Args:
+        gram: Fisher information, `(c, c)`.
+        blocks: of the robot.
+        place: effect and location.
+        subject: the robot.
+
+    Returns:
+        Deviations by parameter, in its unit; infinite where these data do not show one.
     """
     one = EFFECTS[place[0]]
     scale = scales_of(one, place[1], subject, blocks.values[blocks.places.index(place)])
@@ -216,19 +258,47 @@ def standard_deviations(
 
 
 def strength(gram: np.ndarray, blocks: Blocks, place: Place) -> float:
-    """How many standard deviations an effect of usual size stands out of the noise."""
+    """Compute how far an effect of usual size stands out of the noise.
+
+    Args:
+        gram: Fisher information, `(c, c)`.
+        blocks: of the robot.
+        place: effect and location.
+
+    Returns:
+        The distance [standard deviations].
+    """
     return float(np.sqrt(max(gram[blocks.trace(place), blocks.trace(place)], 0.0)))
 
 
 def distinction(gram: np.ndarray, blocks: Blocks, place: Place, rivals: Sequence[Place]) -> float:
-    """How many are left of them after rivals have explained what they can, whatever their size."""
+    """Compute how far an effect of usual size stands out after rivals of any size have explained
+    what they can.
+
+    Args:
+        gram: Fisher information, `(c, c)`.
+        blocks: of the robot.
+        place: effect and location.
+        rivals: effects and locations.
+
+    Returns:
+        The distance [standard deviations].
+    """
     span = np.concatenate([blocks.span(rival) for rival in rivals])
     return float(np.sqrt(_left(gram, blocks.trace(place), span)))
 
 
 def principal_angle(gram: np.ndarray, blocks: Blocks, place: Place, rival: Place) -> float:
-    """Smallest angle between what two effects can leave in the residuals [rad]; pi/2 where either
-    leaves nothing.
+    """Compute the smallest angle between what two effects can leave in the residuals.
+
+    Args:
+        gram: Fisher information, `(c, c)`.
+        blocks: of the robot.
+        place: effect and location of the one.
+        rival: effect and location of the other.
+
+    Returns:
+        The angle [rad]; pi/2 where either leaves nothing.
     """
     a, b = _basis(gram, blocks.span(place)), _basis(gram, blocks.span(rival))
     if a.shape[1] == 0 or b.shape[1] == 0:
@@ -258,6 +328,14 @@ def _left(gram: np.ndarray, column: int, span: np.ndarray) -> float:
 
 
 def summed(grams: Mapping[str, np.ndarray], names: Iterable[str]) -> np.ndarray:
-    """Information of several motions together."""
+    """Sum the information of several motions.
+
+    Args:
+        grams: information by motion.
+        names: of the motions.
+
+    Returns:
+        The sum, `(c, c)`.
+    """
     chosen = [grams[name] for name in names]
     return np.asarray(np.sum(chosen, 0)) if chosen else np.zeros_like(next(iter(grams.values())))

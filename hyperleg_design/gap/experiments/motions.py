@@ -76,7 +76,7 @@ class Motion:
 
     @property
     def duration(self) -> float:
-        """[s]"""
+        """The duration of the motion [s]."""
         return float(self.time[-1] - self.time[0])
 
     @property
@@ -96,13 +96,16 @@ class LeftOut:
 def recommended(
     subject: Subject, room: Room, rate: float, rng: np.random.Generator
 ) -> tuple[list[Motion], list[LeftOut]]:
-    """All motions of this module that fit.
+    """Plan all motions of this module that fit.
 
     Args:
         subject: with its base fixed.
         room: of its joints.
         rate: of the targets [Hz].
         rng: of the Fourier series' phases.
+
+    Returns:
+        The motions, and those that were left out.
     """
     fastest = min(FASTEST, PART_OF_RATE * rate)
 
@@ -155,7 +158,7 @@ def recommended(
 def fitted(
     subject: Subject, room: Room, name: str, purpose: str, full: np.ndarray, step: float
 ) -> Motion | LeftOut:
-    """A motion made smaller about the centre of the room until it, its targets and its rehearsal
+    """Make a motion smaller about the centre of the room until it, its targets and its rehearsal
     fit.
 
     Args:
@@ -165,6 +168,9 @@ def fitted(
         purpose: of the motion.
         full: planned positions at full size `(t, n)` [rad].
         step: between ticks [s].
+
+    Returns:
+        The motion; or why it was left out.
     """
     time = np.arange(len(full)) * step
     why = ""
@@ -196,8 +202,16 @@ def fitted(
 
 
 def swinging(subject: Subject, room: Room, rate: float) -> Motion | LeftOut:
-    """Drives off beside the posture in which gravity lets the joints hang, as far as the nominal
-    model stays within their range.
+    """Plan a swing with the drives off, beside the posture in which gravity lets the joints hang,
+    as far as the nominal model stays within the ranges of motion.
+
+    Args:
+        subject: with its base fixed.
+        room: of its joints.
+        rate: of the ticks [Hz].
+
+    Returns:
+        The motion; or why it was left out.
     """
     name = "swing"
     ticks = np.arange(round(SWING * rate) + 1) / rate
@@ -241,8 +255,16 @@ def swinging(subject: Subject, room: Room, rate: float) -> Motion | LeftOut:
 
 
 def loaded_postures(subject: Subject, room: Room, count: int = 64) -> tuple[np.ndarray, np.ndarray]:
-    """Of many postures, the one that gravity loads most and the one it loads least, both over the
-    joints' strength `(n,)` [rad].
+    """Find, of many postures, the one that gravity loads most and the one that it loads least, over
+    the joints' strength.
+
+    Args:
+        subject: with its base fixed.
+        room: of its joints.
+        count: number of postures.
+
+    Returns:
+        The two postures [rad], `(n,)` each.
     """
     postures = room.centre + 0.8 * room.reach * trajectories.spread(count, len(room.centre))
     still = np.zeros_like(postures)
@@ -254,10 +276,19 @@ def loaded_postures(subject: Subject, room: Room, count: int = 64) -> tuple[np.n
 def best_phases(
     subject: Subject, room: Room, time: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
-    """Phases of the Fourier series whose inertial regressor has the largest determinant of those
-    drawn `(harmonics, n)` [rad].
+    """Draw phases of the Fourier series and keep those whose inertial regressor has the largest
+    determinant.
 
     Parameters that no motion of this robot shows are left out of the determinant.
+
+    Args:
+        subject: with its base fixed.
+        room: of its joints.
+        time: of the ticks [s], `(t,)`.
+        rng: random numbers.
+
+    Returns:
+        The phases [rad], `(harmonics, n)`.
     """
     drawn = rng.uniform(0, 2 * np.pi, (DRAWS, HARMONICS, len(room.centre)))
     grams = [

@@ -23,7 +23,14 @@ if TYPE_CHECKING:
 
 
 def knows_gains(subject: Subject) -> bool:
-    """Whether the controller of every driven joint is known."""
+    """Decide whether the controller of every driven joint is known.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        True if all gains are known.
+    """
     return bool(np.isfinite(subject.gains[~subject.passive]).all())
 
 
@@ -36,7 +43,7 @@ def rehearsed(
     *,
     torque: bool = True,
 ) -> Log:
-    """Log of a planned motion on the nominal robot, noise left out.
+    """Simulate the log of a planned motion on the nominal robot, without noise.
 
     Args:
         subject: with its base fixed.
@@ -45,6 +52,9 @@ def rehearsed(
         target: `(t, n)` [rad]; NaN while the drives are off.
         position: planned motion `(t, n)` [rad], taken where gains are unknown.
         torque: whether the rig measures motor torque or current.
+
+    Returns:
+        The log.
     """
     step = float(time[1] - time[0])
     off = np.isnan(target).all(1)
@@ -88,7 +98,16 @@ def rehearsed(
 
 
 def swung(subject: Subject, start: np.ndarray, time: np.ndarray) -> np.ndarray:
-    """Motion of the nominal robot from rest with its drives off `(t, n)` [rad]."""
+    """Simulate the nominal robot from rest with its drives off.
+
+    Args:
+        subject: with its base fixed.
+        start: posture [rad], `(n,)`.
+        time: of the ticks [s], `(t,)`.
+
+    Returns:
+        Positions [rad], `(t, n)`.
+    """
     step = float(time[1] - time[0])
     return closed_loop(subject, step, np.full((len(time), len(start)), np.nan), start)[0]
 
@@ -96,14 +115,17 @@ def swung(subject: Subject, start: np.ndarray, time: np.ndarray) -> np.ndarray:
 def closed_loop(
     subject: Subject, step: float, target: np.ndarray, start: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Position, velocity `(t, n)` and motor torque `(t, m)` along targets, by MuJoCo's own servos;
-    no torque where targets are unknown.
+    """Simulate the nominal robot along targets with MuJoCo's own servos; there is no torque where
+    targets are unknown.
 
     Args:
         subject: with its base fixed and all gains known.
         step: between targets [s].
         target: `(t, n)` [rad]; NaN while the drives are off, which is at the end.
         start: posture at rest `(n,)` [rad].
+
+    Returns:
+        Positions [rad] and velocities [rad/s], `(t, n)` each, and motor torques [Nm], `(t, m)`.
     """
     import mujoco
     from mujoco import rollout

@@ -46,7 +46,7 @@ LONG = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Room:
-    """Of `n` joints."""
+    """What the `n` joints of a robot on a rig may do."""
 
     centre: np.ndarray
     """Posture at which all motions start and end [rad]."""
@@ -80,7 +80,14 @@ class Use:
     """Joint or motor that comes nearest to a limit."""
 
     def fits(self, long: bool) -> bool:
-        """Whether it stays inside all limits; the continuous one counts for long motions."""
+        """Decide whether a motion stays inside all limits.
+
+        Args:
+            long: whether the motion is long, so that the continuous limit counts, too.
+
+        Returns:
+            True if it does.
+        """
         return (
             self.range <= 1 + 1e-9
             and self.speed <= 1
@@ -90,7 +97,13 @@ class Use:
 
 
 def room_of(subject: Subject) -> Room:
-    """Room of a robot's joints around a posture with freedom to both sides.
+    """Compute the room of a robot's joints around a posture with freedom to both sides.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The room.
 
     Raises:
         InfeasibleError: a joint that has no range to move in.
@@ -141,8 +154,14 @@ def _speeds(subject: Subject) -> np.ndarray:
 
 
 def rated_torque(subject: Subject) -> np.ndarray:
-    """What each motor holds for ever: its data sheet's, else a share of its peak torque `(m,)`
-    [Nm].
+    """Compute what each motor holds for ever: the torque of its data sheet, else a share of its
+    peak torque.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The torques [Nm], `(m,)`.
     """
     rated = machine_of(subject).rated_torque
     peak = np.array([motor_strength(subject, m) for m in range(len(subject.motors))])
@@ -152,7 +171,17 @@ def rated_torque(subject: Subject) -> np.ndarray:
 def needed_torque(
     subject: Subject, position: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray
 ) -> np.ndarray:
-    """Motor torque that a motion needs, friction included `(t, m)` [Nm]."""
+    """Compute the motor torque that a motion needs, friction included.
+
+    Args:
+        subject: with its base fixed.
+        position: [rad], `(t, n)`.
+        velocity: [rad/s], `(t, n)`.
+        acceleration: [rad/s^2], `(t, n)`.
+
+    Returns:
+        The torque [Nm], `(t, m)`.
+    """
     torque = rigid.inverse_dynamics(
         subject, position, velocity, acceleration
     ) + friction.friction_torque(subject, position, velocity)
@@ -161,11 +190,18 @@ def needed_torque(
 
 
 def targets_for(subject: Subject, position: np.ndarray, step: float) -> np.ndarray:
-    """Targets at which the nominal controller gives just the torque that a motion needs `(t, n)`
-    [rad].
+    """Compute targets at which the nominal controller gives just the torque that a motion needs.
 
     They lead the motion by torque over stiffness; where a joint's gains are unknown, they are the
     motion itself.
+
+    Args:
+        subject: with its base fixed.
+        position: of the motion [rad], `(t, n)`.
+        step: between ticks [s].
+
+    Returns:
+        The targets [rad], `(t, n)`.
     """
     velocity = np.gradient(position, step, axis=0)
     acceleration = np.gradient(velocity, step, axis=0)
@@ -185,7 +221,7 @@ def use_of(
     step: float,
     torque: np.ndarray | None = None,
 ) -> Use:
-    """How far a motion uses the joints' room and the motors.
+    """Compute how far a motion uses the joints' room and the motors.
 
     Args:
         subject: the robot, its base fixed.
@@ -193,6 +229,9 @@ def use_of(
         position: `(t, n)` [rad].
         step: between ticks [s].
         torque: motor torque, where it is known; by inverse dynamics else `(t, m)` [Nm].
+
+    Returns:
+        Shares of range, speed, envelope and continuous torque.
     """
     from hyperleg_design.sizing.envelope import MotorEnvelope, torque_limits
     from hyperleg_design.sizing.thermal import rms_torque

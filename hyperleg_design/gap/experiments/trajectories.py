@@ -24,19 +24,41 @@ FADE = 1.0
 
 
 def smooth_step(share: np.ndarray) -> np.ndarray:
-    """From 0 to 1 with zero velocity and acceleration at both ends, over `share` from 0 to 1."""
+    """Rise from 0 to 1 with zero velocity and acceleration at both ends.
+
+    Args:
+        share: from 0 to 1, `(...)`.
+
+    Returns:
+        The values, `(...)`.
+    """
     share = np.clip(share, 0.0, 1.0)
     return share**3 * (10 - 15 * share + 6 * share**2)
 
 
 def window(time: np.ndarray, fade: float = FADE) -> np.ndarray:
-    """1 but for both ends, where it swells and dies away smoothly `(t,)`."""
+    """Compute a window that is 1 but for both ends, where it swells and dies away smoothly.
+
+    Args:
+        time: of the ticks [s], `(t,)`.
+        fade: time of each end [s].
+
+    Returns:
+        `(t,)`.
+    """
     return smooth_step((time - time[0]) / fade) * smooth_step((time[-1] - time) / fade)
 
 
 def amplitude(frequency: np.ndarray, room: Room, size: float = 1.0) -> np.ndarray:
-    """Amplitude of a sine that keeps within range, speed and acceleration `(..., n)` [rad], at
-    `frequency` `(...)` [Hz].
+    """Compute the amplitude of a sine that keeps within range, speed and acceleration.
+
+    Args:
+        frequency: of the sine [Hz], `(...)`.
+        room: of the joints.
+        size: largest share of the range [-].
+
+    Returns:
+        The amplitude [rad], `(..., n)`.
     """
     omega = 2 * np.pi * np.asarray(frequency)[..., None]
     limits = np.stack(
@@ -52,10 +74,19 @@ def amplitude(frequency: np.ndarray, room: Room, size: float = 1.0) -> np.ndarra
 
 
 def chirp(time: np.ndarray, room: Room, slowest: float, fastest: float) -> np.ndarray:
-    """Frequency that rises by the same factor each second, each joint a little off the others `(t,
-    n)` [rad].
+    """Plan a frequency that rises by the same factor each second, each joint a little off the
+    others.
 
     Its amplitude is what range, speed and acceleration leave at each frequency.
+
+    Args:
+        time: of the ticks [s], `(t,)`.
+        room: of the joints.
+        slowest: frequency at the begin [Hz].
+        fastest: frequency at the end [Hz].
+
+    Returns:
+        Positions [rad], `(t, n)`.
     """
     total, count = time[-1] - time[0], len(room.centre)
     growth = np.log(fastest / slowest)
@@ -80,8 +111,17 @@ def sweeps(
     sizes: Sequence[float],
     periods: float = 2.5,
 ) -> np.ndarray:
-    """Bursts of sines, at each frequency every amplitude, of so many periods and at least as many
-    seconds `(t, n)` [rad].
+    """Plan bursts of sines, with every amplitude at each frequency.
+
+    Args:
+        rate: of the ticks [Hz].
+        room: of the joints.
+        frequencies: of the sines [Hz].
+        sizes: shares of the largest amplitude [-].
+        periods: of a burst, which lasts at least as many seconds.
+
+    Returns:
+        Positions [rad], `(t, n)`.
     """
     phase = np.arange(len(room.centre)) * GOLDEN
     parts = []
@@ -96,8 +136,16 @@ def sweeps(
 
 
 def ramps(rate: float, room: Room, speeds: Sequence[float], reach: float = 0.4) -> np.ndarray:
-    """One slow triangle at each speed [rad/s], corners rounded, over the reach or less `(t, n)`
-    [rad].
+    """Plan one slow triangle with rounded corners at each speed.
+
+    Args:
+        rate: of the ticks [Hz].
+        room: of the joints.
+        speeds: of the triangles [rad/s].
+        reach: of the triangles [rad], or less where the room is smaller.
+
+    Returns:
+        Positions [rad], `(t, n)`.
     """
     parts = []
     size = np.minimum(0.9 * room.reach, reach)
@@ -114,8 +162,7 @@ def ramps(rate: float, room: Room, speeds: Sequence[float], reach: float = 0.4) 
 def holds(
     rate: float, room: Room, count: int, move: float = 1.0, dwell: float = 0.8, beyond: float = 0.06
 ) -> np.ndarray:
-    """Postures spread over the room, each held twice: come to from below and from above `(t, n)`
-    [rad].
+    """Plan postures spread over the room, each held twice: reached from below and from above.
 
     Args:
         rate: of the ticks [Hz].
@@ -124,6 +171,9 @@ def holds(
         move: time of a way there [s].
         dwell: time at rest [s].
         beyond: how far before and past a posture the two ways turn [rad].
+
+    Returns:
+        Positions [rad], `(t, n)`.
     """
     places = spread(count, len(room.centre))
     size = np.maximum(room.reach - beyond, 0.3 * room.reach)
@@ -147,8 +197,18 @@ def reversals(
     strokes: int = 6,
     beat: float = 0.7,
 ) -> np.ndarray:
-    """Quick small strokes to and fro about some postures, which gravity loads more or less `(t, n)`
-    [rad].
+    """Plan quick small strokes to and fro about some postures, which gravity loads more or less.
+
+    Args:
+        rate: of the ticks [Hz].
+        room: of the joints.
+        postures: [rad], `(n,)` each.
+        sizes: of the strokes.
+        strokes: at each posture and size.
+        beat: time of a stroke [s].
+
+    Returns:
+        Positions [rad], `(t, n)`.
     """
     parts, last = [], room.centre
     for posture in postures:
@@ -172,8 +232,17 @@ def reversals(
 def fourier(
     time: np.ndarray, room: Room, base: float, harmonics: int, phase: np.ndarray
 ) -> np.ndarray:
-    """Sums of harmonics of one slow frequency [Hz] with given phases `(harmonics, n)` [rad], `(t,
-    n)` [rad].
+    """Plan sums of harmonics of one slow frequency.
+
+    Args:
+        time: of the ticks [s], `(t,)`.
+        room: of the joints.
+        base: the slow frequency [Hz].
+        harmonics: their number.
+        phase: of each harmonic and joint [rad], `(harmonics, n)`.
+
+    Returns:
+        Positions [rad], `(t, n)`.
     """
     order = np.arange(1, harmonics + 1)
     weight = 1.0 / np.sqrt(order)
@@ -194,8 +263,17 @@ def fourier(
 def visited(
     rate: float, stops: Sequence[np.ndarray], rests: Sequence[float], room: Room, least: float
 ) -> np.ndarray:
-    """Straight ways from stop to stop, as quick as speed and acceleration allow but no quicker than
-    `least` [s].
+    """Plan straight ways from stop to stop, as quick as speed and acceleration allow.
+
+    Args:
+        rate: of the ticks [Hz].
+        stops: postures [rad], `(n,)` each.
+        rests: time at each stop [s].
+        room: of the joints.
+        least: time that a way takes at least [s].
+
+    Returns:
+        Positions [rad], `(t, n)`.
     """
     rows = [np.broadcast_to(stops[0], (max(round(rests[0] * rate), 1), len(room.centre)))]
     for before, after, rest in zip(stops[:-1], stops[1:], rests[1:], strict=True):
@@ -232,8 +310,15 @@ def _rounded(values: np.ndarray, ticks: int) -> np.ndarray:
 
 
 def spread(count: int, dimensions: int) -> np.ndarray:
-    """Points that fill (-1, 1)^dimensions evenly, the same each time `(count, dimensions)`
-    (additive recurrence of Roberts).
+    """Compute points that fill (-1, 1)^dimensions evenly, the same each time (additive recurrence
+    of Roberts).
+
+    Args:
+        count: number of points.
+        dimensions: of each point.
+
+    Returns:
+        `(count, dimensions)`.
     """
     root = 2.0
     for _ in range(40):

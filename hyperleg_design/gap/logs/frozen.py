@@ -16,10 +16,17 @@ STUCK = 0.5
 
 
 def frozen(log: Log, joint: str) -> slice | None:
-    """Rows of the longest stretch in which a position does not change though its joint turns or is
-    driven; None where there is none.
+    """Find the longest stretch in which a position does not change though its joint turns or is
+    driven.
 
     A joint that sticks moves on gently; a sensor that was stuck comes back with a jump.
+
+    Args:
+        log: the log.
+        joint: name of the joint.
+
+    Returns:
+        Rows of the stretch; None where there is none.
     """
     values, target, speed = (
         log.column(f"{kind}/{joint}") for kind in ("position", "position_target", "velocity")

@@ -131,29 +131,64 @@ class Log:
         object.__setattr__(self, "signals", signals)
 
     def has(self, kind: str, name: str = "") -> bool:
-        """Whether the log has a column with at least one known value."""
+        """Decide whether the log has a column with at least one known value.
+
+        Args:
+            kind: signal, such as `position`.
+            name: of the joint or motor; empty for signals without one.
+
+        Returns:
+            True if it has.
+        """
         values = self.signals.get(f"{kind}/{name}" if name else kind)
         return values is not None and bool(np.isfinite(values).any())
 
     def stack(self, kind: str, names: Iterable[str]) -> np.ndarray:
-        """Columns `kind/name` beside each other `(t, len(names))`; NaN where a column is
-        missing.
+        """Put columns `kind/name` beside each other.
+
+        Args:
+            kind: signal, such as `position`.
+            names: of joints or motors.
+
+        Returns:
+            `(t, len(names))`; NaN where a column is missing.
         """
         missing = np.full(len(self.time), np.nan)
         columns = [self.signals.get(f"{kind}/{name}", missing) for name in names]
         return np.stack(columns, -1) if columns else np.empty((len(self.time), 0))
 
     def vector(self, kind: str) -> np.ndarray:
-        """`gyro`, `accelerometer`, `base_...` `(t, 3)` or `(t, 4)`; NaN where missing."""
+        """Collect the components of a vector signal.
+
+        Args:
+            kind: `gyro`, `accelerometer` or one of `base_...`.
+
+        Returns:
+            `(t, 3)` or `(t, 4)`; NaN where a component is missing.
+        """
         return self.stack(kind, VECTOR_SIGNALS[kind])
 
     def column(self, column: str) -> np.ndarray:
-        """One column `(t,)`; NaN where missing."""
+        """Look up one column.
+
+        Args:
+            column: its full name, such as `position/knee`.
+
+        Returns:
+            `(t,)`; NaN where the column is missing.
+        """
         found = self.signals.get(column)
         return np.full(len(self.time), np.nan) if found is None else found
 
     def names(self, *kinds: str) -> tuple[str, ...]:
-        """Names that stand behind any of these signals, in the order of the columns."""
+        """List the joints or motors that have any of some signals.
+
+        Args:
+            kinds: signals, such as `position`.
+
+        Returns:
+            Names, in the order of the columns.
+        """
         return tuple(
             dict.fromkeys(c.partition("/")[2] for c in self.signals if c.partition("/")[0] in kinds)
         )
@@ -184,7 +219,15 @@ class Log:
         return float(self.time[-1] - self.time[0])
 
     def part(self, rows: slice | np.ndarray, name: str = "") -> Log:
-        """Some rows of it."""
+        """Copy some rows of the log.
+
+        Args:
+            rows: a slice, or indices.
+            name: of the copy; that of the log by default.
+
+        Returns:
+            The copy.
+        """
         return self.changed(
             name=name or self.name,
             time=self.time[rows],
@@ -192,16 +235,37 @@ class Log:
         )
 
     def changed(self, **values: Any) -> Log:
-        """A copy with fields replaced."""
+        """Copy the log with other values of some fields.
+
+        Args:
+            values: new values by field.
+
+        Returns:
+            The copy.
+        """
         return dataclasses.replace(self, **values)
 
     def remarked(self, *remarks: str) -> Log:
-        """A copy whose metadata state what was changed or is lacking."""
+        """Copy the log with remarks in its metadata that state what was changed or is lacking.
+
+        Args:
+            remarks: the remarks.
+
+        Returns:
+            The copy.
+        """
         return self.changed(metadata=self.metadata.remarked(*remarks)) if remarks else self
 
 
 def known_column(column: str) -> bool:
-    """Whether the log format has such a column."""
+    """Decide whether the log format has a column.
+
+    Args:
+        column: its full name.
+
+    Returns:
+        True if it has.
+    """
     kind, slash, name = column.partition("/")
     if kind in JOINT_SIGNALS or kind in MOTOR_SIGNALS:
         return bool(name)
@@ -213,12 +277,26 @@ def known_column(column: str) -> bool:
 
 
 def unit(column: str) -> str:
-    """Of a column."""
+    """Look up the unit of a column.
+
+    Args:
+        column: its full name.
+
+    Returns:
+        The unit; empty without one.
+    """
     return UNITS.get(column.partition("/")[0], "")
 
 
 def write_log(path: str | os.PathLike[str], log: Log) -> Path:
-    """Write a log as one Parquet file, metadata inside.
+    """Write a log as one Parquet file, with its metadata inside.
+
+    Args:
+        path: of the file.
+        log: the log.
+
+    Returns:
+        The path.
 
     Raises:
         OutputError: it cannot be written.
@@ -236,10 +314,16 @@ def write_log(path: str | os.PathLike[str], log: Log) -> Path:
 
 
 def read_log(path: str | os.PathLike[str]) -> Log:
-    """Read a Parquet log and its side file `NAME.json`, whose fields win.
+    """Read a Parquet log and its side file `NAME.json`, whose fields take precedence.
 
-    Of recordings with more than `MAX_VALUES` numbers, blocks spread evenly are read and a remark
-    says so.
+    Of recordings with more than `MAX_VALUES` numbers, only blocks spread evenly over the recording
+    are read, and a remark states this.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The log.
 
     Raises:
         InputError: missing, truncated or empty file, no time, a column of texts, a clock that runs
@@ -273,7 +357,18 @@ def finished_log(
     remarks: Iterable[str] = (),
     name: str = "",
 ) -> Log:
-    """A log of what a reader found in a file: tidied, checked, its remarks noted.
+    """Build a log from what a reader found in a file: tidied, checked, with its remarks.
+
+    Args:
+        path: of the file.
+        time: [s], `(t,)`.
+        signals: by column, `(t,)` each.
+        metadata: of the log.
+        remarks: of the reader.
+        name: of the log; that of the file by default.
+
+    Returns:
+        The log.
 
     Raises:
         InputError: an unusable clock, or no position.
@@ -300,8 +395,15 @@ def finished_log(
 
 
 def metadata_beside(path: Path, inside: Mapping[str, Any]) -> Metadata:
-    """Metadata found in a file, overruled field by field by the side file `NAME.json` where there
-    is one.
+    """Combine metadata found in a file with the side file `NAME.json`, whose fields take
+    precedence.
+
+    Args:
+        path: of the file.
+        inside: fields found in the file.
+
+    Returns:
+        The metadata.
     """
     side = path.with_suffix(".json")
     if side != path and side.is_file():
@@ -373,8 +475,15 @@ def tidied(
 
 
 def chosen_blocks(rows: int, columns: int) -> np.ndarray:
-    """Which blocks of `BLOCK_ROWS` rows to read so that no more than `MAX_VALUES` numbers are held,
-    `(blocks,)` of bool.
+    """Choose which blocks of `BLOCK_ROWS` rows to read so that no more than `MAX_VALUES` numbers
+    are held.
+
+    Args:
+        rows: of the file.
+        columns: of the file.
+
+    Returns:
+        True for each block to read, `(blocks,)`.
     """
     blocks = -(-rows // BLOCK_ROWS)
     most = max(1, MAX_VALUES // (BLOCK_ROWS * max(columns, 1)))
@@ -386,7 +495,15 @@ def chosen_blocks(rows: int, columns: int) -> np.ndarray:
 
 
 def shortened(rows: int, kept: int) -> str:
-    """Remark on a recording too long to be read whole."""
+    """Write the remark on a recording that is too long to be read whole.
+
+    Args:
+        rows: of the file.
+        kept: rows that were read.
+
+    Returns:
+        The remark.
+    """
     return (
         f"too long to be held in memory: {kept} of its {rows} rows were read, in blocks at "
         f"full "

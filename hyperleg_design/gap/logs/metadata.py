@@ -72,11 +72,25 @@ class Metadata:
         object.__setattr__(self, "extra", _mapping(self.extra, "metadata", "extra"))
 
     def changed(self, **values: Any) -> Metadata:
-        """A copy with some fields replaced."""
+        """Copy the metadata with other values of some fields.
+
+        Args:
+            values: new values by field.
+
+        Returns:
+            The validated copy.
+        """
         return dataclasses.replace(self, **values)
 
     def remarked(self, *remarks: str) -> Metadata:
-        """A copy with remarks added, each once."""
+        """Copy the metadata with remarks added, each once.
+
+        Args:
+            remarks: the remarks.
+
+        Returns:
+            The copy.
+        """
         return self.changed(remarks=tuple(dict.fromkeys((*self.remarks, *remarks))))
 
     def mapping(self) -> dict[str, Any]:
@@ -95,7 +109,14 @@ FIELDS = tuple(f.name for f in dataclasses.fields(Metadata))
 
 
 def metadata_from_mapping(content: Mapping[str, Any], where: str) -> Metadata:
-    """Metadata from what a JSON file holds; unknown keys go to `extra`.
+    """Build metadata from what a JSON file holds; unknown keys go to `extra`.
+
+    Args:
+        content: fields by name.
+        where: file, for error messages.
+
+    Returns:
+        The validated metadata.
 
     Raises:
         InputError: a value of the wrong kind or out of range, with its place.
@@ -135,7 +156,13 @@ def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
 
 
 def read_metadata_mapping(path: Path) -> dict[str, Any]:
-    """The mapping of a metadata side file.
+    """Read the mapping of a side file with metadata.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        Fields by name.
 
     Raises:
         InputError: unreadable, no JSON, or no mapping.

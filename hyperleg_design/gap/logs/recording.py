@@ -60,12 +60,15 @@ missing."""
 def log_of_trial(
     trial: Trial, *, name: str = "trial", metadata: Mapping[str, Any] | None = None
 ) -> Log:
-    """The log of one evaluation trial, a row a simulation step.
+    """Make the log of one evaluation trial, with a row for each simulation step.
 
     Args:
         trial: a walk, a T-test, or any other, with two samples at least.
         name: of the log.
         metadata: fields of `Metadata` to replace, such as `robot` or `session`.
+
+    Returns:
+        The log.
 
     Raises:
         InputError: a trial that ended at once.
@@ -90,7 +93,7 @@ def log_of_recording(
     name: str = "rollout",
     metadata: Mapping[str, Any] | None = None,
 ) -> Log:
-    """The log of one simulation of `simulation.rollout.rollout`, up to the end of its first
+    """Make the log of one simulation of `simulation.rollout.rollout`, up to the end of its first
     episode.
 
     Args:
@@ -99,6 +102,9 @@ def log_of_recording(
         simulation: which.
         name: of the log.
         metadata: fields of `Metadata` to replace.
+
+    Returns:
+        The log.
 
     Raises:
         InputError: no such simulation, or a signal that was not kept.
@@ -128,6 +134,10 @@ def write_logs(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]
     robots' designs beside them.
 
     Trials with fewer than two samples are left out.
+
+    Args:
+        folder: to be written.
+        evaluations: whose kept trials are written.
 
     Returns:
         The files, in the order of the trials.

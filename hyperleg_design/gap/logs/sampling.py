@@ -42,7 +42,7 @@ class Sampling:
 
     @property
     def rate(self) -> float:
-        """[Hz]"""
+        """The number of rows per second [Hz]."""
         return 1 / self.step
 
 
@@ -70,7 +70,14 @@ class Column:
 
 
 def sampling_of(time: np.ndarray) -> Sampling:
-    """The clock of rows at `(t,)` [s]."""
+    """Describe the clock of a log.
+
+    Args:
+        time: of the rows [s], `(t,)`.
+
+    Returns:
+        Step, jitter and dropouts.
+    """
     steps = np.diff(time)
     step = float(np.median(steps))
     usual = steps[steps <= DROPOUT * step]
@@ -82,7 +89,14 @@ def sampling_of(time: np.ndarray) -> Sampling:
 
 
 def columns_of(log: Log) -> tuple[Column, ...]:
-    """Each column of a log, in its order."""
+    """Describe each column of a log.
+
+    Args:
+        log: the log.
+
+    Returns:
+        Facts of the columns, in their order.
+    """
     rate = 1 / log.step
     return tuple(_column(name, values, rate) for name, values in log.signals.items())
 
@@ -113,8 +127,14 @@ def _column(name: str, values: np.ndarray, rate: float) -> Column:
 
 
 def held_rows(values: np.ndarray) -> int:
-    """Rows over which every value is kept, as a controller keeps a slow policy's target; 1 where
-    values change freely.
+    """Count the rows over which every value is kept, as a controller keeps the target of a slow
+    policy.
+
+    Args:
+        values: `(t,)`.
+
+    Returns:
+        The count; 1 where values change freely.
     """
     changes = np.flatnonzero(np.diff(values)) + 1
     if len(changes) < 8:
@@ -127,8 +147,13 @@ def held_rows(values: np.ndarray) -> int:
 
 
 def quantum(values: np.ndarray) -> float:
-    """Smallest step between values of a quantised signal `(t,)`; 0 where values hardly ever repeat,
-    or are no multiples of one step.
+    """Find the smallest step between values of a quantised signal.
+
+    Args:
+        values: `(t,)`.
+
+    Returns:
+        The step; 0 where values hardly ever repeat, or are no multiples of one step.
     """
     levels = np.unique(values)
     if len(levels) < 2 or len(levels) > 0.95 * len(values):
@@ -145,8 +170,14 @@ def quantum(values: np.ndarray) -> float:
 
 
 def noise(values: np.ndarray) -> float:
-    """Standard deviation of the white part of a smooth signal `(t,)`, from its third
+    """Estimate the standard deviation of the white part of a smooth signal, from its third
     differences.
+
+    Args:
+        values: `(t,)`.
+
+    Returns:
+        The deviation, in the unit of the values.
     """
     if len(values) < 8:
         return 0.0
@@ -158,8 +189,14 @@ def noise(values: np.ndarray) -> float:
 
 
 def saturation(values: np.ndarray) -> float:
-    """Share of samples of `(t,)` at a bound: an extreme far more frequent than the value next to
-    it, and reached several times.
+    """Compute the share of samples at a bound: an extreme that is far more frequent than the value
+    next to it, and reached several times.
+
+    Args:
+        values: `(t,)`.
+
+    Returns:
+        The share [-].
     """
     levels, counts = np.unique(values, return_counts=True)
     if len(levels) < 20:

@@ -15,8 +15,15 @@ PHASES = 48
 
 
 def sliding_share(velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray) -> np.ndarray:
-    """Mean of tanh((v + a sin(phi)) / width) over a swing; arguments of one shape, or broadcast
-    [rad/s].
+    """Compute the mean of tanh((v + a sin(phi)) / width) over a swing.
+
+    Args:
+        velocity: v [rad/s], `(...)`.
+        width: [rad/s].
+        swing: a [rad/s], `(...)`.
+
+    Returns:
+        The mean [-], `(...)`.
     """
     phases = (np.arange(PHASES) + 0.5) * 2 * np.pi / PHASES
     return np.asarray(
@@ -27,8 +34,16 @@ def sliding_share(velocity: np.ndarray, width: np.ndarray | float, swing: np.nda
 def friction_torque(
     subject: Subject, position: np.ndarray, velocity: np.ndarray, swing: np.ndarray | None = None
 ) -> np.ndarray:
-    """Nominal friction and springs that a drive has to overcome `(..., n)` [Nm]; `swing` of
-    `limit_cycle.LimitCycle.speed`.
+    """Compute nominal friction and springs, which a drive has to overcome.
+
+    Args:
+        subject: the robot.
+        position: [rad], `(..., n)`.
+        velocity: [rad/s], `(..., n)`.
+        swing: of a limit cycle, `limit_cycle.LimitCycle.speed` [rad/s]; none by default.
+
+    Returns:
+        The torque [Nm], `(..., n)`.
     """
     return np.asarray(
         rubbing_torque(subject, velocity, swing) + subject.spring * (position - subject.spring_rest)
@@ -38,7 +53,16 @@ def friction_torque(
 def rubbing_torque(
     subject: Subject, velocity: np.ndarray, swing: np.ndarray | None = None
 ) -> np.ndarray:
-    """Nominal friction alone `(..., n)` [Nm]; arguments as of `friction_torque`."""
+    """Compute nominal friction alone.
+
+    Args:
+        subject: the robot.
+        velocity: [rad/s], `(..., n)`.
+        swing: as in `friction_torque`.
+
+    Returns:
+        The torque [Nm], `(..., n)`.
+    """
     return np.asarray(
         subject.coulomb * turned(velocity, subject.friction_speed, swing)
         + subject.viscous * velocity
@@ -48,8 +72,15 @@ def rubbing_torque(
 def turned(
     velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray | None = None
 ) -> np.ndarray:
-    """Share of the nominal Coulomb friction at some velocities, from -1 to 1, over a limit cycle's
-    swing.
+    """Compute the share of the nominal Coulomb friction that acts at some velocities.
+
+    Args:
+        velocity: [rad/s], `(..., n)`.
+        width: over which friction turns over [rad/s].
+        swing: of a limit cycle [rad/s], over which the mean is taken; none by default.
+
+    Returns:
+        The share, -1 .. 1 [-], `(..., n)`.
     """
     share = np.tanh(velocity / width)
     if swing is not None and swing.any():

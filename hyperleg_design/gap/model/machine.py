@@ -14,7 +14,14 @@ if TYPE_CHECKING:
 
 
 def machine_of(subject: Subject) -> Machine:
-    """Arrays in the order of the subject's joints and motors; gains that nobody knows are 0."""
+    """Describe the joints and motors of a subject for the actuation model; unknown gains are 0.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        Arrays in the order of the subject's joints and motors.
+    """
     gains = np.nan_to_num(subject.gains)
     count = len(subject.motors)
     power, rated, voltage = np.zeros(count), np.full(count, np.inf), subject.voltage
@@ -46,6 +53,14 @@ def machine_of(subject: Subject) -> Machine:
 
 
 def rotor(subject: Subject, motor: int) -> float:
-    """Inertia of a rotor on its belt [kg m^2]."""
+    """Look up the inertia of a rotor on its belt.
+
+    Args:
+        subject: the robot.
+        motor: index of the motor.
+
+    Returns:
+        The inertia [kg m^2]; a very light one where the model has none.
+    """
     own = float(subject.rotor_inertia[motor])
     return own if own > 0 else LIGHTEST

@@ -58,11 +58,18 @@ class Mechanism:
 
     @property
     def count(self) -> int:
-        """Joints."""
+        """The number of joints."""
         return len(self.joints)
 
     def chain(self, joint: int) -> list[int]:
-        """Joints from the base out to one, itself included."""
+        """List the joints from the base to a joint, itself included.
+
+        Args:
+            joint: index of the joint.
+
+        Returns:
+            Indices.
+        """
         found = []
         while joint != BASE:
             found.append(joint)
@@ -70,10 +77,17 @@ class Mechanism:
         return found[::-1]
 
     def beyond(self, name: str) -> int:
-        """Most joints in a row that a link carries: 0 at the ends of a robot, 1 of feet with toes
-        and hands with fingers.
+        """Count the joints in a row that a link carries at most: 0 at the ends of a robot, 1 of
+        feet with toes and hands with fingers.
 
-        0 of a base, on whose back or in whose trunk loads are as well; 1 of what is no link.
+        It is 0 for a base, on whose back or in whose trunk loads are as well, and 1 for what is no
+        link.
+
+        Args:
+            name: of the link, or of the joint that carries it.
+
+        Returns:
+            The count.
         """
         if name not in (*self.links, *self.joints):
             return 1
@@ -95,8 +109,13 @@ class Mechanism:
         )
 
     def link(self, name: str) -> int:
-        """Place of a link, given by its own name or by that of the joint that carries it (its
-        outermost link).
+        """Find a link by its own name or by that of the joint that carries it (its outermost link).
+
+        Args:
+            name: of the link or joint.
+
+        Returns:
+            Index of the link.
 
         Raises:
             InputError: no such link or joint.
@@ -113,7 +132,14 @@ class Mechanism:
 
 
 def mechanism_of(model: mujoco.MjModel) -> Mechanism:
-    """Tree of a compiled MuJoCo model with hinges, slides and at most one free joint, at the root.
+    """Build the kinematic tree of a compiled MuJoCo model with hinges, slides and at most one free
+    joint, at the root.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        The tree.
 
     Raises:
         InputError: a ball joint, or a free joint elsewhere.
@@ -201,8 +227,15 @@ def mechanism_of(model: mujoco.MjModel) -> Mechanism:
 
 
 def inertial_parameters(mass: float, com: np.ndarray, inertia: np.ndarray) -> np.ndarray:
-    """Ten parameters `(10,)` from mass [kg], centre of mass [m] `(3,)` and inertia about it [kg
-    m^2] `(3, 3)`.
+    """Compute the ten inertial parameters of a body.
+
+    Args:
+        mass: [kg].
+        com: centre of mass [m], `(3,)`.
+        inertia: about the centre of mass [kg m^2], `(3, 3)`.
+
+    Returns:
+        Mass, mass times centre of mass, and inertia about the origin, `(10,)`.
     """
     x, y, z = com
     about = inertia + mass * (com @ com * np.eye(3) - np.outer(com, com))
@@ -223,8 +256,14 @@ def inertial_parameters(mass: float, com: np.ndarray, inertia: np.ndarray) -> np
 
 
 def mass_properties(parameters: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Mass, centre of mass and inertia about it from ten parameters; of a massless thing, at the
-    origin.
+    """Compute mass properties from the ten inertial parameters.
+
+    Args:
+        parameters: `(10,)`.
+
+    Returns:
+        Mass [kg], centre of mass [m] and inertia about it [kg m^2]; a massless body is at the
+        origin.
     """
     mass, moment = float(parameters[0]), parameters[1:4]
     com = moment / mass if mass else np.zeros(3)
@@ -236,8 +275,15 @@ def mass_properties(parameters: np.ndarray) -> tuple[float, np.ndarray, np.ndarr
 
 
 def moved_inertial(parameters: np.ndarray, rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    """Ten parameters seen from another frame, in which the old one stands at `rotation` `(3, 3)`
-    and `offset` `(3,)`.
+    """Transform the ten inertial parameters into another frame.
+
+    Args:
+        parameters: in the old frame, `(10,)`.
+        rotation: of the old frame in the new one, `(3, 3)`.
+        offset: of the old frame in the new one [m], `(3,)`.
+
+    Returns:
+        The parameters in the new frame, `(10,)`.
     """
     mass, com, inertia = mass_properties(parameters)
     if not mass:
@@ -260,8 +306,13 @@ def moved_inertial(parameters: np.ndarray, rotation: np.ndarray, offset: np.ndar
 
 
 def quaternion_rotation(wxyz: np.ndarray) -> np.ndarray:
-    """Rotation matrices `(..., 3, 3)` of quaternions `(..., 4)`, w first, of any length but zero;
-    NaN where a quaternion is unknown.
+    """Convert quaternions of any length but zero to rotation matrices.
+
+    Args:
+        wxyz: w first, `(..., 4)`.
+
+    Returns:
+        `(..., 3, 3)`; NaN where a quaternion is unknown.
     """
     q = np.asarray(wxyz, float)
     rows = q.reshape(-1, 4)
@@ -272,10 +323,18 @@ def quaternion_rotation(wxyz: np.ndarray) -> np.ndarray:
 
 
 def pinocchio_model(tree: Mechanism, gravity: np.ndarray) -> pinocchio.Model:
-    """Pinocchio model of the same tree; `q` is measured from `reference`, rotors are left out.
+    """Build a Pinocchio model of the same tree; `q` is measured from `reference`, and rotors are
+    left out.
 
-    Configurations are base position and quaternion (x y z w), where the base floats, then joints;
-    frames bear links' names.
+    Configurations are base position and quaternion (x y z w), where the base floats, then joints.
+    Frames have the names of links.
+
+    Args:
+        tree: the robot.
+        gravity: in the world [m/s^2], `(3,)`.
+
+    Returns:
+        The model.
     """
     import pinocchio as pin
 

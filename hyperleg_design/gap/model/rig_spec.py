@@ -20,11 +20,15 @@ LIGHTEST = 1e-9
 
 
 def rig_spec(subject: Subject, step: float) -> Any:
-    """Links, rotors, nominal friction, a position servo and a position sensor a driven joint.
+    """Build a MuJoCo specification with links, rotors, nominal friction, and a position servo and
+    sensor for each driven joint.
 
     Args:
         subject: with its base fixed and all gains known.
         step: of the simulation [s].
+
+    Returns:
+        The specification.
     """
     import mujoco
 

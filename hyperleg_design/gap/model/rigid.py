@@ -71,8 +71,17 @@ def accelerating(
     *,
     rotors: bool = True,
 ) -> list[np.ndarray]:
-    """Torque that each of some accelerations `(t, n)` or `(n,)` takes of a robot at rest, beyond
-    its weight `(t, n)` [Nm]; see `inverse_dynamics`.
+    """Compute the torque that each of some accelerations takes of a robot at rest, beyond its
+    weight.
+
+    Args:
+        subject: the robot.
+        position: [rad], `(t, n)`.
+        accelerations: [rad/s^2], `(t, n)` or `(n,)` each.
+        rotors: whether rotor inertia counts.
+
+    Returns:
+        The torques [Nm], `(t, n)` each; see `inverse_dynamics`.
     """
     rest = np.zeros_like(position)
     weight = inverse_dynamics(subject, position, rest, rest, rotors=rotors)
@@ -89,11 +98,21 @@ def base_wrench(
     acceleration: np.ndarray,
     base: BaseMotion,
 ) -> np.ndarray:
-    """Force and moment about its origin, in its frame, that a floating base needs from outside
-    `(..., t, 6)` [N, Nm].
+    """Compute the force and moment that a floating base needs from outside, about its origin and in
+    its frame.
 
-    Arguments as of `inverse_dynamics`. A rotor's own spin pushes back on the base in nature; like
-    MuJoCo's armature, this leaves it out.
+    A rotor's own spin pushes back on the base in nature; like MuJoCo's armature, this leaves it
+    out.
+
+    Args:
+        subject: the robot.
+        position: as in `inverse_dynamics`.
+        velocity: as in `inverse_dynamics`.
+        acceleration: as in `inverse_dynamics`.
+        base: motion of the base.
+
+    Returns:
+        The wrench [N, Nm], `(..., t, 6)`.
     """
     return _dynamics(subject, position, velocity, acceleration, base, False)[1]
 
@@ -269,7 +288,19 @@ def regressor(
     base: BaseMotion | None,
     link: str,
 ) -> np.ndarray:
-    """`link_regressor` of any motion, `(t, n)` each; `(t, n, 10)`."""
+    """Compute the joint torques over the ten inertial parameters of one link.
+
+    Args:
+        subject: the robot.
+        position: [rad], `(t, n)`.
+        velocity: [rad/s], `(t, n)`.
+        acceleration: [rad/s^2], `(t, n)`.
+        base: motion of a floating base; None for a fixed one.
+        link: name of the link.
+
+    Returns:
+        The regressor, `(t, n, 10)`; see `signals.regressor.link_regressor`.
+    """
     return regressors(subject, position, velocity, acceleration, base, link)[0]
 
 
@@ -281,8 +312,18 @@ def regressors(
     base: BaseMotion | None,
     link: str,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Joint torques `(t, n, 10)` and the base's wrench `(t, 6, 10)` over the ten inertial
-    parameters of one link, at any motion; arguments as of `regressor`.
+    """Compute joint torques and the base's wrench over the ten inertial parameters of one link.
+
+    Args:
+        subject: the robot.
+        position: [rad], `(t, n)`.
+        velocity: [rad/s], `(t, n)`.
+        acceleration: [rad/s^2], `(t, n)`.
+        base: motion of a floating base; None for a fixed one.
+        link: name of the link.
+
+    Returns:
+        Torques `(t, n, 10)` and wrench `(t, 6, 10)`, each per unit of the parameters.
     """
     tree = subject.tree
     place = tree.link(link)
@@ -365,7 +406,15 @@ def link_poses(
 
 
 def joint_frames(tree: Mechanism, position: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Axes `(t, 3, 3)` and origin `(t, 3)` of each joint's frame in the base's frame."""
+    """Compute the frames of all joints in the base's frame.
+
+    Args:
+        tree: the robot.
+        position: [rad], `(t, n)`.
+
+    Returns:
+        Axes `(t, 3, 3)` and origin `(t, 3)` [m] of each joint's frame.
+    """
     frames: list[tuple[np.ndarray, np.ndarray]] = []
     angle = position - tree.reference
     for j in range(tree.count):
@@ -435,8 +484,15 @@ def contact_torque(
 
 
 def pad_points(subject: Subject, position: np.ndarray, rotation: np.ndarray) -> np.ndarray:
-    """Lowest point of each pad, in the base's frame `(t, P, 3)` [m]; arguments as of
-    `contact_torque`.
+    """Compute the lowest point of each pad.
+
+    Args:
+        subject: the robot.
+        position: [rad], `(t, n)`.
+        rotation: world from base, `(t, 3, 3)`.
+
+    Returns:
+        The points in the base's frame [m], `(t, P, 3)`.
     """
     axes, origins = link_poses(subject, position, np.array([p.link for p in subject.pads], int))
     centre = origins + np.einsum("tpij,pj->tpi", axes, np.array([p.position for p in subject.pads]))
@@ -446,14 +502,17 @@ def pad_points(subject: Subject, position: np.ndarray, rotation: np.ndarray) -> 
 def pad_rolling(
     subject: Subject, position: np.ndarray, rotation: np.ndarray, step: float
 ) -> np.ndarray:
-    """Velocity of each pad's lowest point over that of its centre, world frame `(t, P, 3)` [m/s]: a
-    pad that rolls does not slide.
+    """Compute the velocity of each pad's lowest point relative to its centre: a pad that rolls does
+    not slide.
 
     Args:
         subject: the robot.
         position: of the joints `(t, n)` [rad].
         rotation: world from base `(t, 3, 3)`.
         step: between ticks [s].
+
+    Returns:
+        The velocity in the world's frame [m/s], `(t, P, 3)`.
     """
     axes = (
         rotation[:, None]

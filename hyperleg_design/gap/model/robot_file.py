@@ -56,7 +56,13 @@ class Drives:
 
 
 def read_spec(path: Path) -> Any:
-    """Editable MuJoCo model of an MJCF or URDF file.
+    """Read an editable MuJoCo model from an MJCF or URDF file.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The specification.
 
     Raises:
         InputError: no such file, or not one of the two.
@@ -86,12 +92,15 @@ def read_spec(path: Path) -> Any:
 
 
 def strip_scene(spec: Any, path: Path, *, contact: bool) -> list[str]:
-    """Take out what inverse dynamics and replays do not need; a list of notes about what mattered.
+    """Take out what inverse dynamics and replays do not need.
 
     Args:
         spec: model, changed in place.
         path: for messages.
         contact: keep primitive shapes that collide.
+
+    Returns:
+        Notes on what was taken out and matters.
 
     Raises:
         InputError: masses follow from mesh files that are missing.
@@ -151,7 +160,14 @@ def strip_scene(spec: Any, path: Path, *, contact: bool) -> list[str]:
 
 
 def compiled(spec: Any, path: Path) -> Any:
-    """Compiled model.
+    """Compile a model, and repair small errors of its numbers where MuJoCo refuses it.
+
+    Args:
+        spec: the specification, which the repairs change.
+        path: for error messages.
+
+    Returns:
+        The compiled model.
 
     Raises:
         InputError: MuJoCo refuses it, for a missing mesh perhaps.
@@ -174,9 +190,20 @@ def compiled(spec: Any, path: Path) -> Any:
 
 
 def set_base(spec: Any, wanted: str | None, path: Path) -> str:
-    """Weld or free the root as the logs say; `fixed` or `floating`, what the base now is.
+    """Weld or free the root as the logs state.
 
     Loose bodies beside the robot (things to grasp) are taken out.
+
+    Args:
+        spec: the specification, which is changed.
+        wanted: `fixed` or `floating`; as in the file by default.
+        path: for error messages.
+
+    Returns:
+        What the base now is, `fixed` or `floating`.
+
+    Raises:
+        InputError: the file has no joint, or its root cannot be freed or welded.
     """
     import mujoco
 
@@ -216,7 +243,15 @@ def _joints_below(body: Any) -> int:
 
 
 def read_drives(model: Any, kept: Collection[str]) -> Drives:
-    """Drives of a compiled file over the joints that are kept, in the model's order."""
+    """Read the drives of a compiled file.
+
+    Args:
+        model: the compiled model.
+        kept: names of the joints that are kept.
+
+    Returns:
+        Drives over these joints, in the model's order.
+    """
     import mujoco
 
     single = [j for j in single_joints(model) if _name(model, j) in kept]
@@ -318,19 +353,38 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
 
 
 def single_joints(model: Any) -> list[int]:
-    """Indices of the joints that are hinges or slides."""
+    """List the joints that are hinges or slides.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Their indices.
+    """
     return [int(joint) for joint in _single(model)[0]]
 
 
 def strip_drives(spec: Any) -> None:
-    """Take out actuators and tendons."""
+    """Take out actuators and tendons.
+
+    Args:
+        spec: the specification, which is changed.
+    """
     for group in (spec.actuators, spec.tendons):
         for item in list(group):
             spec.delete(item)
 
 
 def lock(spec: Any, kept: Collection[str]) -> tuple[str, ...]:
-    """Weld joints that no log knows, at the position that the file draws them in; their names."""
+    """Weld joints that no log knows, at the position in which the file draws them.
+
+    Args:
+        spec: the specification, which is changed.
+        kept: names of the joints that stay free.
+
+    Returns:
+        Names of the welded joints.
+    """
     import mujoco
 
     locked = []
@@ -398,7 +452,14 @@ def _line(error: Exception) -> str:
 
 
 def imu_site(spec: Any) -> str:
-    """Name of the site of the accelerometer, else of the gyro; empty where the file has neither."""
+    """Find the site of the accelerometer, else that of the gyro.
+
+    Args:
+        spec: the specification.
+
+    Returns:
+        Name of the site; empty where the file has neither.
+    """
     import mujoco
 
     for kind in (mujoco.mjtSensor.mjSENS_ACCELEROMETER, mujoco.mjtSensor.mjSENS_GYRO):
@@ -409,8 +470,14 @@ def imu_site(spec: Any) -> str:
 
 
 def imu_place(model: Any, site: str) -> tuple[np.ndarray, np.ndarray]:
-    """Axes `(3, 3)` and place `(3,)` of the sensor in the base's frame; the base's own where the
-    file has none on the base.
+    """Find the pose of the IMU in the base's frame.
+
+    Args:
+        model: the compiled model.
+        site: name of the sensor's site.
+
+    Returns:
+        Axes `(3, 3)` and place `(3,)` [m]; the base's own where the file has no sensor on the base.
     """
     import mujoco
 
@@ -423,7 +490,11 @@ def imu_place(model: Any, site: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def add_floor(spec: Any) -> None:
-    """A floor at z = 0 where the world has no plane."""
+    """Add a floor at z = 0 where the world has no plane.
+
+    Args:
+        spec: the specification, which is changed.
+    """
     import mujoco
 
     if not any(g.type == mujoco.mjtGeom.mjGEOM_PLANE for g in spec.worldbody.geoms):
@@ -448,13 +519,27 @@ def _single(model: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def friction(model: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Dry and viscous friction that the file gives the joints `(n,)` each."""
+    """Read the dry and viscous friction of the joints.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Dry [Nm] and viscous [Nms/rad], `(n,)` each.
+    """
     _, dofs = _single(model)
     return np.array(model.dof_frictionloss[dofs]), np.array(model.dof_damping[dofs])
 
 
 def springs(model: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and rest position of springs that the file gives the joints `(n,)` each."""
+    """Read the springs of the joints.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Stiffness [Nm/rad] and rest position [rad], `(n,)` each.
+    """
     joints, _ = _single(model)
     return np.array(model.jnt_stiffness[joints]), np.array(
         model.qpos_spring[model.jnt_qposadr[joints]]
@@ -462,7 +547,14 @@ def springs(model: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def limits(model: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Range of motion, infinite where unlimited `(n,)` each."""
+    """Read the ranges of motion.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Lower and upper ends [rad], `(n,)` each; infinite where unlimited.
+    """
     joints, _ = _single(model)
     limited = np.asarray(model.jnt_limited)[joints].astype(bool)
     low, high = model.jnt_range[joints].T
@@ -470,14 +562,24 @@ def limits(model: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def take_out_friction(model: Any) -> None:
-    """No joint friction, springs stay: replays put friction in themselves."""
+    """Remove joint friction and keep springs: replays put friction in themselves.
+
+    Args:
+        model: the compiled model, which is changed.
+    """
     model.dof_frictionloss[:] = 0.0
     model.dof_damping[:] = 0.0
 
 
 def touching_points(model: Any, geom: int) -> tuple[np.ndarray, float]:
-    """Points of a shape that meet a floor first, in its body's frame `(p, 3)` [m], and the radius
-    around them.
+    """Find the points of a shape that meet a floor first.
+
+    Args:
+        model: the compiled model.
+        geom: index of the shape.
+
+    Returns:
+        The points in the body's frame [m], `(p, 3)`, and the radius around them [m].
     """
     import mujoco
 
@@ -494,8 +596,13 @@ def touching_points(model: Any, geom: int) -> tuple[np.ndarray, float]:
 
 
 def add_mass(model: Any, body: str, mass: float, com: np.ndarray) -> None:
-    """Put a point mass on a body of a compiled model, which changes in place; centre of mass in the
-    body's frame [kg, m].
+    """Put a point mass on a body of a compiled model, which changes in place.
+
+    Args:
+        model: the compiled model.
+        body: name of the body.
+        mass: [kg].
+        com: in the body's frame [m], `(3,)`.
     """
     import mujoco
 

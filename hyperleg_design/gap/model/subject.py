@@ -152,8 +152,13 @@ class Subject:
         return pinocchio_model(self.tree, self.gravity)
 
     def declare(self, metadata: Metadata) -> Subject:
-        """The same robot with the gains, torque constants, supplies, payload and gravity that one
-        log declares.
+        """Apply the gains, torque constants, supplies, payload and gravity that one log declares.
+
+        Args:
+            metadata: of the log.
+
+        Returns:
+            The same robot with these values.
 
         Raises:
             InputError: a joint, motor or link that the robot does not have.
@@ -206,7 +211,15 @@ def _declared(bare: Subject, metadata: Metadata) -> Subject:
 
 
 def motor_index(subject: Subject, motor: str, field: str) -> int:
-    """Place of a motor, by its name or the name of its actuator in the file.
+    """Find a motor by its name or by that of its actuator in the file.
+
+    Args:
+        subject: the robot.
+        motor: the name.
+        field: of the metadata, for error messages.
+
+    Returns:
+        Index of the motor.
 
     Raises:
         InputError: no such motor.
@@ -217,7 +230,16 @@ def motor_index(subject: Subject, motor: str, field: str) -> int:
 
 
 def index_of(name: str, names: Sequence[str], field: str, what: str) -> int:
-    """Place of a name among some.
+    """Find a name among some.
+
+    Args:
+        name: the name.
+        names: the names.
+        field: of the metadata, for error messages.
+        what: kind of thing that is named, for error messages.
+
+    Returns:
+        Its index.
 
     Raises:
         InputError: it is not among them.

@@ -28,8 +28,16 @@ below the speeds that logs resolve."""
 
 
 def of_design(design: Design, path: Path, base: str, known: set[str] | None) -> Subject:
-    """Subject of one of our designs before any log declared anything; joints that are not `known`
-    are held still.
+    """Build the subject of one of our designs before any log declared anything.
+
+    Args:
+        design: one robot.
+        path: of its file.
+        base: `fixed` or `floating`.
+        known: joints that logs know; others are held still. All are free by default.
+
+    Returns:
+        The subject.
 
     Raises:
         InputError: a batch of designs, or none of its joints is known.
@@ -116,8 +124,15 @@ def of_design(design: Design, path: Path, base: str, known: set[str] | None) -> 
 
 
 def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
-    """Subject of an MJCF or URDF file before any log declared anything; joints that are not `known`
-    are held still.
+    """Build the subject of an MJCF or URDF file before any log declared anything.
+
+    Args:
+        path: of the file.
+        base: `fixed` or `floating`; as in the file by default.
+        known: joints that logs know; others are held still. All are free by default.
+
+    Returns:
+        The subject.
 
     Raises:
         InputError: a file that cannot be understood, or none of its joints is known.
@@ -357,7 +372,14 @@ def _feet_of_file(model: Any, tree: Mechanism) -> tuple[tuple[str, ...], tuple[P
 
 
 def subject_of(design: Design, base: str = "floating") -> Subject:
-    """Subject of a design of ours, all joints free to move.
+    """Build the subject of one of our designs, with all joints free to move.
+
+    Args:
+        design: one robot.
+        base: `fixed` or `floating`.
+
+    Returns:
+        The subject.
 
     Raises:
         InputError: a batch of designs.

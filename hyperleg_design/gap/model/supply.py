@@ -23,12 +23,14 @@ if TYPE_CHECKING:
 
 
 def over_nominal(subject: Subject, voltage: np.ndarray | None) -> np.ndarray:
-    """Voltage over the nominal one, by motor `(t, m)`; `(1, m)` where nothing changes. 1 for motors
-    with current control.
+    """Compute the voltage over the nominal one for each motor; 1 for motors with current control.
 
     Args:
         subject: the robot.
         voltage: of the battery `(t,)` [V], NaN where unknown; None, as nominal.
+
+    Returns:
+        The ratio [-], `(t, m)`; `(1, m)` where nothing changes.
     """
     driven = np.isfinite(subject.supply)
     if voltage is None or not driven.any():
@@ -38,8 +40,13 @@ def over_nominal(subject: Subject, voltage: np.ndarray | None) -> np.ndarray:
 
 
 def followed(subject: Subject) -> tuple[Alteration, ...]:
-    """What makes a simulation of a robot follow its battery's measured voltage; nothing where its
-    motors do not.
+    """Make a simulation of a robot follow its battery's measured voltage.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The alteration; none where no motor follows the battery.
     """
     return (FollowsBattery(subject.supply),) if np.isfinite(subject.supply).any() else ()
 

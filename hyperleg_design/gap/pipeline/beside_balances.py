@@ -35,13 +35,19 @@ OF_FEET = 0.5
 
 
 def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
-    """A diagnosis with an IMU's constant error: beside what is named already, or instead of
+    """Add an IMU's constant error to a diagnosis: beside what is named already, or instead of
     nothing; of an unknown gap it is a part.
 
-    Of one that is named already, its sizes where they are surer.
+    If the error is named already, its sizes are replaced where the given ones are surer. A vertical
+    that leans is no effect of the catalogue, but may be an error of the accelerometer: alone, it is
+    an unknown gap.
 
-    A vertical that leans is no effect of the catalogue, but may be an accelerometer's error: alone,
-    it is an unknown gap.
+    Args:
+        told: the diagnosis so far.
+        offset: error of the IMU.
+
+    Returns:
+        The diagnosis with it.
     """
     if any((c.effect, c.location) == PLACE for c in told.causes):
         causes = tuple(
@@ -84,10 +90,17 @@ def _surer(cause: Named, offset: Offset) -> Named:
 
 
 def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
-    """A diagnosis with what feet tell of their ground: beside what is named already, or instead of
-    nothing.
+    """Add what feet show of their ground to a diagnosis: beside what is named already, or instead
+    of nothing.
 
-    An unknown gap is theirs where it lies under them, else they are a part of it.
+    An unknown gap is explained by the feet where it lies under them, else they are a part of it.
+
+    Args:
+        told: the diagnosis so far.
+        feet: effects of the ground under some feet.
+
+    Returns:
+        The diagnosis with them.
     """
     told = _without_creep(told, feet)
     feet = [one for one in feet if one.name not in {(c.effect, c.location) for c in told.causes}]

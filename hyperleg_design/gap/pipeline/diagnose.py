@@ -54,6 +54,9 @@ def diagnose(
         show: takes lines of progress.
         rules: numbers that the inference decides by; the usual ones by default.
 
+    Returns:
+        The diagnosis.
+
     Raises:
         InputError: no log to diagnose, a log that is not fit for it, or one that does not go with
         the robot.
@@ -143,7 +146,7 @@ def diagnose_signals(
     effects: Sequence[str] | None = None,
     rules: InferenceRules | None = None,
 ) -> Diagnosis:
-    """Diagnose conditioned logs; arguments as of `diagnose`.
+    """Diagnose conditioned logs, as `diagnose` does.
 
     Args:
         signals: of the logs to be diagnosed.
@@ -154,6 +157,9 @@ def diagnose_signals(
         checks: of the logs, for remarks and doubts.
         effects: of the catalogue that are tried; all by default.
         rules: numbers that the inference decides by; the usual ones by default.
+
+    Returns:
+        The diagnosis.
 
     Raises:
         InputError: no log, or none with a residual.

@@ -70,6 +70,9 @@ def judge_signals(
         threads: that share the work; they change no result.
         checks: of the logs, for remarks.
         sensitivity: whether to say what these logs could have shown.
+
+    Returns:
+        The diagnosis.
     """
     evidence = evidence_of(signals, references, rules)
     search = Search(evidence, rules, places, threads)

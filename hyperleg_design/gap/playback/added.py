@@ -81,6 +81,9 @@ def replayed(signals: Sequence[Signals], overlay: Overlay, *, threads: int = 1) 
         overlay: causes to add.
         threads: of MuJoCo; the result does not depend on them.
 
+    Returns:
+        Errors of each joint without and with the overlay.
+
     Raises:
         InputError: no stretch without gaps, or a place that the robot does not have.
     """
@@ -118,6 +121,9 @@ def walked(
         protocol: what suits the policy's task by default.
         workers: processes.
 
+    Returns:
+        Measures of the trials without and with the overlay.
+
     Raises:
         InputError: as `evaluation.evaluate`, or a place that the robot does not have.
     """
@@ -152,7 +158,15 @@ def _mean(values: np.ndarray) -> float:
 
 
 def mapping(logs: Sequence[Replayed], walk: Sequence[Changed]) -> dict[str, Any]:
-    """Plain values for a file."""
+    """Write replays and walks as plain values for a file.
+
+    Args:
+        logs: of `replayed`.
+        walk: of `walked`.
+
+    Returns:
+        Nested mappings.
+    """
 
     def plain(row: dict[str, Any]) -> dict[str, Any]:
         return {

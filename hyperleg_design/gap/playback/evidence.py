@@ -55,13 +55,16 @@ class Evidence:
 def evidence(
     signals: Signals, causes: Sequence[Mapping[str, Any]], residual_name: str = "motion"
 ) -> Evidence:
-    """Residual and explanation on one log.
+    """Compute a residual and what causes explain of it, on one log.
 
     Args:
         signals: of the log.
         causes: as `diagnosis.json` lists them: `effect`, `location`, and `parameters` with their
             `value`.
-        residual: one that the log allows.
+        residual_name: one that the log allows.
+
+    Returns:
+        The residual before and after, and what is explained.
     """
     from hyperleg_design.gap.effects import effect
 
@@ -108,8 +111,13 @@ def evidence(
 
 
 def rms(values: np.ndarray) -> np.ndarray:
-    """Root of the mean square of each row, unknown ticks left out, `(t, r)` to `(r,)`; NaN where
-    nothing is known.
+    """Compute the root of the mean square of each row, without unknown ticks.
+
+    Args:
+        values: `(t, r)`.
+
+    Returns:
+        `(r,)`; NaN where nothing is known.
     """
     known = np.isfinite(values)
     count = known.sum(0)

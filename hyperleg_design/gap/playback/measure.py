@@ -104,7 +104,17 @@ class Gap:
     def select(
         self, signal: str = "", kind: str = "", location: str = "", regime: str = "all"
     ) -> tuple[Row, ...]:
-        """Rows of some signal, kind, place and regime; an empty text stands for any."""
+        """Select rows; an empty text stands for any.
+
+        Args:
+            signal: such as `position`.
+            kind: of place, such as `joint`.
+            location: such as `knee`.
+            regime: such as `all`.
+
+        Returns:
+            The rows.
+        """
         wanted = {"signal": signal, "kind": kind, "location": location, "regime": regime}
         return tuple(
             r for r in self.rows if all(not v or getattr(r, k) == v for k, v in wanted.items())
@@ -139,13 +149,16 @@ def measure(
     predict: bool = True,
     threads: int = 1,
 ) -> Gap:
-    """Gap of logs, in every signal that they allow.
+    """Measure the gap of logs, in every signal that they allow.
 
     Args:
         signals: conditioned logs of one robot.
         reference: conditioned logs of the same robot when all was well.
         predict: also gaps of position and velocity, from short replays.
         threads: of MuJoCo.
+
+    Returns:
+        The rows of the gap, and where its noise floor comes from.
 
     Raises:
         InputError: no log.

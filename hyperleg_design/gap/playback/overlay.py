@@ -58,7 +58,13 @@ class Overlay:
         object.__setattr__(self, "change", checked)
 
     def alterations(self, robot: Subject | Design) -> tuple[Alteration, ...]:
-        """What adds the effects to a simulation of a robot.
+        """Make the alterations that add the effects to a simulation of a robot.
+
+        Args:
+            robot: a subject, or a design of ours.
+
+        Returns:
+            The alterations.
 
         Raises:
             InputError: the robot has no such place.
@@ -84,7 +90,14 @@ class Overlay:
 
 
 def alterations(change: Change, subject: Subject) -> tuple[Alteration, ...]:
-    """What adds effects to a simulation of a subject, in the order of the change.
+    """Make the alterations that add effects to a simulation of a subject.
+
+    Args:
+        change: parameters by effect and location.
+        subject: the robot.
+
+    Returns:
+        The alterations, in the order of the change.
 
     Raises:
         InputError: no such effect, or no such place on this robot.
@@ -98,7 +111,13 @@ def alterations(change: Change, subject: Subject) -> tuple[Alteration, ...]:
 
 
 def read_overlay(path: str | Path) -> Overlay:
-    """Read an overlay's file.
+    """Read the file of an overlay.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The validated overlay.
 
     Raises:
         InputError: it cannot be read, or something in it is wrong.
@@ -108,7 +127,14 @@ def read_overlay(path: str | Path) -> Overlay:
 
 
 def overlay_from_mapping(content: Mapping[str, Any], where: str) -> Overlay:
-    """An overlay from what its file holds.
+    """Build an overlay from what its file holds.
+
+    Args:
+        content: fields by name.
+        where: file, for error messages.
+
+    Returns:
+        The validated overlay.
 
     Raises:
         InputError: something in it is wrong.
@@ -149,16 +175,27 @@ def overlay_from_mapping(content: Mapping[str, Any], where: str) -> Overlay:
 
 
 def write_overlay(path: str | Path, overlay: Overlay) -> Path:
-    """Write an overlay's file, whole or not at all; numbers keep all their digits."""
+    """Write the file of an overlay, whole or not at all; numbers keep all their digits.
+
+    Args:
+        path: of the file.
+        overlay: the overlay.
+
+    Returns:
+        The path.
+    """
     return write_text(path, yaml.safe_dump(overlay.mapping(), sort_keys=False, allow_unicode=True))
 
 
 def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
-    """The causes that a `diagnosis.json` names, all of them.
+    """Make an overlay of all causes that a `diagnosis.json` names.
 
     Args:
         path: of the file, or of the folder that holds it.
         robot: name to write down.
+
+    Returns:
+        The overlay.
 
     Raises:
         InputError: it cannot be read, or names no cause.

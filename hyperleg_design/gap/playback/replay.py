@@ -73,8 +73,13 @@ class Replay:
     """Position and quaternion, w first, of a floating base `(k, w, T, 7)`; empty of a fixed one."""
 
     def errors(self, signals: Signals) -> tuple[np.ndarray, np.ndarray]:
-        """Logged minus predicted positions and velocities `(k, w, T, n)` [rad, rad/s]; NaN at ticks
-        not fit for use.
+        """Compute logged minus predicted positions and velocities.
+
+        Args:
+            signals: of the log that was replayed.
+
+        Returns:
+            Errors [rad] and [rad/s], `(k, w, T, n)` each; NaN at ticks that are not fit for use.
         """
         ticks = self.windows.ticks
         fit = signals.valid[ticks][..., None]
@@ -83,12 +88,15 @@ class Replay:
 
 
 def short_windows(signals: Signals, duration: float = 0.25, stride: float | None = None) -> Windows:
-    """Windows of one length that hold valid ticks only.
+    """Choose windows of one length that hold valid ticks only.
 
     Args:
         signals: conditioned log.
         duration: of each window [s].
         stride: between their starts [s]; end to end by default.
+
+    Returns:
+        The windows.
 
     Raises:
         InputError: the log has no valid stretch that long.
@@ -106,7 +114,13 @@ def short_windows(signals: Signals, duration: float = 0.25, stride: float | None
 
 
 def whole_log(signals: Signals) -> Windows:
-    """One window from the first valid tick to the last.
+    """Choose one window from the first valid tick to the last.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        The window.
 
     Raises:
         InputError: no tick is valid.
@@ -123,8 +137,14 @@ def whole_log(signals: Signals) -> Windows:
 
 
 def best_input(signals: Signals) -> str:
-    """What a replay of these signals follows by itself: targets where all gains are known, else
+    """Choose what a replay of a log follows by itself: targets where all gains are known, else
     torques.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        One of `INPUTS`.
     """
     subject = signals.subject
     if signals.target is not None:
@@ -157,6 +177,9 @@ def replay(
         follow: one of `INPUTS`; `best_input` by default.
         time_step: of the simulation, as a rule a fraction of a tick [s].
         threads: of MuJoCo; the result does not depend on it.
+
+    Returns:
+        Predicted positions and velocities of each change and window.
 
     Raises:
         InputError: an input that this log does not have, or a change that this robot cannot have.
@@ -211,7 +234,14 @@ def _inputs(signals: Signals, follow: str) -> np.ndarray:
 
 
 def motor_tendons(subject: Subject) -> int:
-    """How many tendons of a subject's model are rotors of its motors; these come first."""
+    """Count the tendons of a subject's model that are rotors of its motors; these come first.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The count.
+    """
     model = subject.model
     return sum(model.tendon(index).name in subject.motors for index in range(model.ntendon))
 
@@ -223,8 +253,17 @@ def replay_model(
     step: float,
     unlimited: np.ndarray | None = None,
 ) -> Any:
-    """MuJoCo model of a subject with the rotors, transmission and edits of alterations; `unlimited`
-    joints `(n,)` have no stops.
+    """Build the MuJoCo model of a subject with the rotors, transmission and edits of alterations.
+
+    Args:
+        subject: the robot.
+        chain: of the drives.
+        alterations: what is added.
+        step: of the simulation [s].
+        unlimited: joints that have no stops, `(n,)`; none by default.
+
+    Returns:
+        The model.
     """
     import mujoco
 
@@ -299,8 +338,14 @@ class Plant:
         base: np.ndarray | None,
         base_velocity: np.ndarray | None,
     ) -> None:
-        """Set states: joints as their sensors tell `(w, n)`; base pose `(w, 7)` and velocity,
-        linear in the world `(w, 6)`.
+        """Set the states of all windows.
+
+        Args:
+            position: of the joints, as their sensors measure it [rad], `(w, n)`.
+            velocity: of the joints, as their sensors measure it [rad/s], `(w, n)`.
+            base: pose of a floating base, `(w, 7)`; None for a fixed one.
+            base_velocity: linear in the world, angular in the base's frame, `(w, 6)`; None for a
+                fixed one.
         """
         told, told_velocity = self.chain.measured(position, velocity)
         self.qpos[:, self.joints], self.qvel[:, self._first :] = (
@@ -326,7 +371,17 @@ class Plant:
         temperature: np.ndarray | None,
         battery: np.ndarray | None,
     ) -> Driven:
-        """One simulation step along a target, command or torque `(w, ...)`."""
+        """Simulate one step along a target, command or torque.
+
+        Args:
+            follow: one of `INPUTS`.
+            value: of the input, `(w, ...)`.
+            temperature: of the motors [degC], where the log has it.
+            battery: its voltage [V], where the log has it.
+
+        Returns:
+            Torques and resistances of the drives.
+        """
         from mujoco.batch import SimulationError
 
         subject = self.subject
@@ -461,13 +516,18 @@ def _run(
 def base_states(
     signals: Signals, ticks: np.ndarray, before: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pose `(w, 7)` and velocity, linear in the world, angular in the base's frame `(w, 6)`, of a
-    floating base.
+    """Compute the states of a floating base at some ticks.
 
-    Velocities are those of a time `before` [s] the ticks.
+    The height is such that the lowest pad touches the ground where it was not measured, and an
+    unknown velocity is that of a lowest pad at rest.
 
-    Height is such that the lowest pad touches where nobody measured it, and unknown velocity that
-    of a lowest pad at rest.
+    Args:
+        signals: conditioned log.
+        ticks: their indices, `(w,)`.
+        before: time by which the velocities are earlier than the ticks [s].
+
+    Returns:
+        Pose `(w, 7)`, and velocity, linear in the world and angular in the base's frame, `(w, 6)`.
     """
     import mujoco
 

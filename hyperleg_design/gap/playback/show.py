@@ -95,7 +95,7 @@ class Shown:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Values by name."""
+        """The values of the effect's parameters by name."""
         return {p.name: float(v) for p, v in zip(self.effect.parameters, self.values, strict=True)}
 
 
@@ -129,6 +129,9 @@ def show(
             that need the ground.
         location: where it sits; the first place that it can by default.
         settings: `PARAMETER=VALUE` each; the usual magnitude by default.
+
+    Returns:
+        Trace, residual and closed loop with and without the effect.
 
     Raises:
         InputError: no such effect, place or parameter, or a robot on which it cannot sit.

@@ -163,7 +163,14 @@ class Diagnosis:
 
 
 def write_diagnosis(path: str | Path, diagnosis: Diagnosis) -> Path:
-    """Write `diagnosis.json` whole or not at all.
+    """Write a diagnosis as JSON, whole or not at all.
+
+    Args:
+        path: of the file.
+        diagnosis: the diagnosis.
+
+    Returns:
+        The path.
 
     Raises:
         OutputError: it cannot be written, or a number in it is not finite.
@@ -172,7 +179,13 @@ def write_diagnosis(path: str | Path, diagnosis: Diagnosis) -> Path:
 
 
 def read_diagnosis(path: str | Path) -> Diagnosis:
-    """Read a `diagnosis.json`.
+    """Read a diagnosis from its `diagnosis.json`.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The diagnosis.
 
     Raises:
         InputError: it cannot be read, or is no diagnosis of this schema.

@@ -31,11 +31,19 @@ is asked for down; assumed."""
 def base_motion(
     log: Log, subject: Subject, ticks: np.ndarray
 ) -> tuple[BaseMotion, tuple[str, ...]]:
-    """Motion of the base on the ticks; what was derived, as notes.
+    """Compute the motion of the base on the ticks.
 
-    Specific force comes from the accelerometer, else from base velocity, else from base position;
-    angular velocity from the gyro, else from orientation; orientation is logged, else integrated
-    from gyro and accelerometer (heading then drifts).
+    Specific force comes from the accelerometer, else from base velocity, else from base position.
+    Angular velocity comes from the gyro, else from orientation. Orientation is logged, else
+    integrated from gyro and accelerometer (heading then drifts).
+
+    Args:
+        log: of a floating base.
+        subject: the robot.
+        ticks: [s], `(t,)`.
+
+    Returns:
+        The motion, and notes on what was derived.
 
     Raises:
         InputError: neither accelerometer nor base velocity nor position, or neither gyro nor
@@ -110,18 +118,47 @@ def base_motion(
 
 
 def known(log: Log, kind: str) -> np.ndarray | None:
-    """A vector of a log, None where any component is missing throughout."""
+    """Look up a vector of a log.
+
+    Args:
+        log: the log.
+        kind: such as `gyro`.
+
+    Returns:
+        `(s, 3)` or `(s, 4)`; None where any component is missing throughout.
+    """
     values = log.vector(kind)
     return values if np.isfinite(values).any(0).all() else None
 
 
 def on_ticks(log: Log, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """A vector of a log as it was told, on the ticks `(t, 3)`; its gaps bridged."""
+    """Interpolate a vector of a log to the ticks, with its gaps bridged.
+
+    Args:
+        log: the log.
+        values: `(s, 3)`.
+        ticks: [s], `(t,)`.
+
+    Returns:
+        `(t, 3)`.
+    """
     return np.stack([np.interp(ticks, log.time, bridged(axis)) for axis in values.T], -1)
 
 
 def orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
-    """Quaternion smoothed component by component, its sign made continuous first."""
+    """Smooth a quaternion component by component, after its sign is made continuous.
+
+    Args:
+        log: the log.
+        quaternion: w first, `(s, 4)`.
+        ticks: [s], `(t,)`.
+
+    Returns:
+        The smoothed quaternion with its derivatives.
+
+    Raises:
+        InputError: quaternions that are not of unit length.
+    """
     told = np.isfinite(quaternion).all(1)
     q = quaternion[told]
     length = np.linalg.norm(q, axis=1)
@@ -137,7 +174,15 @@ def orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
 
 
 def spin(turning: Smooth) -> tuple[np.ndarray, np.ndarray]:
-    """Angular velocity and acceleration in the base's frame, 2 q* q' and its derivative."""
+    """Compute angular velocity and acceleration from a smoothed quaternion q, 2 q* q' and its
+    derivative.
+
+    Args:
+        turning: the quaternion with its derivatives.
+
+    Returns:
+        Angular velocity [rad/s] and acceleration [rad/s^2] in the base's frame, `(t, 3)` each.
+    """
     conjugate = turning.value * np.array([1, -1, -1, -1])
     norm = np.sum(turning.value**2, 1, keepdims=True)
     return 2 * _product(conjugate, turning.first)[:, 1:] / norm, 2 * _product(

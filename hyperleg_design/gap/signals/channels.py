@@ -17,8 +17,15 @@ GAP = 2.5
 
 
 def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Rows `(t, k)` through a matrix `(l, k)`, `(t, l)`; NaN only where something unknown is really
+    """Multiply rows by a matrix so that the result is NaN only where something unknown is really
     needed.
+
+    Args:
+        matrix: `(l, k)`.
+        values: `(t, k)`, NaN where unknown.
+
+    Returns:
+        `(t, l)`.
     """
     unknown = ~np.isfinite(values)
     if not unknown.any():
@@ -29,8 +36,16 @@ def applied(matrix: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
-    """A signal of the motors, under their names or those of their actuators, on the subject's side
-    of gears `(s, m)`.
+    """Collect a signal of the motors, under their names or those of their actuators, on the
+    subject's side of gears.
+
+    Args:
+        log: the log.
+        kind: such as `motor_torque`.
+        subject: the robot.
+
+    Returns:
+        `(s, m)`; NaN where unknown.
     """
     own = log.stack(kind, subject.motors)
     if subject.motor_aliases != subject.motors:
@@ -39,8 +54,15 @@ def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
 
 
 def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:
-    """Channels `(s, k)` interpolated onto ticks `(t, k)`; NaN where a channel is unknown for more
-    than `GAP` of its own steps.
+    """Interpolate channels to ticks.
+
+    Args:
+        time: of the rows [s], `(s,)`.
+        values: `(s, k)`.
+        ticks: [s], `(t,)`.
+
+    Returns:
+        `(t, k)`; NaN where a channel is unknown for more than `GAP` of its own steps.
     """
     out = np.full((len(ticks), values.shape[1]), np.nan)
     for column in range(values.shape[1]):
@@ -58,5 +80,14 @@ def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.nda
 
 
 def resampled_or_none(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray | None:
-    """`resampled`, None where nothing is known."""
+    """Interpolate channels to ticks, as `resampled` does.
+
+    Args:
+        time: of the rows [s], `(s,)`.
+        values: `(s, k)`.
+        ticks: [s], `(t,)`.
+
+    Returns:
+        `(t, k)`; None where nothing is known.
+    """
     return resampled(time, values, ticks) if np.isfinite(values).any() else None

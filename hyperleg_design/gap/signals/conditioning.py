@@ -59,6 +59,9 @@ def condition(log: Log, subject: Subject) -> Signals:
         subject: the robot; what the log declares of it (gains, torque constants, payload) is
             applied here.
 
+    Returns:
+        Motion, torques and residuals on even ticks.
+
     Raises:
         InputError: none of the robot's joints moves in this log, or nothing tells the torque of any
         motor.
@@ -194,8 +197,14 @@ def condition(log: Log, subject: Subject) -> Signals:
 
 
 def wrong_limits(subject: Subject, position: np.ndarray) -> np.ndarray:
-    """Joints whose log goes so far beyond the nominal range that there is no stop `(n,)`; positions
-    `(t, n)` [rad].
+    """Find the joints whose log goes so far beyond the nominal range that there is no stop.
+
+    Args:
+        subject: the robot.
+        position: [rad], `(t, n)`.
+
+    Returns:
+        `(n,)`.
     """
     return np.asarray(
         (
@@ -206,8 +215,14 @@ def wrong_limits(subject: Subject, position: np.ndarray) -> np.ndarray:
 
 
 def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
-    """Ticks at which a stop may push on a joint, with a force that nobody knows `(t, n)`; positions
-    `(t, n)` [rad].
+    """Find the ticks at which a stop may push on a joint, with a force that nobody knows.
+
+    Args:
+        subject: the robot.
+        position: [rad], `(t, n)`.
+
+    Returns:
+        `(t, n)`.
     """
     beyond = (position < subject.position_low + STOP) | (position > subject.position_high - STOP)
     return np.asarray(beyond & ~wrong_limits(subject, position))
@@ -216,13 +231,16 @@ def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
 def limited_torque(
     subject: Subject, torque: np.ndarray, velocity: np.ndarray, voltage: np.ndarray | None = None
 ) -> np.ndarray:
-    """Motor torques within peak torque and DC-motor line of the nominal motors `(t, m)` [Nm].
+    """Bring motor torques within the peak torque and DC-motor line of the nominal motors.
 
     Args:
         subject: the robot.
         torque: of the motors `(t, m)` [Nm].
         velocity: of the joints `(t, n)` [rad/s].
         voltage: of the battery `(t,)` [V], which motors without current control follow.
+
+    Returns:
+        The torques [Nm], `(t, m)`.
     """
     torque = np.clip(torque, -subject.torque_limit, subject.torque_limit)
     line = np.isfinite(subject.stall_torque) & np.isfinite(subject.no_load_speed)

@@ -49,8 +49,9 @@ def contacts(
     base: BaseMotion | None,
     needed: np.ndarray | None = None,
 ) -> Ground:
-    """Contact of one log. Forces are logged by pad, or by foot, which is as good where a foot has
-    one pad.
+    """Compute the contact of one log with the ground.
+
+    Forces are logged by pad, or by foot, which is as good where a foot has one pad.
 
     Args:
         log: of this subject.
@@ -60,6 +61,9 @@ def contacts(
         base: of a floating base.
         needed: force that the motion of a floating base needs from outside `(t, 3)` [N]; in flight
             none.
+
+    Returns:
+        Forces of pads, and which feet touch or may touch.
 
     Raises:
         InputError: a force on a foot that the robot does not have.
@@ -109,8 +113,15 @@ def contacts(
 
 
 def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
-    """Joint rows `(t, n)` that an unknown force of the ground reaches, widened by a margin of
-    ticks; `(1, n)` where none is.
+    """Find the joint rows that an unknown force of the ground reaches.
+
+    Args:
+        subject: the robot.
+        ground: contact of the log.
+        margin: ticks by which the rows are widened.
+
+    Returns:
+        `(t, n)`; `(1, n)` where there is none.
     """
     chains = [_foot_chain(subject, foot) for foot in range(len(subject.feet))]
     if ground.touching is None:

@@ -119,15 +119,28 @@ class FilteredLog:
         return np.concatenate(parts, -1) if parts else np.zeros((len(values), 0))
 
     def count(self, row: int) -> int:
-        """Samples of a row."""
+        """Count the samples of a row.
+
+        Args:
+            row: its index.
+
+        Returns:
+            The count.
+        """
         return sum(len(band.kept) for band in self.bands[row])
 
     def labels(self, row: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of the samples of a row: band, time from the log's beginning [s], and independent numbers
-        that each stands for.
+        """Describe the samples of a row.
 
         What models of robots get wrong is wrong alike in every cycle of a motion, and most so at
-        high frequencies: no band counts for more than one `WIDEST` wide.
+        high frequencies. Therefore no band counts for more than one `WIDEST` wide.
+
+        Args:
+            row: its index.
+
+        Returns:
+            Band of each sample, time from the log's beginning [s], and the independent numbers that
+            each stands for.
         """
         span = self.length * self.signals.step
         parts = [
@@ -144,12 +157,15 @@ class FilteredLog:
 
 
 def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> FilteredLog:
-    """Filter of one log.
+    """Prepare the filter of one log.
 
     Args:
         signals: a conditioned log.
         resting: ticks at which a joint's friction is anything up to its size, left out of its row
             of motion `(t, n)`.
+
+    Returns:
+        The filter with its bands.
     """
     from scipy.fft import next_fast_len
 
@@ -185,11 +201,20 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
 
 
 def moving(known: np.ndarray, resting: np.ndarray, step: float, *, rubs: bool) -> np.ndarray:
-    """Known ticks of a joint `(t,)` without its rest.
+    """Choose the known ticks of a joint without its rest.
 
-    One that hardly moves is worth its rest, too, unless its model `rubs` dry: then only long
-    stretches of its motion count, as what smoothing leaves of jerks is no noise any more where the
-    moments between them are cut out.
+    The rest of a joint that hardly moves counts, too, unless its model has dry friction (`rubs`).
+    Then only long stretches of its motion count, because what smoothing leaves of jerks is no noise
+    any more where the moments between them are cut out.
+
+    Args:
+        known: ticks at which the residual is known, `(t,)`.
+        resting: ticks at which the joint rests, `(t,)`.
+        step: between ticks [s].
+        rubs: whether the model of the joint has dry friction.
+
+    Returns:
+        The ticks that count, `(t,)`.
     """
     found = known & ~resting
     if found.sum() > (SELDOM if rubs else LEAST_MOVING) * known.sum():
@@ -203,13 +228,30 @@ def moving(known: np.ndarray, resting: np.ndarray, step: float, *, rubs: bool) -
 
 
 def stretches(mask: np.ndarray, shortest: float) -> list[slice]:
-    """Unbroken stretches of a mask `(t,)` that are long enough, in ticks."""
+    """Find the unbroken stretches of a mask that are long enough.
+
+    Args:
+        mask: `(t,)`.
+        shortest: length of a stretch at least [ticks].
+
+    Returns:
+        Slices of ticks.
+    """
     ends = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(np.int8), [0]])))
     return [slice(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= shortest]
 
 
 def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np.ndarray:
-    """`moving` of all joints `(t, n)`."""
+    """Choose the ticks that count for all joints, as `moving` does for one.
+
+    Args:
+        signals: conditioned log.
+        known: `(t, n)`.
+        resting: `(t, n)`.
+
+    Returns:
+        `(t, n)`.
+    """
     rubs = signals.subject.coulomb > 0
     return np.stack(
         [
@@ -221,7 +263,16 @@ def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np
 
 
 def row_name(signals: Signals, residual_name: str, column: int) -> str:
-    """Joint, motor, foot and axis, or axis of the base."""
+    """Name a row of a residual: a joint, a motor, a foot and axis, or an axis of the base.
+
+    Args:
+        signals: conditioned log.
+        residual_name: such as `motion`.
+        column: index of the row.
+
+    Returns:
+        The name.
+    """
     subject = signals.subject
     if residual_name == "motion":
         return subject.joints[column]
@@ -291,8 +342,14 @@ def _rise(frequency: np.ndarray, edge: float) -> np.ndarray:
 
 
 def traced(filtered_log: FilteredLog, traces: Mapping[str, np.ndarray]) -> dict[int, np.ndarray]:
-    """Samples of traces `(k, t, columns)` by residual: by row `(k, samples)`; rows that they leave
-    alone are missing.
+    """Filter traces of effects.
+
+    Args:
+        filtered_log: the filter.
+        traces: by residual, `(k, t, columns)`.
+
+    Returns:
+        Samples by row, `(k, samples)` each; rows that the traces leave alone are missing.
     """
     found = {}
     for place, row in enumerate(filtered_log.rows):
@@ -315,8 +372,14 @@ over (assumed)."""
 
 
 def travelled(position: np.ndarray, still: np.ndarray) -> np.ndarray:
-    """Way of joints since they last stood still or turned back `(t, n)` [rad]; positions and rest
-    `(t, n)`.
+    """Compute the way of joints since they last stood still or turned back.
+
+    Args:
+        position: [rad], `(t, n)`.
+        still: ticks at which each joint stands still, `(t, n)`.
+
+    Returns:
+        The way [rad], `(t, n)`.
     """
     step = np.diff(position, axis=0, prepend=position[:1])
     turned = np.zeros_like(still)
@@ -327,13 +390,16 @@ def travelled(position: np.ndarray, still: np.ndarray) -> np.ndarray:
 
 
 def sticking(signals: Signals, underway: float = UNDERWAY) -> np.ndarray:
-    """Ticks at which a joint may stick, so that its friction is whatever the other torques ask for
-    `(t, n)` of bool.
+    """Find the ticks at which a joint may stick, so that its friction is whatever the other torques
+    ask for.
 
     Args:
         signals: a conditioned log.
         underway: way without rest or return from which a slow joint slides, over that on which
             friction turns over; where torques are measured.
+
+    Returns:
+        `(t, n)`.
     """
     from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 

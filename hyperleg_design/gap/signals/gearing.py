@@ -32,7 +32,15 @@ FEWEST = 50
 
 
 def on_the_joints_side(subject: Subject, logs: Sequence[Log]) -> Subject:
-    """The subject with `motor_scale` and a note, where its file has gears."""
+    """Find out on which side of their gears a file's motors are logged.
+
+    Args:
+        subject: the robot.
+        logs: of the robot.
+
+    Returns:
+        The subject with `motor_scale` and a note, where its file has gears.
+    """
     if not subject.one_to_one or np.all(subject.gear == 1):
         return subject
     told = [kind for kind in KINDS if any(log.names(kind) for log in logs)]

@@ -82,13 +82,16 @@ class Law:
     def force(
         self, depth: np.ndarray, sink: np.ndarray, spring: float = 1.0, damper: float = 1.0
     ) -> np.ndarray:
-        """Vertical force on all pads together `(t,)` [N]; pads push and never pull.
+        """Compute the vertical force on all pads together; pads push and never pull.
 
         Args:
             depth: under the floor `(t, p)` [m].
             sink: its rate `(t, p)` [m/s].
             spring: scale of k'.
             damper: scale of b'.
+
+        Returns:
+            The force [N], `(t,)`.
         """
         impedance = self._impedance(depth)
         push = (
@@ -97,8 +100,13 @@ class Law:
         return np.asarray(np.where(depth > 0, np.maximum(push, 0.0), 0.0 * depth).sum(-1))
 
     def mass(self, depth: np.ndarray) -> np.ndarray:
-        """1 / R of pads under the floor `(t, p)` [kg], by which contacts resist acceleration;
-        arguments as of `force`.
+        """Compute 1 / R of pads under the floor, by which contacts resist acceleration.
+
+        Args:
+            depth: under the floor [m], `(t, p)`.
+
+        Returns:
+            The mass [kg], `(t, p)`; zero above the floor.
         """
         return np.asarray(np.where(depth > 0, self._mass(self._impedance(depth)), 0.0))
 
@@ -143,12 +151,15 @@ class Footing:
     """What `pressing` found already; most of what asks differs in friction alone."""
 
     def pressing(self, spring: float, damper: float) -> np.ndarray:
-        """Vertical force of a ground at this motion `(t,)` [N], its floor where it bears the mean
-        of the logged forces.
+        """Compute the vertical force of a ground at this motion, with its floor where it bears the
+        mean of the logged forces.
 
         Args:
             spring: scale of k.
             damper: scale of c.
+
+        Returns:
+            The force [N], `(t,)`.
         """
         key = float(spring), float(damper)
         found = self.known.get(key)
@@ -196,12 +207,15 @@ class Footing:
     def ground(
         self, friction: np.ndarray, compliance: np.ndarray, damping: np.ndarray
     ) -> np.ndarray:
-        """Force of a ground with scaled properties at this motion `(k, t, 3)` [N].
+        """Compute the force of a ground with scaled properties at this motion.
 
         Args:
             friction: scale of mu `(k,)`.
             compliance: scale of 1 / k `(k,)`.
             damping: scale of the damping ratio c / (2 sqrt(k m)) `(k,)`.
+
+        Returns:
+            The force [N], `(k, t, 3)`.
         """
         normal = np.maximum(self.force[:, 2], 0.0)
         limit = friction[:, None] * self.friction * normal
@@ -230,15 +244,28 @@ _FOOTINGS: WeakKeyDictionary[Signals, tuple[Footing, ...]] = WeakKeyDictionary()
 
 
 def footings(signals: Signals) -> tuple[Footing, ...]:
-    """Every foot of a log with contact forces and a floating base; kept while the signals live."""
+    """Collect every foot of a log with contact forces and a floating base; the result is kept while
+    the signals live.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        The feet.
+    """
     if signals not in _FOOTINGS:
         _FOOTINGS[signals] = _footings(signals)
     return _FOOTINGS[signals]
 
 
 def ground_residual(signals: Signals) -> np.ndarray | None:
-    """Logged less nominal force of the ground on each foot `(t, 3 f)` [N]; NaN where unknown; None
-    without logged forces.
+    """Compute the logged minus the nominal force of the ground on each foot.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        The residual [N], `(t, 3 f)`, NaN where unknown; None without logged forces.
     """
     feet = footings(signals)
     if not feet:
@@ -318,12 +345,28 @@ def _loads(signals: Signals, own: np.ndarray, lowest: np.ndarray) -> np.ndarray:
 
 
 def foot_bodies(subject: Subject, foot: int) -> tuple[str, ...]:
-    """Links of a foot that may touch the ground."""
+    """List the links of a foot that may touch the ground.
+
+    Args:
+        subject: the robot.
+        foot: index of the foot.
+
+    Returns:
+        Names of the links.
+    """
     return tuple(dict.fromkeys(subject.tree.links[p.link] for p in subject.pads if p.foot == foot))
 
 
 def foot_geoms(model: mujoco.MjModel, bodies: tuple[str, ...]) -> list[int]:
-    """Shapes of these bodies that collide."""
+    """List the shapes of some bodies that collide.
+
+    Args:
+        model: the compiled model.
+        bodies: names.
+
+    Returns:
+        Indices of the shapes.
+    """
     ids = {model.body(name).id for name in bodies}
     return [
         g
@@ -333,7 +376,14 @@ def foot_geoms(model: mujoco.MjModel, bodies: tuple[str, ...]) -> list[int]:
 
 
 def floor_geoms(model: mujoco.MjModel) -> list[int]:
-    """Shapes of the world that collide."""
+    """List the shapes of the world that collide.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Their indices.
+    """
     return [
         g
         for g in range(model.ngeom)
@@ -342,8 +392,14 @@ def floor_geoms(model: mujoco.MjModel) -> list[int]:
 
 
 def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray, int]:
-    """Friction `(3,)`, `solref` `(2,)` and number of contact dimensions between a shape and the
-    floor, as MuJoCo mixes them.
+    """Look up the contact settings between a shape and the floor, as MuJoCo mixes them.
+
+    Args:
+        model: the compiled model.
+        geom: index of the shape.
+
+    Returns:
+        Friction `(3,)`, `solref` `(2,)`, and the number of contact dimensions.
     """
     floor = floor_geoms(model)
     if not floor:
@@ -374,8 +430,15 @@ def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndar
 
 
 def nominal_ground(subject: Subject, links: tuple[str, ...]) -> tuple[float, Law]:
-    """Friction coefficient of the model's ground under the first, and how it bears one pad of each
-    of these links.
+    """Read the nominal ground under some links.
+
+    Args:
+        subject: the robot.
+        links: names of links with pads.
+
+    Returns:
+        Friction coefficient of the ground under the first link, and how the ground bears one pad of
+        each link.
     """
     import mujoco
 

@@ -57,7 +57,7 @@ class LimitCycle:
 def limit_cycle(
     position: np.ndarray, velocity: np.ndarray, motion: Smooth, step: float
 ) -> LimitCycle | None:
-    """Chatter of joints; None where there is none.
+    """Find the limit cycles of joints.
 
     Args:
         position: logged, on the ticks `(t, n)` [rad].
@@ -65,6 +65,9 @@ def limit_cycle(
             positions.
         motion: smoothed.
         step: of the ticks [s].
+
+    Returns:
+        Their speeds and shares; None where no joint is in one.
     """
     ticks, count = position.shape
     found = LimitCycle(

@@ -29,7 +29,7 @@ def load_subject(
     *,
     overrides: Iterable[str] | None = None,
 ) -> Subject:
-    """Nominal model of a robot, made to fit logs.
+    """Load the nominal model of a robot and make it fit logs.
 
     Args:
         robot: a design of ours (`hyperleg`, or a YAML file), or any MJCF or URDF file; by default
@@ -38,6 +38,9 @@ def load_subject(
             that none of them knows are held still. What differs between logs is taken from the
             first here, and from each in `conditioning.condition`.
         overrides: of our design, `path=value` each; by default those of the logs.
+
+    Returns:
+        The robot.
 
     Raises:
         InputError: no such robot, a joint or motor of a log that it does not have, logs that

@@ -20,12 +20,18 @@ KEPT = 512 * 2**20
 
 
 def link_regressor(signals: Signals, link: str) -> np.ndarray:
-    """Joint torque over the inertial parameters of one link, at the logged motion `(t, n, 10)`,
-    read-only.
+    """Compute the joint torque over the inertial parameters of one link, at the logged motion.
 
-    Columns: mass, mass times centre of mass (3), inertia about the link's origin (xx, xy, yy, xz,
-    yz, zz), in the link's frame. Torque is linear in them: what hangs on a link adds
-    `link_regressor @ parameters`. Kept while `signals` live and memory lasts.
+    The columns are mass, mass times centre of mass (3), and inertia about the link's origin (xx,
+    xy, yy, xz, yz, zz), in the link's frame. Torque is linear in them: what hangs on a link adds
+    `link_regressor @ parameters`. The result is kept while `signals` live and memory lasts.
+
+    Args:
+        signals: conditioned log.
+        link: name of the link, or of the joint that carries it.
+
+    Returns:
+        The regressor, `(t, n, 10)`, read-only.
 
     Raises:
         InputError: no such link or joint.
@@ -57,8 +63,14 @@ def _forget(room: int) -> None:
 
 
 def base_regressor(signals: Signals, link: str) -> np.ndarray:
-    """Wrench that the floating base needs over the inertial parameters of one link `(t, 6, 10)`; as
-    `link_regressor`.
+    """Compute the wrench that the floating base needs over the inertial parameters of one link.
+
+    Args:
+        signals: conditioned log of a floating base.
+        link: name of the link.
+
+    Returns:
+        The regressor, `(t, 6, 10)`; its columns are those of `link_regressor`.
     """
     assert signals.base is not None
     return regressors(

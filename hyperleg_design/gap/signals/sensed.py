@@ -30,12 +30,15 @@ MARGIN = 0.04
 
 
 def sensed_velocity(velocity: np.ndarray, motion: Smooth, step: float) -> np.ndarray:
-    """Velocity of the joints as their controllers see it `(t, n)` [rad/s].
+    """Compute the velocity of the joints as their controllers measure it.
 
     Args:
         velocity: logged, on the ticks `(t, n)` [rad/s]; NaN where unknown.
         motion: smoothed.
         step: of the ticks [s].
+
+    Returns:
+        The velocity [rad/s], `(t, n)`.
     """
     found = motion.first.copy()
     for joint, (logged, speed, second) in enumerate(

@@ -35,7 +35,14 @@ _SLIDING: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
 
 def sliding(signals: Signals) -> np.ndarray:
-    """Which way each joint slides, from -1 to 1 `(t, n)`; kept while `signals` live."""
+    """Compute which way each joint slides; the result is kept while `signals` live.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        -1 .. 1, `(t, n)`.
+    """
     if signals not in _SLIDING:
         position = signals.position
         moved = np.diff(position, axis=0) / presliding(signals)
@@ -65,7 +72,14 @@ def sliding(signals: Signals) -> np.ndarray:
 
 
 def presliding(signals: Signals) -> np.ndarray:
-    """Half the way of turning over, z, of each joint `(n,)` [rad]."""
+    """Compute half the way over which the friction of each joint turns over, z.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        z [rad], `(n,)`.
+    """
     count = len(signals.subject.joints)
     if signals.noise is None or signals.bandwidth is None:
         return np.full(count, PRESLIDING)
@@ -77,7 +91,14 @@ def presliding(signals: Signals) -> np.ndarray:
 
 
 def shaken(signals: Signals) -> np.ndarray:
-    """Where a limit cycle keeps a joint from sticking `(t, n)` of bool."""
+    """Find where a limit cycle keeps a joint from sticking.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        `(t, n)`.
+    """
     return (
         np.zeros(signals.position.shape, bool)
         if signals.limit_cycle is None

@@ -143,12 +143,15 @@ def _with_rate(
 
 
 def lateness(beyond: np.ndarray, second: np.ndarray) -> float:
-    """How much later a logged derivative is than its log says [s]: drives filter and difference,
-    simulators step speeds before places.
+    """Compute how much later a logged derivative is than its log states: drives filter and
+    difference, simulators step speeds before places.
 
     Args:
-        beyond: what it has over the derivative of the values `(t,)`.
-        second: second derivative of the values `(t,)`.
+        beyond: logged derivative minus the derivative of the values, `(t,)`.
+        second: second derivative of the values, `(t,)`.
+
+    Returns:
+        The lateness [s].
     """
     return float(np.clip(-(beyond @ second) / max(float(second @ second), 1e-300), -LATEST, LATEST))
 
@@ -168,8 +171,13 @@ def _joint_crossover(jerk: float, density: float, weight: float, most: float) ->
 
 
 def bridged(values: np.ndarray) -> np.ndarray:
-    """A signal `(t,)` whose unknown ticks are bridged by straight lines; one tick at least must be
-    known.
+    """Bridge the unknown ticks of a signal by straight lines; at least one tick must be known.
+
+    Args:
+        values: `(t,)`, NaN where unknown.
+
+    Returns:
+        `(t,)`.
     """
     known = np.isfinite(values)
     ticks = np.arange(len(values))
@@ -177,7 +185,14 @@ def bridged(values: np.ndarray) -> np.ndarray:
 
 
 def filled(values: np.ndarray) -> np.ndarray:
-    """Signals `(t, k)`, each `bridged`; 0 where nothing is known of one."""
+    """Bridge the unknown ticks of several signals.
+
+    Args:
+        values: `(t, k)`, NaN where unknown.
+
+    Returns:
+        `(t, k)`; 0 where nothing is known of a signal.
+    """
     return np.stack(
         [
             bridged(column) if np.isfinite(column).any() else np.zeros(len(column))
@@ -188,7 +203,7 @@ def filled(values: np.ndarray) -> np.ndarray:
 
 
 def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: int) -> Noise:
-    """Noise and crossover of largest Whittle likelihood.
+    """Estimate noise and crossover of the largest Whittle likelihood.
 
     Args:
         time: of the samples `(s,)`.
@@ -196,6 +211,9 @@ def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: in
         step: median time between them [s].
         order: how many times white noise is integrated to give the signal: spectrum omega^(-2
             order).
+
+    Returns:
+        The noise.
     """
     even = np.arange(time[0], time[-1] + step / 2, step)
     signal = np.interp(even, time, samples)

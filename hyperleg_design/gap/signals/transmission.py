@@ -61,8 +61,15 @@ def transmission_residual(
 
 
 def turned(signals: Signals, motor: int, speed: np.ndarray) -> dict[str, np.ndarray]:
-    """Trace of a motor that turns by some speed beyond its joints `(k, t)` [rad/s]; nothing where
-    no log tells.
+    """Compute the trace of a motor that turns by some speed beyond its joints.
+
+    Args:
+        signals: conditioned log.
+        motor: index of the motor.
+        speed: [rad/s], `(k, t)`.
+
+    Returns:
+        The trace by residual; empty where no log shows it.
     """
     if "transmission" not in signals.residual:
         return {}

@@ -26,18 +26,21 @@ def open_log(
     mapping: Mapping[str, str] | None = None,
     metadata: Mapping[str, Any] | None = None,
 ) -> list[Log]:
-    """The logs in a file or folder, of any known format.
+    """Read the logs in a file or folder, of any known format.
 
-    Metadata come from the source, overruled by the side file (`NAME.json`, `NAME.meta.json` beside
-    a JSON file, `hyperleg.json` in a folder), overruled by `metadata`. Beside the fields of
-    `Metadata` these may name `joints` (in the source's order, where it names none), `columns` (of a
-    CSV file, ours by the file's) and `units`.
+    Metadata come from the source. The side file (`NAME.json`, `NAME.meta.json` beside a JSON file,
+    `hyperleg.json` in a folder) takes precedence over the source, and the argument `metadata` over
+    both. Besides the fields of `Metadata` these may name `joints` (in the source's order, where it
+    names none), `columns` (of a CSV file, ours by the file's) and `units`.
 
     Args:
         path: file or folder; a folder that is no recording itself gives the logs of all recordings
             in it.
         mapping: our column by the file's own, for CSV.
         metadata: fields that win.
+
+    Returns:
+        The logs.
 
     Raises:
         InputError: missing, of no known format, damaged, empty, or without what every log needs.

@@ -70,14 +70,28 @@ _NUMBERS = (
 
 
 def is_bam(content: Any) -> bool:
-    """Whether a JSON file is one of BAM's."""
+    """Decide whether the content of a JSON file is one of BAM's recordings.
+
+    Args:
+        content: as parsed.
+
+    Returns:
+        True if it is.
+    """
     return (
         isinstance(content, dict) and isinstance(content.get("entries"), list) and "mass" in content
     )
 
 
 def read_bam(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]:
-    """The log of one BAM recording.
+    """Read one BAM recording.
+
+    Args:
+        path: of the file.
+        metadata: fields that take precedence.
+
+    Returns:
+        One log.
 
     Raises:
         InputError: no JSON, none of BAM's, or entries that lack time, position or goal.

@@ -40,12 +40,26 @@ LARGEST_ANGLE = 4 * math.pi
 
 
 def is_lerobot(path: Path) -> bool:
-    """Whether a folder is a LeRobot dataset."""
+    """Decide whether a folder is a LeRobot dataset.
+
+    Args:
+        path: of the folder.
+
+    Returns:
+        True if it is.
+    """
     return path.is_dir() and (path / "meta" / "info.json").is_file()
 
 
 def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]:
-    """A log of each episode, in order.
+    """Read a LeRobot dataset.
+
+    Args:
+        path: of the folder.
+        metadata: fields that take precedence.
+
+    Returns:
+        A log of each episode, in order.
 
     Raises:
         InputError: no `observation.state`, unreadable tables, or positions whose unit is not known.

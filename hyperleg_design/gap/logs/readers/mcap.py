@@ -28,7 +28,14 @@ class Message:
 
 
 def messages(path: Path, types: tuple[str, ...]) -> Iterator[Message]:
-    """Messages of some types, in the file's order.
+    """Read the messages of some types, in the file's order.
+
+    Args:
+        path: of the file.
+        types: names of message types.
+
+    Yields:
+        The messages.
 
     Raises:
         InputError: damaged or cut short, or compressed in a way that is not known, or the library

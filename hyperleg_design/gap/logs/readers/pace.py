@@ -31,7 +31,14 @@ SIGNALS = {
 
 
 def read_pace(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]:
-    """The log of a PACE file.
+    """Read a PACE file.
+
+    Args:
+        path: of the file.
+        metadata: fields that take precedence.
+
+    Returns:
+        One log.
 
     Raises:
         InputError: damaged, without time or positions, or tensors of other lengths.

@@ -88,7 +88,13 @@ def _tensor(
 
 
 def read_tensors(path: Path) -> dict[str, Any]:
-    """The dictionary that `torch.save` wrote; tensors as NumPy arrays.
+    """Read the dictionary that `torch.save` wrote.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        Its entries; tensors are NumPy arrays.
 
     Raises:
         InputError: damaged, of the old format, holding anything but tensors, numbers, texts, lists

@@ -55,12 +55,26 @@ class _Stream:
 
 
 def is_bag(path: Path) -> bool:
-    """Whether a folder is a ROS 2 bag."""
+    """Decide whether a folder is a ROS 2 bag.
+
+    Args:
+        path: of the folder.
+
+    Returns:
+        True if it is.
+    """
     return path.is_dir() and (path / "metadata.yaml").is_file() and bool(_parts(path))
 
 
 def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]:
-    """The log of a bag: a folder with its parts, or one `.db3` or `.mcap` file.
+    """Read a bag: a folder with its parts, or one `.db3` or `.mcap` file.
+
+    Args:
+        path: of the folder or file.
+        metadata: fields that take precedence.
+
+    Returns:
+        One log.
 
     Raises:
         InputError: damaged, without joint states, or in another encoding than CDR.

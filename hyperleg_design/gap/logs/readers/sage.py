@@ -37,12 +37,26 @@ LONGEST_STEP = 1.0
 
 
 def is_sage(path: Path) -> bool:
-    """Whether a folder is a SAGE recording."""
+    """Decide whether a folder is a SAGE recording.
+
+    Args:
+        path: of the folder.
+
+    Returns:
+        True if it is.
+    """
     return path.is_dir() and (path / STATE).is_file()
 
 
 def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]:
-    """The log of a SAGE folder, or of one of its CSV files.
+    """Read a SAGE folder, or one of its CSV files.
+
+    Args:
+        path: of the folder or file.
+        metadata: fields that take precedence.
+
+    Returns:
+        One log.
 
     Raises:
         InputError: a missing, empty or malformed table.

@@ -21,8 +21,14 @@ LATEST_START = 1e6
 
 
 def side_file(path: Path) -> Path:
-    """Where a user writes metadata of a source: `hyperleg.json` in a folder, `NAME.json`, or
-    `NAME.meta.json` beside a JSON file.
+    """Name the file in which a user writes metadata of a source: `hyperleg.json` in a folder,
+    `NAME.json`, or `NAME.meta.json` beside a JSON file.
+
+    Args:
+        path: of the source.
+
+    Returns:
+        The path of the side file, which need not exist.
     """
     if path.is_dir():
         return path / FOLDER_FILE
@@ -30,13 +36,30 @@ def side_file(path: Path) -> Path:
 
 
 def beside(path: Path, given: Mapping[str, Any] | None) -> dict[str, Any]:
-    """What a user says of a source: its side file, overruled by what was given to the reader."""
+    """Collect what a user states about a source: its side file, and what was given to the reader,
+    which takes precedence.
+
+    Args:
+        path: of the source.
+        given: fields given to the reader.
+
+    Returns:
+        Fields by name.
+    """
     side = side_file(path)
     return {**(read_metadata_mapping(side) if side.is_file() else {}), **(given or {})}
 
 
 def joint_names(said: Mapping[str, Any], found: list[str], where: str) -> list[str]:
-    """Names of a source's joints in its order: those a user gives as `joints`, else those found.
+    """Choose the names of a source's joints: those that a user gives as `joints`, else those found.
+
+    Args:
+        said: fields that the user states.
+        found: names in the source's order.
+        where: source, for error messages.
+
+    Returns:
+        The names in the source's order.
 
     Raises:
         InputError: another number of names.
@@ -67,7 +90,19 @@ def made_log(
     said: Mapping[str, Any],
     remarks: Iterable[str],
 ) -> Log:
-    """A log from a source; what the user says wins over what the source says.
+    """Build a log from a source; what the user states takes precedence over what the source states.
+
+    Args:
+        path: of the source.
+        name: of the log.
+        time: [s], `(t,)`.
+        signals: by column, `(t,)` each.
+        found: metadata of the source.
+        said: metadata that the user states.
+        remarks: of the reader.
+
+    Returns:
+        The log.
 
     Raises:
         InputError: an unusable clock, no position, or bad metadata.

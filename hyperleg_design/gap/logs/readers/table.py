@@ -27,12 +27,15 @@ TIMES = ("t", "time", "timestamp")
 def read_csv(
     path: Path, metadata: Mapping[str, Any] | None = None, mapping: Mapping[str, str] | None = None
 ) -> list[Log]:
-    """The log of a CSV file.
+    """Read a CSV file.
 
     Args:
         path: of the file.
         metadata: fields that win over those of the side file.
         mapping: column of the log format (or `t`) by the file's own name, with or without its unit.
+
+    Returns:
+        One log.
 
     Raises:
         InputError: empty, no time, a mapped column that is missing, an unknown unit, or a column of

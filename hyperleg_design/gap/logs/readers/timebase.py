@@ -13,7 +13,7 @@ GAP = 3.0
 def onto(
     time: np.ndarray, own_time: np.ndarray, signals: Mapping[str, np.ndarray], *, hold: bool
 ) -> dict[str, np.ndarray]:
-    """Signals of one stream at other times; NaN where the stream has a gap, or has not begun.
+    """Bring the signals of one stream to other times.
 
     Args:
         time: wanted `(t,)` [s], rising.
@@ -21,6 +21,9 @@ def onto(
         signals: by column `(k,)`.
         hold: keep the last value, as a controller keeps its target, instead of interpolating
             linearly.
+
+    Returns:
+        Signals by column, `(t,)` each; NaN where the stream has a gap, or has not begun.
     """
     if len(own_time) < 2:
         return {column: np.full(len(time), np.nan) for column in signals}
@@ -45,8 +48,14 @@ def onto(
 def sorted_stream(
     time: np.ndarray, signals: Mapping[str, np.ndarray]
 ) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
-    """A stream in the order of its stamps, repeats left out, and how many messages came out of
-    order.
+    """Sort a stream by its time stamps and leave repeated stamps out.
+
+    Args:
+        time: stamps [s], `(k,)`.
+        signals: by column, `(k,)` each.
+
+    Returns:
+        Stamps, signals, and how many messages came out of order.
     """
     disorder = int((np.diff(time) < 0).sum())
     time, first = np.unique(time, return_index=True)

@@ -40,15 +40,28 @@ _HEADER = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*$")
 
 
 def split_header(header: str) -> tuple[str, str]:
-    """Name and unit of a column's header, `position/knee [deg]`; the unit empty where none
-    stands.
+    """Split the header of a column, such as `position/knee [deg]`.
+
+    Args:
+        header: the header.
+
+    Returns:
+        Name and unit; the unit is empty where there is none.
     """
     found = _HEADER.match(header.strip())
     return (found["name"], found["unit"]) if found else (header.strip(), "")
 
 
 def factor(column: str, given: str, where: str) -> float:
-    """Factor from a unit to that of the log format.
+    """Look up the factor from a unit to that of the log format.
+
+    Args:
+        column: whose unit it is.
+        given: the unit; empty for that of the log format.
+        where: file, for error messages.
+
+    Returns:
+        The factor.
 
     Raises:
         InputError: not a unit of this signal.
