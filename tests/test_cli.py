@@ -293,6 +293,7 @@ def test_gap_apply_writes_what_training_and_evaluation_read(capsys, tmp_path):
     from hyperleg_design.gap.playback.overlay import read_overlay
 
     assert read_overlay(overlay).change == {("coulomb_friction", "left_knee"): {"torque": 1.9}}
+    pytest.importorskip("rsl_rl")
     overlay.write_text(overlay.read_text().replace("left_knee", "left_kne"))
     code, _, err = run(
         capsys, "train", "--overlay", str(overlay), "--out", str(tmp_path / "training")

@@ -4,6 +4,9 @@ comes from.
 
 from __future__ import annotations
 
+import functools
+import operator
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,6 +90,11 @@ class Tree:
     """Whether it is HyperLeg's: a pelvis, two legs, feet with heel, ball and perhaps toe."""
 
     @property
+    def mass(self) -> float:
+        """Mass of the whole robot [kg]."""
+        return mass_of(self.links)
+
+    @property
     def moving(self) -> tuple[TreeJoint, ...]:
         """Joints that move, in order."""
         return tuple(j for j in self.joints if not j.fixed)
@@ -104,3 +112,17 @@ class Tree:
             StopIteration: there is none of this name.
         """
         return next(link for link in self.links if link.name == name)
+
+
+def mass_of(links: Iterable[Link]) -> float:
+    """Add the masses of links from left to right.
+
+    `sum` compensates rounding from Python 3.12 on, so it would not give the same bytes everywhere.
+
+    Args:
+        links: the links.
+
+    Returns:
+        Their mass [kg].
+    """
+    return functools.reduce(operator.add, (link.mass for link in links), 0.0)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.robot.kinematic_tree import Link
+from hyperleg_design.robot.kinematic_tree import Link, mass_of
 from hyperleg_design.robot.posture import Pose, link_poses
 from hyperleg_design.robot.tree import build_tree
 from hyperleg_design.robot.tree_design import TreeDesign
@@ -89,7 +89,7 @@ def _together(
     parts: list[tuple[Link, Pose]], origin: np.ndarray
 ) -> tuple[float, np.ndarray, np.ndarray]:
     """Mass, centre of mass from an origin and principal moments of links at their poses."""
-    mass = sum(link.mass for link, _ in parts)
+    mass = mass_of(link for link, _ in parts)
     if mass == 0:
         return 0.0, np.zeros(3), np.zeros(3)
     places = [(place - origin) + rotation @ link.com for link, (rotation, place) in parts]

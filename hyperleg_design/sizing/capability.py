@@ -217,7 +217,7 @@ def largest_force(
             f"expects finite numbers, shape ({joints},)",
         )
 
-    weight = GRAVITY * float(sum(link.mass for link in model.tree.links))
+    weight = GRAVITY * model.tree.mass
     base = model.base_dof
     columns = slice(base + sides.index(side) * joints, base + (sides.index(side) + 1) * joints)
     points, jacobian = contact_kinematics(model, q)

@@ -92,7 +92,7 @@ class Demand:
         if side not in ("motor", "battery"):
             raise InputError("cost of transport", "side", side, "expects motor or battery")
         energy = self.ledger.energy().total()
-        mass = sum(link.mass for link in self.motion.model.tree.links)
+        mass = self.motion.model.tree.mass
         return float(
             cost_of_transport(
                 energy.motor_side if side == "motor" else energy.battery, mass, self.motion.distance
@@ -228,7 +228,7 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
     speed = motor_velocity(matrix, motion.joint_velocity)
     lower, upper = torque_limits(envelope, speed)
     jacobian = np.stack([contact_kinematics(motion.model, q)[1] for q in motion.q])
-    weight = GRAVITY * float(sum(link.mass for link in motion.model.tree.links))
+    weight = GRAVITY * motion.model.tree.mass
     allocation = least_heat(
         required_forces(motion),
         jacobian,

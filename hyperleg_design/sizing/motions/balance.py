@@ -213,7 +213,7 @@ def balanced_states(
     count = len(pressure)
     travel = np.zeros((3, count, 2)) if drift is None else drift
     center = model.center_of_mass(model.neutral())[2]
-    mass = sum(link.mass for link in model.tree.links)
+    mass = model.tree.mass
     weight, lag = GRAVITY * mass, np.sqrt(center / GRAVITY)
     sideways = series.filtered(pressure[:, :2] - travel[0], lag)
     rise = np.zeros(count) if load is None else series.integrated_twice(GRAVITY * (load - 1))

@@ -302,4 +302,4 @@ class _Hop:
 
     @property
     def _mass(self) -> float:
-        return float(sum(link.mass for link in self.model.tree.links))
+        return self.model.tree.mass
