@@ -19,6 +19,9 @@ _BASE: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 def read_yaml(path: Path) -> dict[str, Any]:
     """Read a YAML file that holds a mapping.
 
+    Args:
+        path: of the file.
+
     Returns:
         The mapping, with plain Python values.
 
@@ -44,11 +47,14 @@ def read_yaml(path: Path) -> dict[str, Any]:
 
 
 def read_json(path: Path, where: str = "") -> Any:
-    """What a JSON file holds.
+    """Read a JSON file.
 
     Args:
         path: of the file.
         where: what errors call it; its short name by default.
+
+    Returns:
+        Its content.
 
     Raises:
         InputError: unreadable, or no JSON.
@@ -66,7 +72,13 @@ def read_json(path: Path, where: str = "") -> Any:
 
 
 def parse_yaml(text: str) -> Any:
-    """What a YAML text holds.
+    """Parse a YAML text.
+
+    Args:
+        text: the text.
+
+    Returns:
+        Its content, with plain Python values.
 
     Raises:
         yaml.YAMLError: malformed, a key twice, or a value that its own type forbids (a 13th month).
@@ -115,10 +127,24 @@ class _Loader(_BASE):  # type: ignore[misc]
 
 
 def short_name(path: Path) -> str:
-    """Folder and name of a file, for messages."""
+    """Name a file by its folder and name, for messages.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The short name.
+    """
     return f"{path.parent.name}/{path.name}" if path.parent.name else path.name
 
 
 def summary_line(documented: object) -> str:
-    """First paragraph of an object's docstring as one line, however the source wraps it."""
+    """Write the first paragraph of an object's docstring as one line, however the source wraps it.
+
+    Args:
+        documented: the object.
+
+    Returns:
+        The line; empty without a docstring.
+    """
     return " ".join((inspect.getdoc(documented) or "").split("\n\n")[0].split())

@@ -19,18 +19,25 @@ FEWEST_WORDS = 3
 """Words that the first paragraph of a public docstring has at least."""
 NAMES_ALLOWED = {
     "cli": 7,
-    "evaluation": 24,
-    "gap": 700,
+    "evaluation": 23,
+    "gap": 500,
     "learning": 16,
     "report": 38,
     "robot": 5,
-    "simulation": 20,
+    "simulation": 18,
     "sweep": 8,
-    "validation": 100,
+    "validation": 60,
 }
 """Bindings of barred names that are left, by package; lower a number when you rename some."""
-DOCSTRINGS_ALLOWED = {"gap": 100, "report": 1, "simulation": 1, "validation": 50}
+DOCSTRINGS_ALLOWED = {"gap": 90, "validation": 10}
 """Public docstrings that are too short, by package; lower a number when you mend some."""
+
+ARGUMENTS_ALLOWED = {"gap": 270, "report": 5, "sweep": 20, "validation": 100}
+"""Public functions whose docstrings do not describe every argument, by package; lower a number when
+you mend some. What a decorator registers under one signature (reward terms, observations, measures)
+is described once, in its module."""
+PLAIN_DECORATORS = {"cached_property", "classmethod", "contextmanager", "cache", "staticmethod"}
+"""Decorators that do not register a function."""
 
 
 def package_of(path: Path) -> str:
@@ -55,6 +62,22 @@ def short_docstrings(tree: ast.AST) -> Iterator[str]:
                 yield node.name
 
 
+def undescribed(tree: ast.AST) -> Iterator[str]:
+    """Public functions with arguments that their docstrings do not describe under `Args`."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.FunctionDef) or node.name.startswith("_"):
+            continue
+        decorators = {ast.unparse(one).split("(")[0].split(".")[-1] for one in node.decorator_list}
+        every = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+        every += [one for one in (node.args.vararg, node.args.kwarg) if one]
+        names = [one.arg for one in every if one.arg not in ("self", "cls")]
+        text = ast.get_docstring(node)
+        if text and names and decorators <= PLAIN_DECORATORS:
+            described = text.partition("Args:")[2]
+            if not all(f"\n    {name}:" in described for name in names):
+                yield node.name
+
+
 def test_barred_names_become_fewer():
     counts = Counter(
         package_of(path)
@@ -75,7 +98,17 @@ def test_public_docstrings_are_sentences():
     assert not more, f"say what these compute: {more}"
 
 
-def test_both_kinds_are_seen():
+def test_public_docstrings_describe_their_arguments():
+    missing: dict[str, list[str]] = {}
+    for path in PACKAGE.rglob("*.py"):
+        names = [f"{path.stem}.{name}" for name in undescribed(ast.parse(path.read_text()))]
+        missing[package_of(path)] = missing.get(package_of(path), []) + names
+    more = {p: n for p, n in missing.items() if len(n) > ARGUMENTS_ALLOWED.get(p, 0)}
+    assert not more, f"describe the arguments of these: {more}"
+
+
+def test_all_kinds_are_seen():
     tree = ast.parse('def mass(found):\n    """[kg]"""\n    told = found\n')
     assert BARRED & set(bound_names(tree)) == {"found", "told"}
     assert list(short_docstrings(tree)) == ["mass"]
+    assert list(undescribed(tree)) == ["mass"]

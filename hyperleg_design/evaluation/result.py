@@ -210,7 +210,7 @@ def evaluations_of(
 
 
 def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
-    """Tabulate all trials.
+    """Tabulate all trials of some evaluations.
 
     Args:
         evaluations: whose trials are listed.
@@ -421,11 +421,18 @@ def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
 
 
 def counted(table: pd.DataFrame, measure: str) -> pd.Series:
-    """A measure of the rows of a trial table as it counts in means over trials: NaN for trials that
-    fell, except for how trials ended.
+    """Choose the values of a measure that count in means over trials: NaN for trials that fell,
+    except for how trials ended.
 
     A fall turns height into motion, so the cost of transport of a trial that fell may even be
-    negative; falls are counted beside the means.
+    negative. Falls are counted beside the means.
+
+    Args:
+        table: as `trial_table` makes it.
+        measure: name of its column.
+
+    Returns:
+        The values, one for each row.
     """
     values = table[measure]
     return values if measure in OUTCOMES else values.where(~(table["fell"] > 0))

@@ -38,7 +38,15 @@ class Part:
 
 
 def proprioception(state: State, robot: Robot) -> list[np.ndarray]:
-    """What the robot's own sensors give, with the command and the last two actions."""
+    """Observe what the robot's own sensors measure, with the command and the last two actions.
+
+    Args:
+        state: of all simulations after a policy step.
+        robot: what parts know of the robot.
+
+    Returns:
+        Columns, `(n, k)` each.
+    """
     motion = state.motion if state.sensed is None else state.sensed
     joint_position = motion.joint_position - robot.layout.default
     return [
@@ -53,14 +61,29 @@ def proprioception(state: State, robot: Robot) -> list[np.ndarray]:
 
 
 def clock(state: State, robot: Robot) -> list[np.ndarray]:
-    """Sine and cosine of the gait clock times its gain; a deviation from the paper."""
+    """Observe sine and cosine of the gait clock times its gain; a deviation from the paper.
+
+    Args:
+        state: of all simulations after a policy step.
+        robot: what parts know of the robot.
+
+    Returns:
+        Columns, `(n, k)` each.
+    """
     angle, gain = 2 * np.pi * state.phase, robot.clock.shown
     return [gain * np.sin(angle)[:, None], gain * np.cos(angle)[:, None]]
 
 
 def waypoint(state: State, robot: Robot) -> list[np.ndarray]:
-    """Offset to the waypoint after the present one (clipped), distance to the present one and speed
-    cap.
+    """Observe the offset to the waypoint after the present one (clipped), the distance to the
+    present one, and the speed cap.
+
+    Args:
+        state: of all simulations after a policy step.
+        robot: what parts know of the robot.
+
+    Returns:
+        Columns, `(n, k)` each.
     """
     assert state.goal is not None
     return [
@@ -71,24 +94,45 @@ def waypoint(state: State, robot: Robot) -> list[np.ndarray]:
 
 
 def privileged(state: State, robot: Robot) -> list[np.ndarray]:
-    """What only a simulation knows: linear velocity, pelvis height, vertical force on each foot
-    over the weight.
+    """Observe what only a simulation knows: linear velocity, pelvis height, and vertical force on
+    each foot over the weight.
+
+    Args:
+        state: of all simulations after a policy step.
+        robot: what parts know of the robot.
+
+    Returns:
+        Columns, `(n, k)` each.
     """
     load = state.foot_load[-1] / np.reshape(robot.layout.weight, (-1, 1))
     return [state.motion.local_velocity, state.motion.position[:, 2:3], load]
 
 
 def height_scan(state: State, robot: Robot) -> list[np.ndarray]:
-    """Pelvis height above each point of a grid less `SCAN_OFFSET`, clipped to 1 m; on a flat floor
-    all the same.
+    """Observe the pelvis height above each point of a grid minus `SCAN_OFFSET`, clipped to 1 m; on
+    a flat floor all are the same.
+
+    Args:
+        state: of all simulations after a policy step.
+        robot: what parts know of the robot.
+
+    Returns:
+        Columns, `(n, k)` each.
     """
     height = np.clip(state.motion.position[:, 2:3] - SCAN_OFFSET, -1.0, 1.0)
     return [np.broadcast_to(height, (len(height), SCAN[0] * SCAN[1]))]
 
 
 def design(state: State, robot: Robot) -> list[np.ndarray]:
-    """Numbers of the robot's design, scaled by the ranges over which the task's designs are drawn;
-    the same throughout an episode.
+    """Observe numbers of the robot's design, scaled by the ranges over which the task's designs are
+    drawn; they are the same throughout an episode.
+
+    Args:
+        state: of all simulations after a policy step.
+        robot: what parts know of the robot.
+
+    Returns:
+        Columns, `(n, k)` each.
     """
     observed = robot.layout.observed
     return [np.broadcast_to(observed, (len(state.command), observed.shape[-1]))]

@@ -45,7 +45,7 @@ class RowStreams:
     def uniform(
         self, low: float = 0.0, high: float = 1.0, size: int | tuple[int, ...] = 0
     ) -> np.ndarray:
-        """Draw uniform numbers.
+        """Draw uniform numbers between two ends.
 
         Args:
             low: lower end.

@@ -198,7 +198,7 @@ def measure(source: RobotSource) -> OtherRobot:
 
 
 def compare(names: Iterable[str] | None = None) -> tuple[OtherRobot, ...]:
-    """Measure several robots.
+    """Measure several robots of `SOURCES`.
 
     Args:
         names: of robots of `SOURCES`; all by default.

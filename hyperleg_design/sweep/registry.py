@@ -87,12 +87,28 @@ def entry(name: str) -> Entry:
 
 
 def is_waypoint(protocol: str, name: str) -> bool:
-    """Whether a measure of a trial is the time of arrival at a waypoint of a protocol's course."""
+    """Decide whether a measure of a trial is the time of arrival at a waypoint of a protocol's
+    course.
+
+    Args:
+        protocol: kind of the protocol.
+        name: of the measure.
+
+    Returns:
+        True if it is.
+    """
     return protocol == "t_test" and bool(_WAYPOINT.fullmatch(name))
 
 
 def is_measure(name: str) -> bool:
-    """Whether a full name is that of a measure; see `entry`."""
+    """Decide whether a full name is that of a measure; see `entry`.
+
+    Args:
+        name: the full name.
+
+    Returns:
+        True if it is.
+    """
     try:
         entry(name)
     except KeyError:

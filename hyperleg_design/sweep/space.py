@@ -441,13 +441,16 @@ def _with_named(
 def with_columns(
     chosen: tuple[str, ...], columns: Iterable[str], base: RobotDesign
 ) -> tuple[str, ...]:
-    """Measures together with those that some columns belong to, in the order of `measures_of`.
+    """Add the measures that some columns belong to.
 
     Args:
         chosen: names of measures.
         columns: names of columns, such as `max_joint_torque.knee`; those that no measure of the
             design has are left out.
         base: the design.
+
+    Returns:
+        Names of the measures, in the order of `measures_of`.
     """
     wanted = set(columns)
     known = measures.measures_of(base)

@@ -106,7 +106,7 @@ class Check:
 
 
 def check_log(log: Log, subject: Subject | None = None) -> Check:
-    """Check one log.
+    """Check one log for what it can and cannot show.
 
     Args:
         log: what was read.

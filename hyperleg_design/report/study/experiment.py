@@ -18,7 +18,14 @@ TITLE = "Walking and the T-test, with trained policies"
 
 
 def experiment(context: Context) -> Made:
-    """Ten walks or ten T-tests of every shipped policy, and what they say."""
+    """Evaluate every shipped policy in ten walks or ten T-tests, and show the results.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     evaluated = evaluate_with_bar(context.policies, progress=context.progress)
     if not evaluated.policies:
         return Made(Section(TITLE, [NO_POLICY]))

@@ -19,7 +19,14 @@ MOTIONS = ("walk", "stair", "squat", "hop")
 
 
 def capability(context: Context) -> Made:
-    """Section on the largest forces that the feet can exert on the ground."""
+    """Show the largest forces that the feet can exert on the ground.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     from hyperleg_design.sizing.capability import capability_table
 
     upright = [
@@ -82,7 +89,14 @@ def capability(context: Context) -> Made:
 
 
 def demand(context: Context) -> Made:
-    """What planned motions ask of every motor."""
+    """Show what planned motions ask of every motor.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     from hyperleg_design.sizing.demand import demand as demand_of
 
     demands: dict[str, dict[str, Demand]] = {}

@@ -31,7 +31,14 @@ LEAD = (
 
 
 def robot(context: Context) -> Made:
-    """Section with pictures of the robot and its variants."""
+    """Show pictures of the robot and its variants.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     analysis = analyze(context.design)
     write_json(context.folder / "analysis.json", analysis)
     design = context.design
@@ -102,7 +109,14 @@ def robot(context: Context) -> Made:
 
 
 def table_i(context: Context) -> Made:
-    """Table I and the motors beside the paper's values."""
+    """Compare Table I and the motors with the paper's values.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     rows = table_one(context.design)
     agreeing = sum(r.verdict == "agrees" for r in rows)
     content = [
@@ -137,7 +151,14 @@ def _rows_table(rows: list[Row]) -> Table:
 
 
 def inconsistencies(context: Context) -> Made:
-    """What does not fit together in the paper."""
+    """List what does not fit together in the paper.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     rows = [[i.place, i.finding, i.choice] for i in paper.INCONSISTENCIES]
     return Made(
         Section(
@@ -148,7 +169,14 @@ def inconsistencies(context: Context) -> Made:
 
 
 def cooperative_actuation(context: Context) -> Made:
-    """The matrix in both postures, and between them."""
+    """Show the matrix in both postures, and between them.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     from hyperleg_design.report.sizing.linkage_figures import linkage_figure
     from hyperleg_design.robot.models import leg_reflected_inertia
 
@@ -189,7 +217,14 @@ def cooperative_actuation(context: Context) -> Made:
 
 
 def envelopes(context: Context) -> Made:
-    """Motor envelopes, and the set of torques that joints can have together."""
+    """Show motor envelopes, and the set of torques that joints can have together.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     from hyperleg_design.report.sizing.envelope_figures import (
         polyhedron_figure,
         slice_figure,
@@ -254,7 +289,14 @@ def envelopes(context: Context) -> Made:
 
 
 def lightness(context: Context) -> Made:
-    """The leg's mass and inertia beside those of other robots."""
+    """Compare the leg's mass and inertia with those of other robots.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     from hyperleg_design.report.sizing.inertia_figures import leg_comparison_figure
     from hyperleg_design.sizing.inertia import leg_inertia, rotor_swing_inertia
     from hyperleg_design.sizing.other_robots import compare
@@ -320,8 +362,14 @@ def _lighter(own: Any, others: list[Any]) -> str:
 
 
 def sweeps(context: Context) -> Made:
-    """Every shipped sweep of sizing measures; those whose designs walk take hours and have pages of
-    their own.
+    """Run every shipped sweep of sizing measures; those whose designs walk take hours and have
+    pages of their own.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
     """
     from hyperleg_design import resources
     from hyperleg_design.report.sweep.page import sweep_content
@@ -348,7 +396,14 @@ def sweeps(context: Context) -> Made:
 
 
 def motors(context: Context) -> Made:
-    """Section on the motors of the catalogue."""
+    """List the motors of the catalogue.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     from hyperleg_design.robot.motors import catalogue
 
     rows = []
@@ -405,7 +460,14 @@ def motors(context: Context) -> Made:
 
 
 def made_from(context: Context) -> Made:
-    """Section that lists all parameters with their labels and sources."""
+    """List all parameters with their labels and sources.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     design = context.design
     labels: dict[str, int] = {}
     rows = []

@@ -19,7 +19,15 @@ TITLE = "Walking over designs"
 
 
 def walked(context: Context) -> Made:
-    """Maps of walking over designs; trials are committed, and a sample of them is run again."""
+    """Show maps of walking over designs; the trials are committed, and a sample of them is run
+    again.
+
+    Args:
+        context: what the study is about, and where its files go.
+
+    Returns:
+        The section, and its headline numbers.
+    """
     content: list[Any] = [
         "Here every design of a sweep walks. The trials take minutes to hours, so that they are committed (sweeps/walked) and this page runs a sample of them again. hyperleg sweep run NAME --out FOLDER runs all."
     ]

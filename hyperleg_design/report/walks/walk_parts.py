@@ -41,7 +41,15 @@ ATTRIBUTED = ("power", "joule_power", "steady_cost_of_transport", "grf_peak", "g
 
 
 def walks(evaluated: Evaluated, draw: Drawer) -> Part:
-    """Pictures of walks, and the demands on them."""
+    """Show pictures of walks, and the demands on believable ones.
+
+    Args:
+        evaluated: the policies with their trials.
+        draw: draws figures into the page's folder.
+
+    Returns:
+        The part.
+    """
     content: list[Any] = []
     groups = evaluated.groups(WALK)
     columns = [(group, design) for group in groups for design in evaluated.designs(group)]
@@ -96,7 +104,15 @@ def walks(evaluated: Evaluated, draw: Drawer) -> Part:
 
 
 def speeds(evaluated: Evaluated, draw: Drawer) -> Part:
-    """Cost of transport over commanded speed, cadence chosen by the policies."""
+    """Show the cost of transport over commanded speed, with the cadence that the policies choose.
+
+    Args:
+        evaluated: the policies with their trials.
+        draw: draws figures into the page's folder.
+
+    Returns:
+        The part.
+    """
     content: list[Any] = [
         "Walks at commanded speeds from 0.6 to 2.0 m/s by policies that observe no gait clock, so that they choose their cadence: share of trials that arrive, and cost of transport over the steady strides of those that do."
     ]
@@ -112,7 +128,15 @@ def speeds(evaluated: Evaluated, draw: Drawer) -> Part:
 
 
 def table_three(evaluated: Evaluated, draw: Drawer) -> Part:
-    """Part of the page with Table III: walking, measured beside printed numbers."""
+    """Compare walks with Table III of the paper.
+
+    Args:
+        evaluated: the policies with their trials.
+        draw: draws figures into the page's folder.
+
+    Returns:
+        The part.
+    """
     content: list[Any] = [
         "The paper's numbers beside ours: twenty metres at 1.33 m/s. Ablation: toe and its motor removed at equal mass (toe_removed_matched), which fits the ratios of the table best. "
         "A printed number agrees where it lies in our interval."
@@ -143,7 +167,15 @@ def table_three(evaluated: Evaluated, draw: Drawer) -> Part:
 
 
 def confound(evaluated: Evaluated, draw: Drawer) -> Part:
-    """The difference split into toe, torque and mass."""
+    """Split the difference that the toe makes into toe, torque and mass.
+
+    Args:
+        evaluated: the policies with their trials.
+        draw: draws figures into the page's folder.
+
+    Returns:
+        The part.
+    """
     ladder: list[Any] = [
         "Taking the toe's motor away also weakens knee and ankle, which it helps, and lightens the leg. The ablations change one thing at a time: toe locked with its motor kept, toe and motor gone at equal mass, gone with their mass. "
         "Each line is the one without less the one with."
@@ -199,7 +231,15 @@ def confound(evaluated: Evaluated, draw: Drawer) -> Part:
 
 
 def cycle(evaluated: Evaluated, draw: Drawer) -> Part:
-    """Part of the page with Figure 6: power over the gait cycle."""
+    """Show power over the gait cycle, as Figure 6 of the paper.
+
+    Args:
+        evaluated: the policies with their trials.
+        draw: draws figures into the page's folder.
+
+    Returns:
+        The part.
+    """
     content: list[Any] = []
     for group in evaluated.groups(WALK):
         walks = {d: evaluated.of(group, d) for d in evaluated.designs(group) if d in VARIANTS}
@@ -216,7 +256,15 @@ def cycle(evaluated: Evaluated, draw: Drawer) -> Part:
 
 
 def impacts(evaluated: Evaluated, draw: Drawer) -> Part:
-    """Impacts over the stiffness of the sole, and the pad that it stands for."""
+    """Show impacts over the stiffness of the sole, and the pad that it stands for.
+
+    Args:
+        evaluated: the policies with their trials.
+        draw: draws figures into the page's folder.
+
+    Returns:
+        The part.
+    """
     evaluation, trial = next(
         (e, e.trials[0])
         for e in evaluated.evaluations

@@ -157,7 +157,15 @@ class _Hop:
     plan: HopPlan
 
     def states(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """States at times within one hop, `(n,)`."""
+        """Compute the states at times within one hop.
+
+        Args:
+            time: from touchdown [s], `(n,)`.
+
+        Returns:
+            Configurations, velocities and accelerations in Pinocchio's coordinates, `(n, ...)`
+            each.
+        """
         design, plan = self.model.design, self.plan
         middle, rise = sole_middle(design), load_pulse(plan, time)[0]
         # the straightest moment, upright and over the middle of the soles, fixes how high the
