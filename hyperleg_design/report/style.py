@@ -20,6 +20,17 @@ VARIANT_COLOUR = {
     "toe_passive": "#2a8a5f",
 }
 """Colour of each ablation, told apart by colour-blind readers too."""
+VARIANT_LABEL = {
+    "toe": "active toe",
+    "toe_locked": "toe locked",
+    "toe_removed_matched": "toe removed, mass kept",
+    "toe_removed": "toe removed",
+}
+"""Name of each ablation in legends."""
+LEG_COLOUR = {"left": "#c8602a", "right": "#2f6db3"}
+"""Colour of each leg."""
+INK, GREY = "#1d2129", "#6b7280"
+"""Colours of lines and texts that are, or are not, the subject of a figure."""
 
 
 def variant_colour(variant: str) -> str:

@@ -1,5 +1,5 @@
-"""Recorded trials in three dimensions: a strip of snapshots over a gait cycle, and animations as
-GIF files.
+"""Recorded trials in three dimensions: a strip of snapshots over a gait cycle, and
+animations.
 """
 
 from __future__ import annotations
@@ -9,25 +9,22 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from hyperleg_design.errors import HyperlegError, InputError
+from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.bearing import headings
 from hyperleg_design.evaluation.gait import strides
 from hyperleg_design.evaluation.protocol import TTestProtocol
 from hyperleg_design.evaluation.steps import measured_steps
-from hyperleg_design.report.pictures.picture import PAD, Scene, Solid, drawn, robot_solids
+from hyperleg_design.report.pictures.picture import Scene, Solid, drawn
+from hyperleg_design.report.pictures.solids import PAD, robot_solids
 from hyperleg_design.robot.tree import build_tree
-from hyperleg_design.writing import write_bytes
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
 
-MOST_BYTES = 2_000_000
-"""Largest size of a GIF file [byte]."""
 SNAPSHOTS = 8
 """Number of snapshots of a strip, over one gait cycle from touchdown to touchdown of the right
 foot."""
@@ -112,65 +109,6 @@ def drawn_frames(motion: Motion, path: str | os.PathLike[str]) -> np.ndarray:
         HyperlegError: this machine cannot draw.
     """
     return np.asarray(np.load(io.BytesIO(drawn(motion, path))))
-
-
-def render_gif(motion: Motion, path: str | os.PathLike[str]) -> Path:
-    """Draw a motion into a GIF file of at most `MOST_BYTES`; colours, then frames are left out
-    until it fits.
-
-    Args:
-        motion: what is drawn.
-        path: of the file.
-
-    Returns:
-        The path.
-
-    Raises:
-        HyperlegError: this machine cannot draw, or no file small enough can be made.
-        OutputError: the file cannot be written.
-    """
-    frames = drawn_frames(motion, path)
-    for every, colours in ((1, 64), (1, 24), (2, 32), (2, 16), (3, 16), (4, 12)):
-        content = gif_of(frames[::every], every * motion.frame_time, colours)
-        if len(content) <= MOST_BYTES:
-            return write_bytes(path, content)
-    raise HyperlegError(
-        f"{path}: the animation is too long for {MOST_BYTES / 1e6:g} MB; show less of it"
-    )
-
-
-def gif_of(frames: np.ndarray, frame_time: float, colours: int) -> bytes:
-    """Make a GIF file that repeats frames.
-
-    Args:
-        frames: bytes, `(frames, height, width, 3)`.
-        frame_time: for which each frame is shown [s].
-        colours: in the palette.
-
-    Returns:
-        The content of the file.
-    """
-    from PIL import Image
-
-    sample = frames[np.linspace(0, len(frames) - 1, 8).astype(int)]
-    # one palette, so that nothing flickers
-    first = Image.fromarray(sample.reshape(-1, *frames.shape[2:])).quantize(
-        colours, dither=Image.Dither.NONE
-    )
-    images = [
-        Image.fromarray(frame).quantize(palette=first, dither=Image.Dither.NONE) for frame in frames
-    ]
-    stream = io.BytesIO()
-    images[0].save(
-        stream,
-        "GIF",
-        save_all=True,
-        append_images=images[1:],
-        duration=round(1000 * frame_time),
-        loop=0,
-        optimize=False,
-    )
-    return stream.getvalue()
 
 
 def walk_motion(

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.report.pictures.motion import Motion, drawn_frames, gif_of
+from hyperleg_design.report.pictures.gif import gif_of
+from hyperleg_design.report.pictures.motion import Motion, drawn_frames
 from hyperleg_design.writing import write_bytes
 
 KINDS = (".mp4", ".gif")

@@ -204,8 +204,8 @@ def _figures(context: Context, demands: dict[str, dict[str, Demand]]) -> list[An
         cycle_figure,
         margin_figure,
         operating_points_figure,
-        stick_figure_strip,
     )
+    from hyperleg_design.report.sizing.stick_figures import stick_figure_strip
 
     walk = demands["walk"]
     pair: dict[str, Demand] = {n: walk[n] for n in ("toe", "toe_removed_matched") if n in walk}

@@ -10,9 +10,9 @@ from hyperleg_design import provenance
 from hyperleg_design.evaluation.shipped import shipped_policies
 from hyperleg_design.report import page as pages
 from hyperleg_design.report.page import Page, Section
+from hyperleg_design.report.study import actuation, sections
 from hyperleg_design.report.study import experiment as study_experiment
 from hyperleg_design.report.study import motions as motion
-from hyperleg_design.report.study import sections
 from hyperleg_design.report.study.context import FIGURES, Context, Made
 from hyperleg_design.report.study.walked import walked
 from hyperleg_design.robot.ablation import variants
@@ -23,11 +23,11 @@ STEPS: Mapping[str, Callable[..., Made]] = {
     "robot": sections.robot,
     "table I": sections.table_i,
     "inconsistencies": sections.inconsistencies,
-    "cooperative actuation": sections.cooperative_actuation,
-    "envelopes": sections.envelopes,
+    "cooperative actuation": actuation.cooperative_actuation,
+    "envelopes": actuation.envelopes,
     "capability": motion.capability,
     "demand": motion.demand,
-    "lightness": sections.lightness,
+    "lightness": actuation.lightness,
     "sweeps": sections.sweeps,
     "motors": sections.motors,
     "policies": study_experiment.experiment,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.report.pictures.picture import Solid, link_solids
+from hyperleg_design.report.pictures.picture import Solid
+from hyperleg_design.report.pictures.solids import link_solids
 from hyperleg_design.robot.posture import Pose, default_angles, link_poses, lowest_point
 from hyperleg_design.robot.tree import build_tree
 

@@ -12,7 +12,7 @@ from hyperleg_design.evaluation.shipped import learning_curve
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.page import Cell, Details, Table
-from hyperleg_design.report.pictures import motion
+from hyperleg_design.report.pictures import gif, motion
 from hyperleg_design.report.sizing.envelope_figures import torque_speed_figure
 from hyperleg_design.report.style import later, save
 from hyperleg_design.report.walks import walk_parts as walks
@@ -183,7 +183,7 @@ def _table_four(evaluated: Evaluated, draw: Drawer) -> Part:
                     (
                         f"{group}_{d}",
                         caption,
-                        lambda p, t=t, one=some[0]: motion.render_gif(
+                        lambda p, t=t, one=some[0]: gif.render_gif(
                             motion.t_test_motion(t, one.protocol), p
                         ),
                         ".gif",

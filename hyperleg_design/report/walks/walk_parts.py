@@ -19,7 +19,7 @@ from hyperleg_design.evaluation.steps import measured_steps
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.page import Cell, Table
-from hyperleg_design.report.pictures import motion, picture
+from hyperleg_design.report.pictures import gif, motion, picture
 from hyperleg_design.report.style import later, save
 from hyperleg_design.report.walks.beside_paper import (
     beside,
@@ -88,7 +88,7 @@ def walks(evaluated: Evaluated, draw: Drawer) -> Part:
                     (
                         f"{group}_{d}",
                         caption,
-                        lambda p, t=t: motion.render_gif(motion.walk_motion(t), p),
+                        lambda p, t=t: gif.render_gif(motion.walk_motion(t), p),
                         ".gif",
                         False,
                     )

@@ -7,7 +7,6 @@ from hyperleg_design.report.sizing.demand_figures import (
     cycle_figure,
     margin_figure,
     operating_points_figure,
-    stick_figure_strip,
 )
 from hyperleg_design.report.style import save
 from hyperleg_design.robot.ablation import ablate
@@ -33,20 +32,6 @@ def closed():
 
     yield
     plt.close("all")
-
-
-def test_strip_draws_the_robot_where_the_motion_has_it(walks):
-    walk = walks["toe"]
-    axes = stick_figure_strip(walk, frames=4, spacing=0.0).axes[0]
-    legs = [line for line in axes.lines if len(line.get_xdata()) == 3 and line.get_linewidth() == 4]
-    assert len(legs) == 8
-    for line, n in zip(legs[::2], (0, 15, 30, 46), strict=True):
-        hip = walk.motion.model.frame_position(walk.motion.q[n], "left_thigh")
-        np.testing.assert_allclose(
-            [line.get_xdata()[0], line.get_ydata()[0]], hip[[0, 2]], atol=1e-12
-        )
-        assert 0.3 < hip[2] < 0.8
-    assert "planned" in axes.get_title(loc="left")
 
 
 def test_cycle_shows_angles_and_torques_of_every_robot(walks):
@@ -109,8 +94,6 @@ def test_nothing_to_draw(walks):
         margin_figure({})
     with pytest.raises(InputError, match="at least one"):
         capability_figure([])
-    with pytest.raises(InputError, match="at least 2"):
-        stick_figure_strip(walks["toe"], frames=1)
     design = load_design()
     with pytest.raises(InputError, match="one motion"):
         cycle_figure({"a": walks["toe"], "b": demand(design, "squat")})

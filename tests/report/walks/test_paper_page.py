@@ -9,7 +9,7 @@ import pytest
 from hyperleg_design.cli import main
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import Steady, TTestProtocol, WalkProtocol
-from hyperleg_design.report.pictures import motion
+from hyperleg_design.report.pictures import gif
 from hyperleg_design.report.walks import paper_page
 from hyperleg_design.writing import write_bytes
 
@@ -18,8 +18,8 @@ from hyperleg_design.writing import write_bytes
 def page(trainings, tmp_path_factory):
     short = WalkProtocol(trials=2, distance=2.0, time_limit=1.6, steady=Steady(begin=0.5))
     out = tmp_path_factory.mktemp("paper") / "out"
-    with pytest.MonkeyPatch.context() as patch:  # animations are drawn in test_motion
-        patch.setattr(motion, "render_gif", lambda made, path: write_bytes(path, b"GIF89a"))
+    with pytest.MonkeyPatch.context() as patch:  # animations are drawn in test_gif
+        patch.setattr(gif, "render_gif", lambda made, path: write_bytes(path, b"GIF89a"))
         return paper_page.run_paper(
             trainings,
             out,

@@ -11,7 +11,7 @@ import pytest
 from hyperleg_design.evaluation.analysis_plan import load_plan
 from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Cell, Details, Missing, Picture, Table
-from hyperleg_design.report.pictures import motion
+from hyperleg_design.report.pictures import gif
 from hyperleg_design.report.walks import policy_parts as study_policies
 from hyperleg_design.report.walks import walk_parts
 from hyperleg_design.report.walks.evaluated import Evaluated
@@ -22,8 +22,8 @@ from hyperleg_design.writing import write_bytes
 def parts(found, tmp_path_factory):
     folder = tmp_path_factory.mktemp("page")
     (folder / FIGURES).mkdir()
-    with pytest.MonkeyPatch.context() as patch:  # animations are drawn in test_motion
-        patch.setattr(motion, "render_gif", lambda made, path: write_bytes(path, b"GIF89a"))
+    with pytest.MonkeyPatch.context() as patch:  # animations are drawn in test_gif
+        patch.setattr(gif, "render_gif", lambda made, path: write_bytes(path, b"GIF89a"))
         patch.setattr(
             "hyperleg_design.report.pictures.picture.render",
             lambda scene, path: write_bytes(path, b"PNG"),

@@ -1,0 +1,39 @@
+"""Solids stand where the robot stands, and motors are drawn where they are installed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hyperleg_design.report.pictures.solids import PAD, robot_solids
+from hyperleg_design.robot.ablation import variants
+from hyperleg_design.robot.design import load_design
+
+
+@pytest.fixture(scope="module")
+def design():
+    return load_design("hyperleg")
+
+
+def test_robot_stands_on_the_floor(design):
+    for angles in ({}, {"left_knee": 1.0, "left_hip_pitch": -0.5, "left_ankle_pitch": -0.5}):
+        pads = [s for s in robot_solids(design, angles=angles) if s.colour == PAD]
+        assert min(s.position[2] - s.size[0] for s in pads) == pytest.approx(0, abs=1e-12)
+
+
+def test_yaw_turns_the_robot_as_a_whole(design):
+    plain, turned = robot_solids(design), robot_solids(design, yaw=0.7)
+    steps = [
+        np.linalg.norm(np.diff([s.position for s in solids], axis=0), axis=1)
+        for solids in (plain, turned)
+    ]
+    assert np.allclose(steps[0], steps[1], atol=1e-12)
+    assert not np.allclose([s.position for s in plain], [s.position for s in turned])
+
+
+def test_only_installed_motors_are_drawn(design):
+    counts = {}
+    for name, variant in variants(design).items():
+        with_motors = len(robot_solids(variant, motors=True))
+        counts[name] = with_motors - len(robot_solids(variant, motors=False))
+    assert counts == {"toe": 14, "toe_locked": 14, "toe_removed_matched": 12, "toe_removed": 12}
