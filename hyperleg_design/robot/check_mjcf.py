@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import in_short
-from hyperleg_design.robot.check_urdf import parse_xml
 from hyperleg_design.robot.finding import Finding
+from hyperleg_design.robot.urdf_xml import parse_xml
 
 LARGEST_TIME_STEP = 0.02
 """Step past which contacts and motors no longer behave [s]."""

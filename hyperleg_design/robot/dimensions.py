@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from hyperleg_design.robot import masses, tree_limb
+from hyperleg_design.robot import limb_masses, masses, tree_limb
 from hyperleg_design.robot.consistency import leg_length
 from hyperleg_design.robot.tree_design import TreeDesign
 
@@ -23,7 +23,7 @@ def total_mass(design: RobotDesign) -> Any:
         The mass [kg], `(...)`.
     """
     if isinstance(design, TreeDesign):
-        return tree_limb.limb_masses(design).total
+        return limb_masses.limb_masses(design).total
     return masses.mass_table(cast("Design", design)).total
 
 
@@ -37,7 +37,7 @@ def limb_mass(design: RobotDesign) -> Any:
         The mass [kg], `(...)`.
     """
     if isinstance(design, TreeDesign):
-        return tree_limb.limb_masses(design).limb
+        return limb_masses.limb_masses(design).limb
     return masses.mass_table(cast("Design", design)).leg
 
 

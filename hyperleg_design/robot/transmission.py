@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import tree_limb
+from hyperleg_design.robot import limb_actuation, tree_limb
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, POSTURES
 from hyperleg_design.robot.sections import LinkageScale
@@ -162,7 +162,7 @@ def joint_from_motor(design: RobotDesign, posture: str | None = None) -> np.ndar
         same on both sides.
     """
     if isinstance(design, TreeDesign):
-        return tree_limb.joint_from_motor(design)
+        return limb_actuation.joint_from_motor(design)
     return full_joint_from_motor(cast("HyperLeg", design), posture)[
         ..., : len(joint_names(design)), : len(motor_names(design))
     ]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.robot import transmission, tree_limb
+from hyperleg_design.robot import limb_masses, transmission, tree_limb
 from hyperleg_design.robot.described import prefixed
 from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.kinematic_tree import Link, Shape, Tree, TreeJoint
@@ -29,7 +29,7 @@ def tree_of(design: TreeDesign) -> Tree:
         The tree.
     """
     root = str(design.trunk.link)
-    masses = tree_limb.limb_masses(design).links
+    masses = limb_masses.limb_masses(design).links
     links = [_link(design, root, root, masses[root], mirror=False)]
     joints: list[TreeJoint] = []
     for copy, section in design.copy_sections.items():

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import motors, parameters, tree_limb
+from hyperleg_design.robot import limb_actuation, limb_masses, motors, parameters
 from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.gear import rotor_inertia
 from hyperleg_design.robot.tree_design import TreeDesign
@@ -195,7 +195,7 @@ def _check_motors(design: TreeDesign, where: str) -> None:
 
 
 def _check_bodies(design: TreeDesign, where: str) -> None:
-    masses = tree_limb.limb_masses(design).links
+    masses = limb_masses.limb_masses(design).links
     for name, body in masses.items():
         principal = np.linalg.eigvalsh(body.inertia)
         scale = np.maximum(principal[..., 2], 1e-12)
@@ -221,7 +221,7 @@ def _check_bodies(design: TreeDesign, where: str) -> None:
 
 def _check_actuation(design: TreeDesign, where: str) -> None:
     joints, columns = list(design.joint_sections), list(design.actuator_sections)
-    matrix = tree_limb.joint_from_motor(design)
+    matrix = limb_actuation.joint_from_motor(design)
     for index, name in enumerate(joints):
         if not np.any(matrix[..., index, :]):
             raise InputError(

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot.limb_actuation import RodLinkage
 from hyperleg_design.robot.linkage import LinkageModel
 from hyperleg_design.robot.tree_design import TreeDesign
-from hyperleg_design.robot.tree_limb import RodLinkage
 from hyperleg_design.simulation import actuation
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.chain import Chain, Driven

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
-from hyperleg_design.robot import transmission, tree_limb
+from hyperleg_design.robot import limb_masses, transmission, tree_limb
 from hyperleg_design.robot.dimensions import limb_mass, standing_height, total_mass
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import find_motor
@@ -59,7 +59,7 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         "limb_mass": float(limb_mass(design)),
         "standing_height": float(standing_height(design)),
         "link_mass": {
-            name: float(body.mass) for name, body in tree_limb.limb_masses(design).links.items()
+            name: float(body.mass) for name, body in limb_masses.limb_masses(design).links.items()
         },
         "joints": list(joints),
         "motors": _motors(design),
@@ -70,7 +70,7 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         ),
         "single_joint_speed": named(transmission.single_joint_speed(design)),
         "reflected_inertia": leg_reflected_inertia(design).tolist(),
-        "link_inertia": named([tree_limb.behind(design, name, default)[2] for name in joints]),
+        "link_inertia": named([limb_masses.behind(design, name, default)[2] for name in joints]),
         "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(matrix, -peak, peak)),
         "contact_force": _forces(design),
     }

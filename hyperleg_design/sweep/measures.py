@@ -15,7 +15,14 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.reading import summary_line
-from hyperleg_design.robot import consistency, dimensions, masses, transmission, tree_limb
+from hyperleg_design.robot import (
+    consistency,
+    dimensions,
+    limb_masses,
+    masses,
+    transmission,
+    tree_limb,
+)
 from hyperleg_design.robot.bodies import Inertial
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.friction import joint_friction
@@ -315,13 +322,13 @@ def standing_height(batch: Batch) -> np.ndarray:
 
 
 def _links(design: Any) -> tuple[str, ...]:
-    return tuple(tree_limb.limb_masses(design).links)
+    return tuple(limb_masses.limb_masses(design).links)
 
 
 @measure("kg", "low", ("LINK",), families=(TREE,), usual=False, parts_of=_links)
 def link_mass(batch: Batch) -> np.ndarray:
     """Mass of each link of one limb."""
-    links = tree_limb.limb_masses(batch.design).links.values()
+    links = limb_masses.limb_masses(batch.design).links.values()
     return _stacked([body.mass for body in links], batch.size)
 
 
@@ -330,7 +337,7 @@ def link_inertia(batch: Batch) -> np.ndarray:
     """Inertia about each joint of what is behind it in the default posture, without rotors."""
     default = tree_limb.default_position(batch.design)
     joints = transmission.joint_names(batch.design)
-    behind = [tree_limb.behind(batch.design, joint, default)[2] for joint in joints]
+    behind = [limb_masses.behind(batch.design, joint, default)[2] for joint in joints]
     return _stacked(behind, batch.size)
 
 

@@ -17,7 +17,7 @@ from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.report.viewer import charts
 from hyperleg_design.report.viewer.scene import RobotView
 from hyperleg_design.report.viewer.sliders import HIGHEST, LOWEST, changed, parameters_of
-from hyperleg_design.robot import tree_limb
+from hyperleg_design.robot import limb_masses
 from hyperleg_design.robot.dimensions import total_mass
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.names import SEGMENTS
@@ -402,7 +402,7 @@ def masses_text(designs: Mapping[str, RobotDesign]) -> str:
 
 def _masses(design: RobotDesign) -> dict[str, float]:
     if isinstance(design, TreeDesign):
-        table = tree_limb.limb_masses(design)
+        table = limb_masses.limb_masses(design)
         links = {name.replace("_", " "): float(body.mass) for name, body in table.links.items()}
         return links | {"one limb": float(table.limb), "**robot**": float(table.total)}
     own: Any = mass_table(design)  # type: ignore[arg-type]
