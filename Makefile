@@ -37,8 +37,8 @@ lint: $(VENV)/.ready  ## Style and types
 docs: $(VENV)/.ready  ## The documentation as a site, in site/; a warning is an error
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
-coverage: $(VENV)/.learning  ## The tests, and which lines none of them runs
-	$(BIN)/python -m pytest -m "not slow" -n 2 --cov=hyperleg_design --cov-report=term:skip-covered --cov-report=html:results/coverage
+coverage: $(VENV)/.learning  ## The tests, and which lines none of them runs; TESTS="tests/robot tests/sizing" runs these folders only
+	$(BIN)/python -m pytest $(TESTS) -m "not slow" -n 2 --cov=hyperleg_design --cov-report=term:skip-covered --cov-report=html:results/coverage
 
 wheel-test: $(VENV)/.ready  ## Build the wheel and try it in a clean environment
 	$(BIN)/python -m pytest tests/test_wheel.py

@@ -31,7 +31,11 @@ class Chosen(Printing):
     """YAML file of parameters that differ, applied before --set."""
 
     def load(self) -> RobotDesign:
-        """Load the design that the options describe."""
+        """Load the design that the options describe.
+
+        Returns:
+            The design.
+        """
         return load_robot(
             self.design, overrides=self.set, overlays=self.set_file, variant=self.variant or None
         )

@@ -210,7 +210,11 @@ _KINDS: dict[str, type[Protocol]] = {"walk": WalkProtocol, "t_test": TTestProtoc
 
 
 def protocol_names() -> list[str]:
-    """Names of the shipped protocols."""
+    """List the shipped protocols.
+
+    Returns:
+        Their names, sorted.
+    """
     return resources.sim_names("protocol")
 
 

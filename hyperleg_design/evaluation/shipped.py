@@ -88,7 +88,11 @@ class Packed:
 
 
 def shipped_folder() -> Path:
-    """Where the shipped policies are; may not exist."""
+    """Find the folder of the shipped policies.
+
+    Returns:
+        Its path, which need not exist.
+    """
     return resources.content_folder("sim") / POLICIES
 
 

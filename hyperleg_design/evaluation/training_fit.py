@@ -42,7 +42,11 @@ class TrainingFit:
     """Those of them that lie outside what it was trained over."""
 
     def text(self) -> str:
-        """Description for tables: the kind, and what lies outside the trained range."""
+        """Describe the fit for tables.
+
+        Returns:
+            The kind, and what lies outside of the trained range.
+        """
         if not self.outside:
             return self.kind
         shown = ", ".join(

@@ -46,7 +46,11 @@ class IterationPPO(PPO):  # type: ignore[misc]
     """KL divergence in the last epoch of the latest update [nat]."""
 
     def update(self) -> dict[str, float]:
-        """One iteration's epochs, then the learning rate for the next."""
+        """Run the epochs of one iteration, then set the learning rate for the next one.
+
+        Returns:
+            The losses by name.
+        """
         losses = super().update()
         meter = self.symmetry
         assert isinstance(meter, HalfMirrored)

@@ -280,7 +280,11 @@ def _can_start(run: Run, folder: Path) -> bool:
 
 
 def shipped_folder() -> Path:
-    """Where finished trainings are shipped."""
+    """Find the folder in which finished trainings are shipped.
+
+    Returns:
+        Its path, which need not exist.
+    """
     return resources.content_folder("sim") / POLICIES
 
 

@@ -83,7 +83,11 @@ class DesignSampler:
         self._draw()
 
     def state(self) -> dict[str, Any]:
-        """All that its future depends on."""
+        """Collect all that the future of the sampler depends on.
+
+        Returns:
+            Numbers and arrays by name, as `put` takes them.
+        """
         return {
             "draws": self.draws,
             "assigned": self.assigned,

@@ -83,5 +83,9 @@ def run_here(
 
 
 def surrounded() -> bool:
-    """Whether this process has a training's surroundings."""
+    """Decide whether this process has the environment variables of a training.
+
+    Returns:
+        True if it has.
+    """
     return all(os.environ.get(key) == value for key, value in MALLOC.items())

@@ -87,7 +87,11 @@ class Meter:
         return found
 
     def state(self) -> dict[str, float]:
-        """Running means that a checkpoint keeps, by name."""
+        """Collect the running means that a checkpoint keeps.
+
+        Returns:
+            Means by name, as `put` takes them.
+        """
         return {"steps": self.steps, "ends": self.ends, "share": self.share}
 
     def put(self, state: dict[str, float]) -> None:

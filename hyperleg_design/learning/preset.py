@@ -203,7 +203,11 @@ class Preset(Checked):
 
 
 def preset_names() -> list[str]:
-    """Names of the shipped presets."""
+    """List the shipped presets.
+
+    Returns:
+        Their names, sorted.
+    """
     return resources.sim_names("preset")
 
 

@@ -35,7 +35,11 @@ class RoundedLinear(nn.Linear):  # type: ignore[misc]
 
 
 def multiplies_bfloat16() -> bool:
-    """Whether this processor multiplies bfloat16 itself."""
+    """Find out whether this processor multiplies bfloat16 itself.
+
+    Returns:
+        True if it does.
+    """
     found = torch.cpu.get_capabilities()
     return any(found.get(name, False) for name in NATIVE)
 

@@ -119,7 +119,11 @@ class Schedule:
         self._update_assist()
 
     def state(self) -> dict[str, Any]:
-        """The state that a checkpoint keeps and that `put` takes back."""
+        """Collect the state that a checkpoint keeps.
+
+        Returns:
+            Numbers and lists by name, as `put` takes them.
+        """
         return {"iteration": self.iteration, "gain": self.gain, "gone": list(self.gone)}
 
     def put(self, state: dict[str, Any]) -> None:

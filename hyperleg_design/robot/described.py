@@ -93,7 +93,11 @@ class RobotDesign:
         return (max(sizes),) if sizes else ()
 
     def batch_sizes(self) -> dict[str, int]:
-        """Length of the batch of each leaf that holds one, by dotted path."""
+        """Find the leaves that hold a batch.
+
+        Returns:
+            Length of the batch by dotted path.
+        """
         values = ((path, rule, self[path]) for path, rule in self.rules.items())
         return {
             path: len(value)
@@ -201,7 +205,11 @@ class RobotDesign:
         return {"name": self.name, "variant": self.variant}
 
     def to_mapping(self) -> dict[str, Any]:
-        """All leaves as nested plain mappings, each with value, label and source where known."""
+        """Write all leaves as nested plain mappings.
+
+        Returns:
+            Each leaf with value, label and source where they are known.
+        """
         result: dict[str, Any] = self._head()
         for path, value in parameters.leaves(self).items():
             place = result

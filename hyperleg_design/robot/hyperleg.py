@@ -70,7 +70,11 @@ class HyperLeg(RobotDesign):
         return {name: getattr(self.joints, name) for name in names}
 
     def to_mapping(self) -> dict[str, Any]:
-        """All leaves as nested plain mappings; without the spring where the toe has none."""
+        """Write all leaves as nested plain mappings.
+
+        Returns:
+            Each leaf with value, label and source; without the spring where the toe has none.
+        """
         result = super().to_mapping()
         if self.toe.joint != "passive":
             for leaf in SPRING_LEAVES:

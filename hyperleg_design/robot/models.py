@@ -128,7 +128,12 @@ class RigidBodyModel:
         )
 
     def neutral(self) -> np.ndarray:
-        """Zero posture, base at the height at which straight legs touch the floor."""
+        """Compute the zero posture, with the base at the height at which straight legs touch the
+        floor.
+
+        Returns:
+            Configuration in Pinocchio's coordinates, `(nq,)`.
+        """
         import pinocchio as pin
 
         q = np.array(pin.neutral(self.model))

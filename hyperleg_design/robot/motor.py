@@ -215,7 +215,12 @@ class Motor:
         return self.power_constant(constants) * self.rated_torque**2
 
     def peak_duty(self) -> float:
-        """Fraction of the time that peak torque may last on average, (rated / peak)^2 [-]."""
+        """Compute the fraction of the time that the peak torque may last on average, (rated /
+        peak)^2.
+
+        Returns:
+            The fraction [-].
+        """
         return min(1.0, (self.rated_torque / self._value("peak_torque")) ** 2)
 
     def peak_power(self, constants: str = "paper") -> float:

@@ -150,7 +150,11 @@ def is_leaf(field: dataclasses.Field[Any]) -> bool:
 
 
 def section_types(cls: type) -> Mapping[str, type]:
-    """Dataclass of each section field of a dataclass."""
+    """Find the sections of a dataclass.
+
+    Returns:
+        Dataclass of each section, by field.
+    """
     return _section_types(cls)  # typing.get_type_hints is slow
 
 

@@ -224,7 +224,11 @@ class Chain:
         return total
 
     def state(self) -> dict[str, np.ndarray]:
-        """Copies of all arrays that the next step depends on, by name."""
+        """Collect all arrays that the next step depends on.
+
+        Returns:
+            Copies by name, as `put_state` takes them.
+        """
         kept = {
             f"{i}.{name}": np.array(getattr(live, name))
             for i, live in enumerate(self.lives)

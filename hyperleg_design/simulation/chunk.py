@@ -187,7 +187,11 @@ class Chunk:
         self.goal: Goal | None = None
 
     def reset(self) -> dict[str, np.ndarray]:
-        """Start all simulations and give their observations by group."""
+        """Start all simulations of the chunk.
+
+        Returns:
+            Observations by group, `(n, size)` each.
+        """
         everyone = np.arange(self.count)
         state = self._started(everyone)
         self.motion, self.goal = state.motion, state.goal
@@ -529,7 +533,11 @@ class Chunk:
         return np.where(position < middle, self.stops, -self.stops)
 
     def signals(self) -> Mapping[str, Any]:
-        """What happened within the last policy step; see `Environment.signals`."""
+        """Collect what happened within the last policy step; see `Environment.signals`.
+
+        Returns:
+            Arrays by name.
+        """
         joints, substeps = len(self.layout.joints), len(self.sensors)
         position, velocity = self.states[..., : 7 + joints], self.states[..., 7 + joints :]
         legs = (substeps, self.count, len(self.layout.limbs), -1)

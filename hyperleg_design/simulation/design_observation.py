@@ -119,7 +119,11 @@ class DesignRanges:
         return drawn
 
     def to_mapping(self) -> dict[str, Any]:
-        """The ranges as plain values, for the metadata of a policy."""
+        """Write the ranges as plain values, for the metadata of a policy.
+
+        Returns:
+            `{low, high, log}` by dotted path.
+        """
         return {path: vars(bounds) for path, bounds in self.ranges.items()}
 
 

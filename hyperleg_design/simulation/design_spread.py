@@ -43,7 +43,11 @@ class DesignSpread:
     """Of the designs for checks, other than `seed`."""
 
     def to_mapping(self) -> dict[str, Any]:
-        """As JSON takes it."""
+        """Write the spread as JSON takes it.
+
+        Returns:
+            Nested mappings.
+        """
         return {**dataclasses.asdict(self), "ranges": self.ranges.to_mapping()}
 
     def designs(self, base: RobotDesign) -> RobotDesign:

@@ -250,7 +250,11 @@ class Environment:
             chunk.episode_step[:] = np.asarray(steps)[chunk.first : chunk.first + chunk.count]
 
     def mirror_maps(self) -> dict[str, mirror.MirrorMap]:
-        """Left-right mirror of each observation group, and of actions under `action`."""
+        """Describe the left-right mirror of observations and actions.
+
+        Returns:
+            Indices and signs by observation group, and under `action`.
+        """
         maps = {
             group: mirror.mirror_observation(parts, self.layout)
             for group, parts in self.task.observations.items()
@@ -320,7 +324,11 @@ class Environment:
             chunk.commander.settings = changed
 
     def reset(self) -> dict[str, np.ndarray]:
-        """Start all simulations; observations by group, `(n, size)`."""
+        """Start all simulations.
+
+        Returns:
+            Observations by group, `(n, size)` each.
+        """
         return _joined(self._each(Chunk.reset, [()] * len(self.chunks)))
 
     def step(self, action: np.ndarray) -> Step:

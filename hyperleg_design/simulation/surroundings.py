@@ -73,8 +73,10 @@ class UnevenFloor(Alteration):
             raise InputError("uneven floor", "height", self.height, "expects 0 .. 0.3 m, above 0")
 
     def heights(self) -> np.ndarray:
-        """Of the points over the lowest one, as shares of `height` [-], `(rows along y, columns
-        along x)`.
+        """Compute the heights of the points over the lowest one, as shares of `height`.
+
+        Returns:
+            The shares [-], `(rows along y, columns along x)`.
         """
         columns, rows = round(LENGTH / CELL) + 1, round(WIDTH / CELL) + 1
         heights = np.random.default_rng(self.seed).uniform(size=(rows, columns))

@@ -218,7 +218,11 @@ def load_task(name: str | Path) -> Task:
 
 
 def task_names() -> list[str]:
-    """Names of the shipped tasks."""
+    """List the shipped tasks.
+
+    Returns:
+        Their names, sorted.
+    """
     return resources.sim_names("task")
 
 

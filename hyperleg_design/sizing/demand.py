@@ -100,11 +100,10 @@ class Demand:
         )
 
     def table(self) -> list[dict[str, Any]]:
-        """One row a motor, the worse leg counting.
+        """Tabulate the demand on the motors.
 
-        `motor`, `peak_torque`, `rms_torque` [Nm], `rms_over_rated` [-], `peak_speed` [rad/s],
-        `speed_over_no_load` [-], `margin` [Nm] (smallest, negative beyond), `margin_over_peak` [-],
-        `joule`, `mechanical` [W] (mean, both legs).
+        Returns:
+            One row for each motor of a limb; the worse leg counts.
         """
         arrays, names = motor_arrays(self.design), motor_names(self.design)
         powers = self.ledger.mean_power()
@@ -138,8 +137,11 @@ class Demand:
         return rows
 
     def summary(self) -> dict[str, Any]:
-        """Plain numbers for a page or JSON: mean powers [W], cost of transport where it travels,
-        share beyond, worst margin, table.
+        """Summarise the demand in plain numbers for a page or JSON.
+
+        Returns:
+            Mean powers [W], the cost of transport where the motion travels, the share beyond the
+            envelopes, the worst margin, and the table.
         """
         power = self.power
         values = {

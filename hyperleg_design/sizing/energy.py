@@ -76,21 +76,29 @@ class EnergyLedger:
         return self.time_step * self.joule.shape[-2]
 
     def residual(self) -> np.ndarray:
-        """How far the balance battery = mechanical + joule + driver loss is from closing, `(..., t,
-        m)` [-].
+        """Compute how far the balance battery = mechanical + joule + driver loss is from closing.
 
-        Relative to the sum of the magnitudes; 0 where nothing flows.
+        Returns:
+            The residual [-], `(..., t, m)`.
         """
         gap = self.battery - self.mechanical - self.joule - self.driver_loss
         scale = np.abs(self.battery) + np.abs(self.mechanical) + self.joule + self.driver_loss
         return np.divide(np.abs(gap), scale, out=np.zeros_like(gap), where=scale > 0)
 
     def energy(self) -> EnergySums:
-        """Energy of each motor over the whole time, `(..., m)` [J]."""
+        """Compute the energy of each motor over the whole time.
+
+        Returns:
+            The energies [J], `(..., m)` each.
+        """
         return self._summed(self.time_step)
 
     def mean_power(self) -> EnergySums:
-        """Mean power of each motor over the whole time, `(..., m)` [W]."""
+        """Compute the mean power of each motor over the whole time.
+
+        Returns:
+            The powers [W], `(..., m)` each.
+        """
         return self._summed(1.0 / self.joule.shape[-2])
 
     def _summed(self, factor: float) -> EnergySums:
@@ -147,11 +155,19 @@ class EnergySums:
         return self.drawn - self.returned
 
     def total(self) -> EnergySums:
-        """The same sums over all motors, `(...)` each."""
+        """Sum over all motors.
+
+        Returns:
+            The same quantities, `(...)` each.
+        """
         return EnergySums(**{name: np.asarray(value).sum(-1) for name, value in vars(self).items()})
 
     def residual(self) -> np.ndarray:
-        """How far the balance is from closing, relative to the sum of the magnitudes [-]."""
+        """Compute how far the balance is from closing, relative to the sum of the magnitudes.
+
+        Returns:
+            The residual [-].
+        """
         gap = self.battery - self.mechanical - self.joule - self.driver_loss
         scale = np.asarray(
             self.drawn + self.returned + self.mechanical_absolute + self.joule + self.driver_loss

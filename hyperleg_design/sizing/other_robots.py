@@ -98,7 +98,10 @@ class OtherRobot:
 
 
 def robots_folder() -> Path:
-    """Folder of the robots of `example-robot-data`, wherever it is installed.
+    """Find the folder of the robots of `example-robot-data`, wherever it is installed.
+
+    Returns:
+        Its path.
 
     Raises:
         InputError: the package is not installed, or without its robots.

@@ -91,7 +91,11 @@ class Axis:
         return leaves
 
     def to_mapping(self) -> dict[str, Any]:
-        """The axis as plain values, as JSON and YAML take them."""
+        """Write the axis as plain values, as JSON and YAML take them.
+
+        Returns:
+            Fields by name.
+        """
         plain = {"paths": list(self.paths), "scaled": self.scaled, "unit": self.unit}
         if self.levels:
             return {**plain, "values": np.asarray(self.levels).tolist()}

@@ -94,8 +94,11 @@ class Batch:
         return reference_loads.push_off(self.design, self.inertials)
 
     def below_hip(self) -> tuple[np.ndarray, np.ndarray]:
-        """Matrix and peak torques of what lies below the hip, walking; of a whole limb in a design
-        that writes its tree out.
+        """Collect what lies below the hip, in the walking posture; for a design that describes its
+        own tree, the whole limb.
+
+        Returns:
+            Matrix M [-] and peak torques of the motors [Nm].
         """
         return self.walking[..., self.start :, self.start :], self.envelope.peak_torque[
             ..., self.start :

@@ -45,7 +45,11 @@ class Entry:
 
 @cache
 def entries() -> dict[str, Entry]:
-    """All measures by name, those of designs first."""
+    """List all measures, those of designs first.
+
+    Returns:
+        Entries by name.
+    """
     known = {
         column: Entry(column, m.unit, m.better, m.doc)
         for m in sizing.MEASURES.values()

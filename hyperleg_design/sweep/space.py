@@ -111,7 +111,11 @@ class Sweep:
         return self.count * len(self.variants)
 
     def samples(self) -> dict[str, np.ndarray]:
-        """Axis values of all samples by axis name, each `(count,)`; the same for the same seed."""
+        """Draw the values of all samples; they are the same for the same seed.
+
+        Returns:
+            Values by axis, `(count,)` each.
+        """
         if self.sampling == "grid":
             index = np.unravel_index(np.arange(self.count), [len(a.levels) for a in self.axes])
             return {
@@ -154,7 +158,11 @@ class Sweep:
         return self.made(self.base.with_values(values, self.name), variant)
 
     def to_mapping(self) -> dict[str, Any]:
-        """All that decides the numbers in the table, as plain values."""
+        """Write all that decides the numbers in the table as plain values.
+
+        Returns:
+            Nested mappings.
+        """
         used = {str(actuator.motor) for actuator in self.base.every_actuator}
         if isinstance(self.base, Design):
             parts = ("hip", "knee", "ankle", "toe")
@@ -180,7 +188,11 @@ class Sweep:
         }
 
     def digest(self) -> str:
-        """SHA-256 of `to_mapping`, which tells two definitions apart."""
+        """Compute the SHA-256 of `to_mapping`, which tells two definitions apart.
+
+        Returns:
+            The digest in hexadecimal.
+        """
         return hashlib.sha256(json.dumps(self.to_mapping(), sort_keys=True).encode()).hexdigest()
 
 

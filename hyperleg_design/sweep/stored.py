@@ -64,7 +64,11 @@ class Rerun:
 
 
 def stored_names() -> list[str]:
-    """Names of the shipped sweeps with committed trials, sorted."""
+    """List the shipped sweeps with committed trials.
+
+    Returns:
+        Their names, sorted.
+    """
     return sorted(path.stem for path in _folder().glob("*.parquet"))
 
 

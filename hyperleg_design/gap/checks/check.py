@@ -96,7 +96,11 @@ class Check:
         return next(c for c in self.columns if c.column == name)
 
     def mapping(self) -> dict[str, Any]:
-        """As plain values, for JSON; what is not finite as None."""
+        """Write the check as plain values, for JSON.
+
+        Returns:
+            Nested mappings; numbers that are not finite are None.
+        """
         return {
             "name": self.name,
             "usable": self.usable,

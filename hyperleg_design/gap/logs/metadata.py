@@ -94,7 +94,12 @@ class Metadata:
         return self.changed(remarks=tuple(dict.fromkeys((*self.remarks, *remarks))))
 
     def mapping(self) -> dict[str, Any]:
-        """As JSON holds it: fields at their defaults left out, unknown keys beside the known."""
+        """Write the metadata as JSON holds them.
+
+        Returns:
+            Fields by name; those at their defaults are left out, and unknown keys lie beside the
+            known ones.
+        """
         default = Metadata()
         known = {
             k: getattr(self, k)

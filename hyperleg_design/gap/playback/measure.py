@@ -83,7 +83,11 @@ class Gap:
     notes: tuple[str, ...] = ()
 
     def table(self) -> dict[str, list[object]]:
-        """Columns by name, excess included."""
+        """Tabulate the gap.
+
+        Returns:
+            Columns by name, excess included.
+        """
         names = [f.name for f in fields(Row)]
         return {
             **{n: [getattr(r, n) for r in self.rows] for n in names},
@@ -91,7 +95,11 @@ class Gap:
         }
 
     def mapping(self) -> dict[str, object]:
-        """As JSON takes it; what is unknown is null."""
+        """Write the gap as JSON takes it.
+
+        Returns:
+            Nested mappings; what is unknown is None.
+        """
         rows = [
             {
                 k: None if isinstance(v, float) and not np.isfinite(v) else v

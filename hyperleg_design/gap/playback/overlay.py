@@ -76,7 +76,11 @@ class Overlay:
         return alterations(self.change, subject)
 
     def mapping(self) -> dict[str, Any]:
-        """As the file has it."""
+        """Write the overlay as its file has it.
+
+        Returns:
+            Nested mappings.
+        """
         effects = [
             {"effect": e, "location": place, "parameters": dict(values)}
             for (e, place), values in self.change.items()

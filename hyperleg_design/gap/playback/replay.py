@@ -361,7 +361,11 @@ class Plant:
         )
 
     def measured(self) -> tuple[np.ndarray, np.ndarray]:
-        """Joint positions and velocities as the sensors tell `(w, n)`."""
+        """Compute the joint states as the sensors measure them.
+
+        Returns:
+            Positions [rad] and velocities [rad/s], `(w, n)` each.
+        """
         return self.chain.measured(self.qpos[:, self.joints], self.qvel[:, self._first :])
 
     def step(

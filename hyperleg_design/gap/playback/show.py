@@ -100,8 +100,11 @@ class Shown:
 
 
 def effects_table() -> list[dict[str, Any]]:
-    """The catalogue, one entry an effect: identifier, kind of place, summary and parameters with
-    magnitudes and sources.
+    """Tabulate the catalogue of effects.
+
+    Returns:
+        One entry for each effect: identifier, kind of place, summary, and parameters with
+        magnitudes and sources.
     """
     return [
         {

@@ -192,8 +192,11 @@ class Footing:
         return (low + high) / 2
 
     def doubt(self) -> np.ndarray:
-        """What the vertical force of a nominal ground leaves open, by its pads' height and by their
-        acceleration `(t,)` [N].
+        """Compute what the vertical force of a nominal ground leaves open, by the height and the
+        acceleration of its pads.
+
+        Returns:
+            The force [N], `(t,)`.
         """
         if not self.judged.any():
             return np.zeros(len(self.force))
