@@ -6,6 +6,7 @@ What still breaks these rules is counted by package, and the counts may only fal
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -62,6 +63,14 @@ def short_docstrings(tree: ast.AST) -> Iterator[str]:
                 yield node.name
 
 
+def described(node: ast.FunctionDef) -> set[str]:
+    """Names of the arguments that a docstring describes under `Args`."""
+    text = (ast.get_docstring(node) or "").partition("Args:\n")[2]
+    section = re.split(r"\n(?:Returns|Raises|Yields):", text)[0]
+    lines = re.findall(r"^    ([\w, ]+):", section, flags=re.MULTILINE)
+    return {name.strip() for line in lines for name in line.split(",")}
+
+
 def undescribed(tree: ast.AST) -> Iterator[str]:
     """Public functions with arguments that their docstrings do not describe under `Args`."""
     for node in ast.walk(tree):
@@ -72,10 +81,16 @@ def undescribed(tree: ast.AST) -> Iterator[str]:
         every += [one for one in (node.args.vararg, node.args.kwarg) if one]
         names = [one.arg for one in every if one.arg not in ("self", "cls")]
         text = ast.get_docstring(node)
-        if text and names and decorators <= PLAIN_DECORATORS:
-            described = text.partition("Args:")[2]
-            if not all(f"\n    {name}:" in described for name in names):
-                yield node.name
+        if text and decorators <= PLAIN_DECORATORS and not set(names) <= described(node):
+            yield node.name
+
+
+def test_docstrings_describe_no_argument_that_is_not_there():
+    for path in PACKAGE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.FunctionDef):
+                names = {one.arg for one in ast.walk(node.args) if isinstance(one, ast.arg)}
+                assert described(node) <= names, f"{path.name}: {node.name}"
 
 
 def test_barred_names_become_fewer():

@@ -150,7 +150,7 @@ def plateau(steps: Any, reward: Any, rule: PlateauRule) -> Plateau:
         rule: what counts as a plateau.
 
     Returns:
-        The slope, its p value, and whether it counts as a plateau.
+        The relative gain over that share, its p value, and whether it counts as a plateau.
 
     Raises:
         InputError: other lengths, or too few points in the last share.

@@ -84,7 +84,8 @@ def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[s
         settings: of filter and window.
 
     Returns:
-        `grf_peak` and the other fields of `Impacts`; NaN without a touchdown.
+        `grf_peak` [N], `grf_peak_body_weights` [-], `grf_raw_peak` [N], `grf_loading_rate` [N/s]
+        and `grf_impulse` [Ns]; NaN without a touchdown.
     """
     filtered = low_pass(trial.foot_load, trial.time_step, settings.cutoff, int(settings.order))
     each = [
