@@ -52,7 +52,15 @@ def content_folder(kind: str) -> Path:
     """
     if kind not in CONTENT:
         raise ValueError(f"no content folder {kind!r}; there are {', '.join(CONTENT)}")
-    return home() / kind
+    return _inside(home(), kind)
+
+
+@cache
+def _inside(folder: Path, kind: str) -> Path:
+    """The same path object each time, because a path keeps its hash, and catalogues are looked up
+    by it thousands of times.
+    """
+    return folder / kind
 
 
 def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path:

@@ -8,6 +8,7 @@ designs are compared at equal contact settings.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,7 @@ def low_pass(force: Any, time_step: float, cutoff: float, order: int) -> np.ndar
     Raises:
         InputError: a cut-off past half the sampling rate.
     """
-    from scipy.signal import butter, sosfiltfilt
+    from scipy.signal import sosfiltfilt
 
     force = np.asarray(force, float)
     if cutoff == 0:
@@ -62,9 +63,17 @@ def low_pass(force: Any, time_step: float, cutoff: float, order: int) -> np.ndar
             f"expects a frequency below half the sampling rate, {0.5 / time_step:g} Hz, or 0 for "
             f"none",
         )
-    sections = butter(order // 2, cutoff, fs=1 / time_step, output="sos")
+    sections = _sections(order // 2, cutoff, 1 / time_step)
     padding = min(3 * (2 * len(sections) + 1), len(force) - 1)
     return np.asarray(sosfiltfilt(sections, force, axis=0, padlen=padding))
+
+
+@cache
+def _sections(order: int, cutoff: float, rate: float) -> np.ndarray:
+    """Second-order sections of the Butterworth filter, which every trial of a protocol shares."""
+    from scipy.signal import butter
+
+    return np.asarray(butter(order, cutoff, fs=rate, output="sos"))
 
 
 def impacts(force: Any, filtered: Any, touchdown: Any, time_step: float, window: float) -> Impacts:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -89,7 +90,7 @@ class RobotDesign:
     @property
     def batch_shape(self) -> tuple[int, ...]:
         """Shape of the batch: `()` for one robot, `(n,)` for `n` robots."""
-        sizes = self.batch_sizes().values()
+        sizes = self._batch_sizes.values()
         return (max(sizes),) if sizes else ()
 
     def batch_sizes(self) -> dict[str, int]:
@@ -98,6 +99,11 @@ class RobotDesign:
         Returns:
             Length of the batch by dotted path.
         """
+        return dict(self._batch_sizes)
+
+    @cached_property
+    def _batch_sizes(self) -> dict[str, int]:
+        """What `batch_sizes` returns; a design does not change, and many functions ask for it."""
         values = ((path, rule, self[path]) for path, rule in self.rules.items())
         return {
             path: len(value)

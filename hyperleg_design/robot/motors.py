@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from operator import is_
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -183,15 +186,21 @@ def gather(names: Any, value: Any) -> np.ndarray:
     )
 
 
+_KEPT_ARRAYS: WeakKeyDictionary[RobotDesign, tuple[list[Motor], MotorArrays]] = WeakKeyDictionary()
+"""What `motor_arrays` returned for designs that are still in use, and the motors it is of."""
+
+
 def motor_arrays(design: RobotDesign) -> MotorArrays:
     """Collect the constants of the motors of one limb.
+
+    They are computed once for each design, as long as its names mean the same motors.
 
     Args:
         design: a robot or batch.
 
     Returns:
-        Constants, each `(..., motors)`; for HyperLeg of all seven motors, whether that of the toe
-        is installed or not.
+        Constants, each `(..., motors)`, not to be written into; for HyperLeg of all seven motors,
+        whether that of the toe is installed or not.
 
     Raises:
         InputError: the kind of constants differs within a batch, or a motor is not in the
@@ -203,14 +212,34 @@ def motor_arrays(design: RobotDesign) -> MotorArrays:
         raise InputError(
             design.name, "electrical.constants", kind.tolist(), "cannot differ within a batch"
         )
-    batch = design.batch_shape
-    motors_of = [actuator.motor for actuator in design.every_actuator]
-    voltage = np.broadcast_to(np.asarray(electrical.voltage_ratio, float), batch)[..., None]
+    names_of = [actuator.motor for actuator in design.every_actuator]
+    if all(isinstance(name, str) for name in names_of):
+        unique = list(dict.fromkeys(names_of))
+    else:
+        unique = [str(name) for name in np.unique(np.concatenate([np.ravel(n) for n in names_of]))]
+    named = [find_motor(name) for name in unique]
+    motors, arrays = _KEPT_ARRAYS.get(design, ([], None))
+    if arrays is None or not all(map(is_, motors, named)):
+        arrays = _arrays(design, names_of, dict(zip(unique, named, strict=True)))
+        _KEPT_ARRAYS[design] = (named, arrays)
+    return arrays
+
+
+def _arrays(design: RobotDesign, names_of: list[Any], motors: Mapping[str, Motor]) -> MotorArrays:
+    """Constants of the motors by name, for the names `(...)` of each motor of one limb."""
+    batch, kind = design.batch_shape, design.electrical_section.constants
+    ratio = np.asarray(design.electrical_section.voltage_ratio, float)
+    voltage = np.broadcast_to(ratio, batch)[..., None]
 
     def stacked(value: Any) -> np.ndarray:
-        return np.stack([np.broadcast_to(gather(n, value), batch) for n in motors_of], -1)
+        numbers = {name: value(motor) for name, motor in motors.items()}
+        columns = [
+            np.broadcast_to([numbers[str(name)] for name in np.ravel(names)], batch or (1,))
+            for names in names_of
+        ]
+        return np.stack(columns, -1).astype(float).reshape(*batch, len(names_of))
 
-    return MotorArrays(
+    arrays = MotorArrays(
         no_load_speed=stacked(lambda m: m.no_load_speed(kind)) * voltage,
         stall_torque=stacked(lambda m: m.stall_torque(kind)) * voltage,
         peak_torque=stacked(lambda m: m.peak_torque(kind)),
@@ -219,6 +248,9 @@ def motor_arrays(design: RobotDesign) -> MotorArrays:
         rotor_inertia=stacked(lambda m: m.rotor_inertia),
         mass=stacked(lambda m: m.mass),
     )
+    for values in vars(arrays).values():
+        values.flags.writeable = False
+    return arrays
 
 
 __all__ = [

@@ -7,10 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
+from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot import description
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.check_urdf import check_urdf
-from hyperleg_design.robot.description import tree_mapping, tree_yaml, urdf
+from hyperleg_design.robot.description import expanded, tree_mapping, tree_yaml, urdf
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.tree import build_tree
 
 
@@ -84,3 +87,45 @@ def test_yourdfpy_loads_what_we_write(hyperleg, variant, tmp_path):
 def test_a_batch_has_no_urdf(hyperleg):
     with pytest.raises(InputError, match="batch"):
         urdf(hyperleg.with_values({"toe.mass": np.array([0.2, 0.3])}))
+
+
+def template_text(design):
+    """What xacro makes of the template for one robot."""
+    tree = build_tree(design)
+    return expanded(
+        resources.content_folder("descriptions") / description.TEMPLATE,
+        tree_mapping(tree),
+        tree.name,
+    )
+
+
+@pytest.mark.parametrize("name", resources.names("descriptions"))
+def test_a_template_that_was_expanded_before_gives_the_same_text(name):
+    """To the last digit, also after another robot of the same outline."""
+    design = load_robot(name)
+    other = design.with_values({"contact.pad_radius": 1.25 * design.contact_section.pad_radius})
+    for each in (other, design):
+        assert urdf(each) == template_text(each)
+
+
+@given(st.data())
+@settings(max_examples=5)
+def test_any_design_gives_the_text_of_the_template(random_designs, data):
+    design = data.draw(random_designs)
+    assert urdf(design) == template_text(design)
+
+
+def test_a_template_that_somebody_changed_is_expanded_for_each_robot(
+    hyperleg, tmp_path, monkeypatch
+):
+    template = resources.content_folder("descriptions") / description.TEMPLATE
+    text = template.read_text().replace("${part['mass']}", "${2 * part['mass']}")
+    (tmp_path / "mine.xacro").write_text(text)
+    monkeypatch.setattr(description, "TEMPLATE", str(tmp_path / "mine.xacro"))
+    mass = float(hyperleg.toe.mass)
+    for factor in (1.0, 1.5):
+        tree = build_tree(hyperleg.with_values({"toe.mass": factor * mass}))
+        root = etree.fromstring(urdf(hyperleg, tree).encode())
+        for link in tree.links:
+            inertial = root.find(f"link[@name='{link.name}']/inertial/mass")
+            assert inertial is None or float(inertial.get("value")) == 2 * link.mass

@@ -194,3 +194,19 @@ def test_check_says_that_a_good_file_is_not_reachable(own_folder):
     motors.use_folder(own_folder)
     assert check_file(own_folder / "Mine.yaml") == []
     assert check_file(resources.find("motors", "RI70")) == []
+
+
+def test_constants_are_computed_once_a_design_and_follow_a_file_that_changes(tmp_path, hyperleg):
+    path = tmp_path / "MINE.yaml"
+    text = (resources.content_folder("motors") / "RI60.yaml").read_text()
+    path.write_text(text.replace("RI60", "MINE"))
+    design = hyperleg.with_values({"actuators.toe.motor": str(path)})
+    first = motor_arrays(design)
+    assert motor_arrays(design) is first
+    with pytest.raises(ValueError, match="read-only"):
+        first.mass[0] = 1.0
+    data = yaml.safe_load(path.read_text())
+    data["constants"]["mass_g"]["value"] *= 2
+    path.write_text(yaml.safe_dump(data))
+    assert motor_arrays(design).mass[-1] == 2 * first.mass[-1]
+    assert motor_arrays(design).mass[0] == first.mass[0]
