@@ -222,7 +222,7 @@ class Diagnose(Printing):
         from hyperleg_design.report.gap.text import diagnosis_text
 
         show = None if self.json else print
-        found, page = diagnose_to_folder(
+        diagnosis, page = diagnose_to_folder(
             self.robot,
             self.logs,
             self.reference,
@@ -233,9 +233,9 @@ class Diagnose(Printing):
             show=show,
         )
         if self.json:
-            emit(found)
+            emit(diagnosis)
         else:
-            print(diagnosis_text(found))
+            print(diagnosis_text(diagnosis))
             print(f"open {page}")
 
 
@@ -337,11 +337,11 @@ class Score(Printing):
         """Score the diagnoses of a blind trial."""
         from hyperleg_design.validation.blind.score import score
 
-        found = score(self.folder, reread=self.reread)
+        scores = score(self.folder, reread=self.reread)
         if self.json:
-            emit(found)
+            emit(scores)
         else:
-            print(found.markdown())
+            print(scores.markdown())
 
 
 @dataclass(frozen=True, kw_only=True)

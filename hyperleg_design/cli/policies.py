@@ -199,7 +199,7 @@ class Evaluate(Printing):
             if overlay:
                 raise InputError("evaluate", "swap", self.swap, "cannot be used with an overlay")
             alterations = Swap(self.swap)
-        found = evaluate_many(
+        evaluations = evaluate_many(
             self.policies,
             self.protocol or None,
             designs=[self._design(policy) for policy in self.policies],
@@ -208,27 +208,27 @@ class Evaluate(Printing):
             alterations=alterations,
         )
         if self.swap:
-            found = [swapped(one, self.swap) for one in found]
-        folder = write_results(self.out, found)
+            evaluations = [swapped(evaluation, self.swap) for evaluation in evaluations]
+        folder = write_results(self.out, evaluations)
         written = []
         if self.logs is not None:
             from hyperleg_design.gap.logs.recording import write_logs
 
-            written = write_logs(self.logs, found)
+            written = write_logs(self.logs, evaluations)
         if self.lerobot is not None:
             from hyperleg_design.evaluation.lerobot import write_lerobot
 
-            write_lerobot(self.lerobot, found)
+            write_lerobot(self.lerobot, evaluations)
         if overlay:
             write_overlay(folder / "overlay.yaml", overlay)
-        rows = evaluation_rows(found)
+        rows = evaluation_rows(evaluations)
         if self.json:
-            trained = {one.policy: one.trained.text() for one in found}
+            trained = {evaluation.policy: evaluation.trained.text() for evaluation in evaluations}
             emit({"folder": folder, "results": rows, "trained": trained, "logs": written})
         else:
             print(evaluation_text(rows))
-            for one in found:
-                print(f"{one.policy} on {one.design}: {one.trained.text()}")
+            for evaluation in evaluations:
+                print(f"{evaluation.policy} on {evaluation.design}: {evaluation.trained.text()}")
             print(
                 f"tables in {folder}" + (f"; {len(written)} logs in {self.logs}" if written else "")
             )

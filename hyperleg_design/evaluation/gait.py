@@ -49,8 +49,8 @@ class Steps:
         Returns:
             The steps with `first <= touchdown < last`.
         """
-        kept = (self.touchdown >= first) & (self.touchdown < last)
-        return Steps(**{name: values[kept] for name, values in vars(self).items()})
+        rows = (self.touchdown >= first) & (self.touchdown < last)
+        return Steps(**{name: values[rows] for name, values in vars(self).items()})
 
 
 def stance(load: Any, on: float, off: float, shortest: int = 1) -> np.ndarray:
@@ -71,13 +71,13 @@ def stance(load: Any, on: float, off: float, shortest: int = 1) -> np.ndarray:
     known[0] = True
     decided = np.where(known, load >= off, False)
     latest = np.where(known, np.arange(len(load)).reshape(-1, *[1] * (load.ndim - 1)), 0)
-    found = np.take_along_axis(decided, np.maximum.accumulate(latest, 0), 0)
+    stands = np.take_along_axis(decided, np.maximum.accumulate(latest, 0), 0)
     if shortest > 1:
-        flat = found.reshape(len(load), -1)
+        flat = stands.reshape(len(load), -1)
         for column in flat.T:
             _fill_short(column, False, shortest)
             _fill_short(column, True, shortest)
-    return np.asarray(found)
+    return np.asarray(stands)
 
 
 def _fill_short(values: np.ndarray, kind: bool, shortest: int) -> None:
@@ -267,7 +267,7 @@ def slip_per_step(
     Returns:
         The way of each step [m], `(k,)`; NaN where the record ends before toe-off.
     """
-    found = np.full(len(steps), np.nan)
+    ways = np.full(len(steps), np.nan)
     for foot in np.unique(steps.foot):
         mine = pad_foot == foot
         load = pad_load[:, mine]
@@ -276,8 +276,8 @@ def slip_per_step(
         speed = np.divide(weighted, total, out=np.zeros(len(total)), where=total > 0)
         way = np.concatenate([[0.0], np.cumsum(speed) * time_step])
         for i in np.flatnonzero((steps.foot == foot) & (steps.toe_off > 0)):
-            found[i] = way[steps.toe_off[i] + 1] - way[steps.touchdown[i] + 1]
-    return found
+            ways[i] = way[steps.toe_off[i] + 1] - way[steps.touchdown[i] + 1]
+    return ways
 
 
 def cycles(signal: np.ndarray, steps: Steps, foot: int, points: int = CYCLE_POINTS) -> np.ndarray:
@@ -294,10 +294,10 @@ def cycles(signal: np.ndarray, steps: Steps, foot: int, points: int = CYCLE_POIN
     """
     begins, ends = strides(steps, foot)
     share = np.linspace(0.0, 1.0, points)
-    found = np.empty((len(begins), points, signal.shape[1]))
+    resampled = np.empty((len(begins), points, signal.shape[1]))
     for i, (begin, end) in enumerate(zip(begins, ends, strict=True)):
         at = begin + share * (end - begin)
         low = np.minimum(at.astype(int), len(signal) - 2)
         part = (at - low)[:, None]
-        found[i] = (1 - part) * signal[low] + part * signal[low + 1]
-    return found
+        resampled[i] = (1 - part) * signal[low] + part * signal[low + 1]
+    return resampled

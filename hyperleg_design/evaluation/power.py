@@ -124,8 +124,8 @@ class CyclePower:
         Returns:
             The power [W], `(strides, points)`; zero for a toe that the robot does not have.
         """
-        kept = [i for i, joint in enumerate(self.joints) if joint in GROUPS[group]]
-        return np.asarray(self.mechanical[..., kept].sum(-1))
+        columns = [i for i, joint in enumerate(self.joints) if joint in GROUPS[group]]
+        return np.asarray(self.mechanical[..., columns].sum(-1))
 
 
 def cycle_power(
@@ -174,12 +174,12 @@ def leg_means(joints: Sequence[str], mechanical: np.ndarray, joule: np.ndarray) 
     """
     if not len(mechanical):
         return dict.fromkeys(LEG_MEANS, np.nan)
-    found: dict[str, float] = {}
+    means: dict[str, float] = {}
     for group, names_of in GROUPS.items():
         part = mechanical[:, [i for i, joint in enumerate(joints) if joint in names_of]]
-        found[group] = float(part.sum(-1).mean())
-        found[f"{group}_positive"] = float(np.maximum(part, 0.0).sum(-1).mean())
-        found[f"{group}_absolute"] = float(np.abs(part).sum(-1).mean())
-    found["joule"] = float(joule.sum(-1).mean())
-    found["total"] = found["joule"] + sum(found[group] for group in GROUPS)
-    return found
+        means[group] = float(part.sum(-1).mean())
+        means[f"{group}_positive"] = float(np.maximum(part, 0.0).sum(-1).mean())
+        means[f"{group}_absolute"] = float(np.abs(part).sum(-1).mean())
+    means["joule"] = float(joule.sum(-1).mean())
+    means["total"] = means["joule"] + sum(means[group] for group in GROUPS)
+    return means

@@ -201,10 +201,10 @@ def record(
         signals = environment.signals()
         if not store:
             # pages of the part that is never reached are never claimed
-            told = [n for n in signals if n.startswith(TOLD)]
+            sensed_names = [n for n in signals if n.startswith(TOLD)]
             store = {
                 n: np.empty((count, limit * substeps, *signals[n].shape[2:]))
-                for n in (*SIGNALS, *told)
+                for n in (*SIGNALS, *sensed_names)
             }
         now = slice(step_index * substeps, (step_index + 1) * substeps)
         for name, kept in store.items():

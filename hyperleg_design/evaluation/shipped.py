@@ -129,7 +129,9 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
             Shipped(name["group"], name["design"], int(name["seed"]), i, file)
             for i, file in enumerate(files)
         ]
-    return sorted(policies, key=lambda one: (one.group, one.design, one.seed, one.late))
+    return sorted(
+        policies, key=lambda policy: (policy.group, policy.design, policy.seed, policy.late)
+    )
 
 
 def check_different(paths: Iterable[str | Path], where: str = "policies") -> None:

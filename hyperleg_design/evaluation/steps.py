@@ -183,7 +183,7 @@ def flat_drift(trial: Trial, steps: gait.Steps, contacts: Contacts) -> np.ndarra
     Returns:
         The distance of each step [m], `(k,)`; NaN where the foot never stands flat.
     """
-    found = np.full(len(steps), np.nan)
+    drifts = np.full(len(steps), np.nan)
     flat = contacts.heel & contacts.forefoot
     for i, (foot, down, up) in enumerate(
         zip(steps.foot, steps.touchdown, steps.toe_off, strict=True)
@@ -191,8 +191,8 @@ def flat_drift(trial: Trial, steps: gait.Steps, contacts: Contacts) -> np.ndarra
         standing = down + np.flatnonzero(flat[down : up if up > 0 else len(flat), foot])
         if len(standing) > 1:
             begin, end = foot_places(trial, standing[[0, -1]])[:, foot]
-            found[i] = np.linalg.norm(end - begin)
-    return found
+            drifts[i] = np.linalg.norm(end - begin)
+    return drifts
 
 
 def mean_of(values: np.ndarray) -> float:

@@ -92,12 +92,12 @@ def training_fit(policy: Policy, design: RobotDesign) -> TrainingFit:
 
 def _same_actuation(a: RobotDesign, b: RobotDesign) -> bool:
     """Whether laws give the same masses, motors and friction to two robots of the same parts."""
-    one, other = actuation_model(a), actuation_model(b)
+    first, other = actuation_model(a), actuation_model(b)
     pairs = [
-        *((getattr(one, n), getattr(other, n)) for n in ("coulomb", "viscous", "rated_torque")),
-        (one.joint_from_motor, other.joint_from_motor),
+        *((getattr(first, n), getattr(other, n)) for n in ("coulomb", "viscous", "rated_torque")),
+        (first.joint_from_motor, other.joint_from_motor),
         (rotor_inertia(a), rotor_inertia(b)),
-        (one.envelope.peak_torque, other.envelope.peak_torque),
+        (first.envelope.peak_torque, other.envelope.peak_torque),
         *((mass(a), mass(b)) for mass in (total_mass, limb_mass)),
     ]
     return all(np.allclose(x, y, rtol=1e-6) for x, y in pairs)

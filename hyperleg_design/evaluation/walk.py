@@ -109,21 +109,23 @@ def measure_walk(trial: Trial, protocol: WalkProtocol) -> Measured:
         Measures by name, see `measures.WALK`; use of the motors and right-leg power, None without a
         steady state, the power also without a left and a right leg.
     """
-    found = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(trial)
+    measures = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(
+        trial
+    )
     if trial.outcome == rollout.DIVERGED or not trial.samples:
-        return found | dict.fromkeys((*_RUN, *_STEADY), np.nan), None, None
+        return measures | dict.fromkeys((*_RUN, *_STEADY), np.nan), None, None
     away = np.linalg.norm(trial.base_position[:, :2] - trial.base_position[0, :2], axis=-1)
-    found |= _run_measures(trial, away, protocol)
+    measures |= _run_measures(trial, away, protocol)
     window = steady_window(trial, away, protocol)
     if window is None:
-        return found | dict.fromkeys(_STEADY, np.nan), None, None
+        return measures | dict.fromkeys(_STEADY, np.nan), None, None
     steady, steps = _steady_measures(trial, window, protocol)
     if trial.layout.limbs != SIDES:
         nothing = {f"right_{name}_power": np.nan for name in LEG_MEANS}
-        return found | steady | nothing, motor_use(trial, *window), None
+        return measures | steady | nothing, motor_use(trial, *window), None
     cycle = cycle_power(trial, steps)
     leg = {f"right_{name}_power": value for name, value in cycle.means.items()}
-    return found | steady | leg, motor_use(trial, *window), cycle
+    return measures | steady | leg, motor_use(trial, *window), cycle
 
 
 def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tuple[int, int] | None:
@@ -270,7 +272,7 @@ def _steady_measures(
     steps = measured_steps(trial, protocol.events).within(first, last + 1)
     use = motor_use(trial, first, last)
     layout = trial.layout
-    found = {
+    measures = {
         "steady_speed": way / duration,
         "steady_power": power["motor_side"],
         "steady_joule_power": power["joule"],
@@ -299,7 +301,7 @@ def _steady_measures(
         "continuous_use": float(use.continuous_use.max()),
         "thermal_peak": float(use.thermal_peak.max()),
     }
-    return found, steps
+    return measures, steps
 
 
 def _heading_keeper(gain: float) -> Any:

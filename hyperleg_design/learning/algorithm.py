@@ -150,7 +150,7 @@ def make_network(network: Network, observations: TensorDict, kind: str, outputs:
         else None
     )
     with contextlib.redirect_stdout(io.StringIO()):
-        made = MLPModel(
+        model = MLPModel(
             observations,
             GROUPS,
             kind,
@@ -162,9 +162,9 @@ def make_network(network: Network, observations: TensorDict, kind: str, outputs:
         )
     if kind == "actor":
         with torch.no_grad():
-            made.mlp[-1].weight.mul_(QUIET)
-            made.mlp[-1].bias.zero_()
-    return made
+            model.mlp[-1].weight.mul_(QUIET)
+            model.mlp[-1].bias.zero_()
+    return model
 
 
 def _modulate(model: MLPModel, columns: list[str]) -> None:

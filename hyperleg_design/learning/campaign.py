@@ -176,11 +176,11 @@ def status_table(statuses: list[RunStatus]) -> str:
         f"{'assist':>6} {'left':>8}"
     ]
     for status in statuses:
-        found = status.measures or {}
+        measures = status.measures or {}
         share = f"{status.steps / 1e6:.2f}/{status.total / 1e6:.1f}"
-        left = f"{found['left'] / 60:.0f} min" if found.get("left") else ""
+        left = f"{measures['left'] / 60:.0f} min" if measures.get("left") else ""
         numbers = [
-            _shown(found.get(key), width)
+            _shown(measures.get(key), width)
             for key, width in (("speed", 6), ("falls", 9), ("cost_of_transport", 5), ("assist", 6))
         ]
         lines.append(
@@ -294,7 +294,7 @@ def _is_shipped(run: Run) -> bool:
     """
     place = shipped_folder() / run.name
     try:
-        found = json.loads((place / RUN).read_text())
+        content = json.loads((place / RUN).read_text())
     except (OSError, ValueError):
         return False
     task, design = load_task(run.task), load_robot(run.design)
@@ -305,7 +305,7 @@ def _is_shipped(run: Run) -> bool:
         "preset": preset_mapping(load_preset(run.preset), task.name),
     }
     return (place / POLICY).exists() and all(
-        found.get(key) == json.loads(json.dumps(value)) for key, value in today.items()
+        content.get(key) == json.loads(json.dumps(value)) for key, value in today.items()
     )
 
 
@@ -321,21 +321,21 @@ def _stop(processes: list[subprocess.Popen[bytes]]) -> None:
 def _status(run: Run, folder: Path) -> RunStatus:
     preset, task = load_preset(run.preset), load_task(run.task)
     total = float(preset.total_iterations(task.name) * preset.steps_per_iteration)
-    found = read_status(folder)
-    if found is None and _is_shipped(run):
+    status = read_status(folder)
+    if status is None and _is_shipped(run):
         return RunStatus(run, "shipped", total, total)
-    if found is None:
+    if status is None:
         return RunStatus(
             run, "stopped" if (folder / CHECKPOINT).exists() else "missing", 0.0, total
         )
-    if found.get("done") and (folder / POLICY).exists():
-        return RunStatus(run, "done", total, total, found)
+    if status.get("done") and (folder / POLICY).exists():
+        return RunStatus(run, "done", total, total, status)
     return RunStatus(
         run,
-        "running" if _alive(found.get("pid")) else "stopped",
-        float(found.get("steps") or 0.0),
+        "running" if _alive(status.get("pid")) else "stopped",
+        float(status.get("steps") or 0.0),
         total,
-        found,
+        status,
     )
 
 
@@ -369,7 +369,7 @@ def _check_keys(
 
 
 def _whole(value: Any, where: str, path: str) -> int:
-    found = checked(value, Rule("number", low=1, high=1000), where, path)
-    if found != int(found):
+    number = checked(value, Rule("number", low=1, high=1000), where, path)
+    if number != int(number):
         raise InputError(where, path, value, "expects a whole number")
-    return int(found)
+    return int(number)

@@ -71,7 +71,7 @@ class Meter:
         self.steps = MEMORY * self.steps + self._count
         self.ends = MEMORY * self.ends + self._ends
         self.share = share if not self.share else MEMORY * self.share + (1 - MEMORY) * share
-        found = {
+        measures = {
             "reward": float(sum(terms.values())),
             "terms": {k: float(v) for k, v in terms.items()},
             "speed": float(speed),
@@ -84,7 +84,7 @@ class Meter:
             "share": float(self.share),
         }
         self.clear()
-        return found
+        return measures
 
     def state(self) -> dict[str, float]:
         """Collect the running means that a checkpoint keeps.

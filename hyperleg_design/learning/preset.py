@@ -265,7 +265,7 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
         )
     ):
         raise InputError(where, "network.hidden", hidden, "expects a list of widths")
-    made = parameters.from_mapping(Network, network, where, "network")
+    settings = parameters.from_mapping(Network, network, where, "network")
     warm = parameters.from_mapping(WarmStart, rest.pop("warm_start", {}), where, "warm_start")
     algorithm = parameters.from_mapping(Algorithm, rest.pop("algorithm", {}), where, "algorithm")
     if (algorithm.mirror, algorithm.adapted) in (("half", "minibatch"), ("append", "iteration")):
@@ -285,7 +285,7 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
             raise InputError(where, str(key), rest[key], parameters.unknown(str(key), known))
     values = {key: _whole(rest[key], where, key) for key in rest}
     try:
-        shape = dataclasses.replace(made, hidden=tuple(hidden))
+        shape = dataclasses.replace(settings, hidden=tuple(hidden))
         return Preset(
             name=name,
             final_share=least,
@@ -406,10 +406,10 @@ def _number(value: Any, where: str, path: str, low: float = -1e12, high: float =
 
 
 def _whole(value: Any, where: str, path: str) -> float:
-    found = _number(value, where, path)
-    if found != int(found):
+    number = _number(value, where, path)
+    if number != int(number):
         raise InputError(where, path, value, "expects a whole number")
-    return found
+    return number
 
 
 def _mapping(data: Any, where: str, path: str) -> Mapping[str, Any]:

@@ -62,31 +62,34 @@ def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:
     Returns:
         A mapping from which `preset_from_mapping` builds the same preset.
     """
-    found: dict[str, Any] = {"name": preset.name}
+    mapping: dict[str, Any] = {"name": preset.name}
     for field in dataclasses.fields(preset):
         if parameters.is_leaf(field):
-            found[field.name] = getattr(preset, field.name)
-    found["algorithm"] = parameters.leaves(preset.algorithm)
-    found["network"] = {"hidden": list(preset.network.hidden), **parameters.leaves(preset.network)}
+            mapping[field.name] = getattr(preset, field.name)
+    mapping["algorithm"] = parameters.leaves(preset.algorithm)
+    mapping["network"] = {
+        "hidden": list(preset.network.hidden),
+        **parameters.leaves(preset.network),
+    }
     if preset.network.modulated:
-        del found["network"]["modulated"]  # the default; older trainings do not name it
-    found["warm_start"] = parameters.leaves(preset.warm_start)
-    found["tasks"] = {task: [_stage(stage) for stage in preset.stages(task)]}
-    return found
+        del mapping["network"]["modulated"]  # the default; older trainings do not name it
+    mapping["warm_start"] = parameters.leaves(preset.warm_start)
+    mapping["tasks"] = {task: [_stage(stage) for stage in preset.stages(task)]}
+    return mapping
 
 
 def _stage(stage: Stage) -> dict[str, Any]:
-    found: dict[str, Any] = {
+    mapping: dict[str, Any] = {
         "name": stage.name,
         "steps": stage.steps,
         "assist_gone_by": stage.assist_gone_by,
     }
     if stage.assist is not None:
-        found["assist"] = stage.assist
-    found["rewards"] = {term: _plain(values) for term, values in stage.rewards.items()}
-    found["commands"] = _plain(stage.commands)
-    found["ramps"] = [_ramp(ramp) for ramp in stage.ramps]
-    return found
+        mapping["assist"] = stage.assist
+    mapping["rewards"] = {term: _plain(values) for term, values in stage.rewards.items()}
+    mapping["commands"] = _plain(stage.commands)
+    mapping["ramps"] = [_ramp(ramp) for ramp in stage.ramps]
+    return mapping
 
 
 def _ramp(ramp: Ramp) -> dict[str, Any]:

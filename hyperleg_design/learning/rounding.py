@@ -40,8 +40,8 @@ def multiplies_bfloat16() -> bool:
     Returns:
         True if it does.
     """
-    found = torch.cpu.get_capabilities()
-    return any(found.get(name, False) for name in NATIVE)
+    capabilities = torch.cpu.get_capabilities()
+    return any(capabilities.get(name, False) for name in NATIVE)
 
 
 def round_layers(network: nn.Module) -> None:

@@ -89,13 +89,13 @@ class Schedule:
         without.
         """
         index, done = self.place
-        found = float("inf")
+        deviation = float("inf")
         for i, stage in enumerate(self.stages[: index + 1]):
             for ramp in stage.ramps:
                 if ramp.target[0] == "policy":
                     length = done if i == index else self.preset.iterations(stage)
-                    found = _between(ramp, self._progress(ramp, i, length))
-        return found
+                    deviation = _between(ramp, self._progress(ramp, i, length))
+        return deviation
 
     def advance(self, mean_episode: float, share: float) -> None:
         """Note that one iteration is done, and let the assist decay where the robots do well

@@ -26,10 +26,10 @@ def read_status(folder: Path) -> dict[str, Any] | None:
         Its content; None before the first lines of progress.
     """
     try:
-        found: dict[str, Any] = json.loads((folder / STATUS).read_text())
+        status: dict[str, Any] = json.loads((folder / STATUS).read_text())
     except (OSError, ValueError):
         return None
-    return found
+    return status
 
 
 def policies(folder: Path) -> list[Path]:

@@ -575,10 +575,10 @@ class Training:
 
         path = self.folder / PROGRESS
         if path.exists():
-            kept = [
+            remaining = [
                 line for line in path.read_text().splitlines() if line and _iteration(line) <= first
             ]
-            write_text(path, "".join(f"{line}\n" for line in kept))
+            write_text(path, "".join(f"{line}\n" for line in remaining))
         return SummaryWriter(
             str(self.folder), purge_step=(first + 1) * self.preset.steps_per_iteration
         )
@@ -617,7 +617,7 @@ def _check_same(folder: Path, description: dict[str, Any]) -> None:
     if not path.exists():
         return
     try:
-        found = json.loads(path.read_text())
+        content = json.loads(path.read_text())
     except (OSError, ValueError):
         raise InputError(
             f"{folder.name}/{RUN}",
@@ -626,10 +626,10 @@ def _check_same(folder: Path, description: dict[str, Any]) -> None:
             "cannot be read; choose another folder, or delete this one",
         ) from None
     for key in ("variant", "seed", "task", "design", "preset", "start", "overlay", "designs"):
-        if found.get(key) != json.loads(json.dumps(description[key])):
+        if content.get(key) != json.loads(json.dumps(description[key])):
             remedy = "the folder holds another training; choose another, or delete it"
             raise InputError(
-                str(folder), key, found.get(key) if key in ("variant", "seed") else None, remedy
+                str(folder), key, content.get(key) if key in ("variant", "seed") else None, remedy
             )
 
 

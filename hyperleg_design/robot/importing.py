@@ -158,10 +158,10 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
     Raises:
         InputError: a pattern that matches no link with colliding spheres.
     """
-    found: dict[str, Any] = {}
+    mapping: dict[str, Any] = {}
     for name, held in given.items():
         if isinstance(held, Mapping) and "position" in held:
-            found[name] = held
+            mapping[name] = held
             continue
         links = [link for link in robot.links if fnmatchcase(link, name)]
         origin = ((np.zeros(3), 0.0),) if "radius" in (held or {}) else ()
@@ -177,12 +177,12 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
             raise InputError(where, f"pads.{name}", None, remedy)
         for link, own in spheres.items():
             for index, (place, radius) in enumerate(own):
-                found[f"{link}_{index}"] = {
+                mapping[f"{link}_{index}"] = {
                     "link": link,
                     "position": _leaf(place.tolist(), robot.source),
                     "radius": _leaf(radius, robot.source),
                 } | dict(held or {})
-    return found
+    return mapping
 
 
 def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:

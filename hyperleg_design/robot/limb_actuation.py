@@ -59,8 +59,8 @@ class RodLinkage:
         limbs = [
             joint_from_motor(self.design, position[:, limb]) for limb in range(position.shape[1])
         ]
-        found = np.stack(np.broadcast_arrays(*limbs), -3)
-        return np.broadcast_to(found, (*position.shape, found.shape[-1]))
+        matrices = np.stack(np.broadcast_arrays(*limbs), -3)
+        return np.broadcast_to(matrices, (*position.shape, matrices.shape[-1]))
 
 
 def motor_position(design: TreeDesign, position: np.ndarray) -> np.ndarray:

@@ -166,13 +166,13 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> TreeDesign:
         return tree_design_from_mapping(data, name, where)
     base = _read(_base(path, str(data["base"])), (*seen, path.resolve()))
     rest = {k: v for k, v in data.items() if k not in ("base", "family", "name", "description")}
-    made = _overlaid(base, rest, where)
-    return dataclasses.replace(made, name=name, source=where)
+    design = _overlaid(base, rest, where)
+    return dataclasses.replace(design, name=name, source=where)
 
 
 def _overlaid(design: TreeDesign, data: Mapping[str, Any], where: str) -> TreeDesign:
     values, origins = leaf_values(data, type(design), where)
     if not values:
         return design
-    made = design.with_values(values, where)
-    return dataclasses.replace(made, origins={**made.origins, **origins})
+    changed = design.with_values(values, where)
+    return dataclasses.replace(changed, origins={**changed.origins, **origins})

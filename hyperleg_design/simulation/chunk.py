@@ -431,12 +431,12 @@ class Chunk:
         lost = ~np.isfinite(self.drive.qpos.sum(-1)) | ~(moving < FASTEST)
         warned = self.batch.warning[:, _BROKEN, 1].any(-1)
         ids = np.flatnonzero(lost | warned)
-        found = []
+        parts = []
         for i in ids:
             reason = self.batch.error(int(i)) or (
                 "speed or position without bounds" if lost[i] else "warning of MuJoCo"
             )
-            found.append(
+            parts.append(
                 Divergence(
                     self.first + int(i),
                     int(self.episode_step[i]),
@@ -458,7 +458,7 @@ class Chunk:
                 values[:, ids] = 0.0
             if self.told is not None:
                 self.told.forget(ids)
-        return found
+        return parts
 
     def _sound(self) -> bool:
         """Whether all simulations are well."""
@@ -547,11 +547,13 @@ class Chunk:
             velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs)
         )
         shaped = {"driven_joint_torque": torque, "joint_friction": friction}
-        found = {name: values.reshape(substeps, self.count, -1) for name, values in shaped.items()}
+        signals = {
+            name: values.reshape(substeps, self.count, -1) for name, values in shaped.items()
+        }
         if self.altered is not None:
-            found["driven_joint_torque"] = self.altered[:, 0].copy()
-            found["joint_friction"] = found["joint_friction"] + self.altered[:, 1]
-        found |= {
+            signals["driven_joint_torque"] = self.altered[:, 0].copy()
+            signals["joint_friction"] = signals["joint_friction"] + self.altered[:, 1]
+        signals |= {
             "base_position": position[..., :3],
             "base_orientation": position[..., 3:7],
             "base_velocity": velocity[..., :3],
@@ -566,8 +568,8 @@ class Chunk:
             "pad_slip": models.pad_slip(self.sensors),
         }
         if self.told is not None:
-            found |= self.told.signals
-        return {name: np.moveaxis(values, 0, 1) for name, values in found.items()}
+            signals |= self.told.signals
+        return {name: np.moveaxis(values, 0, 1) for name, values in signals.items()}
 
 
 def _give_models(batch: Any, models: Sequence[mujoco.MjModel]) -> None:

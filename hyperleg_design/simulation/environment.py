@@ -99,8 +99,8 @@ class Environment:
         """Of each of the simulated robots."""
         robots = (
             [
-                (simulation_model(one, task.physics, self.alterations), layout_of(one))
-                for one in self.designs
+                (simulation_model(robot, task.physics, self.alterations), layout_of(robot))
+                for robot in self.designs
             ]
             if self.alterations
             else simulated_robots(self.designs, task.physics)
@@ -118,10 +118,10 @@ class Environment:
             self.layouts = [
                 dataclasses.replace(
                     layout,
-                    observed=task.designs.numbers(one),
+                    observed=task.designs.numbers(robot),
                     observed_names=tuple(task.designs.columns),
                 )
-                for layout, one in zip(self.layouts, self.designs, strict=True)
+                for layout, robot in zip(self.layouts, self.designs, strict=True)
             ]
         self.design_index: np.ndarray = np.arange(simulations) // (simulations // number)
         """Design of each simulation, `(n,)`."""

@@ -243,13 +243,13 @@ def observe(
     Returns:
         Observations by group, `(n, size)` each, in single precision.
     """
-    made = {
+    arrays = {
         part: PARTS[part].function(state, robot)
         for part in dict.fromkeys(p for parts in groups.values() for p in parts)
     }
     return {
         group: np.concatenate(
-            [a for part in parts for a in made[part]], 1, dtype=np.float32, casting="same_kind"
+            [a for part in parts for a in arrays[part]], 1, dtype=np.float32, casting="same_kind"
         )
         for group, parts in groups.items()
     }

@@ -115,19 +115,21 @@ class Task:
         """What is not the paper's: reward terms, the gait clock where it is observed, and the
         simulation step, with descriptions.
         """
-        found = {name: TERMS[name].description for name in self.rewards if not TERMS[name].paper}
+        deviations = {
+            name: TERMS[name].description for name in self.rewards if not TERMS[name].paper
+        }
         if any("clock" in parts for parts in self.observations.values()):
-            found["clock"] = (
+            deviations["clock"] = (
                 "gait clock in the observation"
                 if self.clock.shown
                 else "input for a gait clock, at zero under this task"
             )
         if self.physics.time_step != TIME_STEP:
-            found["time_step"] = (
+            deviations["time_step"] = (
                 f"simulation steps of {1e3 * self.physics.time_step:g} ms, "
                 f"the paper's are {1e3 * TIME_STEP:g} ms"
             )
-        return found
+        return deviations
 
     def posed(self, design: RobotDesign) -> RobotDesign:
         """Put a design into the task's default posture.

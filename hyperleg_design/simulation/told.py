@@ -60,8 +60,8 @@ class Told:
             turning,
             added,
         )
-        for kept, values in zip(self.signals.values(), said, strict=True):
-            kept[substep] = values
+        for stored, values in zip(self.signals.values(), said, strict=True):
+            stored[substep] = values
 
     def forget(self, simulations: Sequence[int] | np.ndarray) -> None:
         """Set what some simulations measured to zero.
@@ -69,5 +69,5 @@ class Told:
         Args:
             simulations: their indices.
         """
-        for kept in self.signals.values():
-            kept[:, simulations] = 0.0
+        for values in self.signals.values():
+            values[:, simulations] = 0.0

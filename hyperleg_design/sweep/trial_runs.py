@@ -97,9 +97,9 @@ def plan(
     }
     digest = hashlib.sha256(json.dumps([protocol_mapping(p) for p in run], sort_keys=True).encode())
     for (kind, variant), files in chosen.items():
-        for one in files:
-            load_policy(one.path)  # a broken file is told before hours of work
-            digest.update(f"{kind} {variant} {one.name}".encode() + one.path.read_bytes())
+        for file in files:
+            load_policy(file.path)  # a broken file is told before hours of work
+            digest.update(f"{kind} {variant} {file.name}".encode() + file.path.read_bytes())
     return Plan(run, chosen, digest.hexdigest())
 
 
@@ -162,13 +162,13 @@ def run_trials(
         kind, mapping = kind_of(protocol), protocol_mapping(protocol)
         for variant in sweep.variants:
             good = head["sample"][(head["variant"] == variant) & (head["rejected"] == "")]
-            for one in wanted.policies[kind, variant]:
+            for policy in wanted.policies[kind, variant]:
                 for start in range(0, len(good), batch):
                     samples = good[start : start + batch]
-                    path = chunks / f"{kind}-{variant}-{one.seed}-{start:08d}.parquet"
+                    path = chunks / f"{kind}-{variant}-{policy.seed}-{start:08d}.parquet"
                     every.append(path)
                     if not _readable(path):
-                        job = (sweep, variant, samples, mapping, one.path, threads)
+                        job = (sweep, variant, samples, mapping, policy.path, threads)
                         jobs.append((path, job))
     with tqdm(
         total=len(every),
@@ -266,7 +266,9 @@ def evaluate_all(
             rejected |= {int(i): f"{error.field} {error.remedy}".strip() for i in rows[bad]}
             rows = rows[~np.asarray(bad)]
             continue
-        return {int(i): one.light(0) for i, one in zip(rows, done, strict=True)}, rejected
+        return {
+            int(i): evaluation.light(0) for i, evaluation in zip(rows, done, strict=True)
+        }, rejected
     return {}, rejected
 
 
@@ -355,10 +357,13 @@ def _joined(paths: Sequence[Path], state: dict[str, Any]) -> bytes:
 
     parts = [pd.read_parquet(path) for path in paths]
     rows = pd.concat([p for p in parts if len(p)], ignore_index=True) if parts else pd.DataFrame()
-    made = pa.Table.from_pandas(rows, preserve_index=False)
-    metadata = {**(made.schema.metadata or {}), b"hyperleg_trials": json.dumps(state).encode()}
+    arrow_table = pa.Table.from_pandas(rows, preserve_index=False)
+    metadata = {
+        **(arrow_table.schema.metadata or {}),
+        b"hyperleg_trials": json.dumps(state).encode(),
+    }
     stream = io.BytesIO()
-    pq.write_table(made.replace_schema_metadata(metadata), stream, compression="zstd")
+    pq.write_table(arrow_table.replace_schema_metadata(metadata), stream, compression="zstd")
     return stream.getvalue()
 
 

@@ -168,7 +168,7 @@ def _points(model: Any, data: Any, geom: int) -> np.ndarray | None:
 
 def _sticks(model: Any, data: Any, joints: Sequence[int]) -> tuple[np.ndarray, ...]:
     """See `Shapes.sticks`."""
-    found = []
+    sticks = []
     joint_of_body = {int(model.jnt_bodyid[joint]): joint for joint in joints}
     for joint in joints:
         body = int(model.jnt_bodyid[joint])
@@ -177,9 +177,9 @@ def _sticks(model: Any, data: Any, joints: Sequence[int]) -> tuple[np.ndarray, .
             above = int(model.body_parentid[above])
         start = data.xanchor[joint_of_body[above]] if above in joint_of_body else data.xpos[parent]
         if parent:
-            found.append(np.stack([start, data.xanchor[joint]]))
-        found.append(np.stack([data.xanchor[joint], data.xipos[body]]))
-    return tuple(found)
+            sticks.append(np.stack([start, data.xanchor[joint]]))
+        sticks.append(np.stack([data.xanchor[joint], data.xipos[body]]))
+    return tuple(sticks)
 
 
 def _view(axes: np.ndarray) -> np.ndarray:

@@ -54,7 +54,7 @@ def plan_text(experiment: Experiment) -> str:
             f"{m.name:<9}{mark} {m.duration:>5.1f} s {m.scale:>5.2f} {torque} {heat}  "
             f"{use.worst:<20} {m.purpose}"
         )
-    lines += [f"{one.name:<10} left out: {one.why}" for one in experiment.left_out]
+    lines += [f"{motion.name:<10} left out: {motion.why}" for motion in experiment.left_out]
     total = sum(experiment.motion(n).duration for n in experiment.chosen)
     lines += [
         "",
@@ -145,14 +145,14 @@ def _deviation_lines(experiment: Experiment) -> list[str]:
     lines = []
     for effect in dict.fromkeys(place[0] for place in blocks.places):
         units = {p.name: p.unit for p in EFFECTS[effect].parameters}
-        found = [
+        deviations = [
             info.standard_deviations(gram, blocks, place, experiment.subject)
             for place in blocks.places
             if place[0] == effect
         ]
         parts = []
-        for name in found[0]:
-            values = [f[name] for f in found if np.isfinite(f[name])]
+        for name in deviations[0]:
+            values = [f[name] for f in deviations if np.isfinite(f[name])]
             parts.append(
                 f"{name} {max(values):.2g} .. {min(values):.2g} {units[name]}".rstrip()
                 if values

@@ -85,7 +85,7 @@ def hints(shapes: Sequence[Mapping[str, Any]], shown: Sequence[Evidence]) -> lis
     Returns:
         Sentences.
     """
-    alike = [one for one in shown if one.residual_name == "motion"]
+    alike = [part for part in shown if part.residual_name == "motion"]
     rows = alike[0].rows if alike else ()
     fits = [friction(alike, row) for row in range(len(rows))]
     sentences: dict[str, None] = {}
@@ -100,9 +100,9 @@ def hints(shapes: Sequence[Mapping[str, Any]], shown: Sequence[Evidence]) -> lis
         if plain:
             sentences[plain] = None
             continue
-        says = str(shape["says"]).removeprefix(place).lstrip(": ")
+        sentence = str(shape["says"]).removeprefix(place).lstrip(": ")
         where = "" if place == "robot" else f" at {place}"
-        sentences[f"Left{where}: {says}."] = None
+        sentences[f"Left{where}: {sentence}."] = None
     return list(sentences)
 
 

@@ -95,9 +95,9 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     causes, rivals = list(diagnosis["causes"]), list(diagnosis["rivals"])
     verdict = str(diagnosis["verdict"])
     residual_name = _telling_residual(signals, causes)
-    shown = [evidence(one, causes, residual_name) for one in signals]
+    shown = [evidence(log, causes, residual_name) for log in signals]
     # joints that stand all the time show nothing
-    shown = [one for one in shown if np.isfinite(one.before).any()]
+    shown = [part for part in shown if np.isfinite(part.before).any()]
     left = hints(diagnosis.get("residual_shape", ()), shown)
     first, *others = _traces(folder, shown, bool(causes)) or [[]]
     page = DiagnosisPage(
@@ -112,7 +112,7 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
         remainder=left if causes and diagnosis.get("remainder") else left[1:3] if left else [],
         trace=[] if verdict == "none" else first,
         rivals_title="Nearest explanations" if verdict == "unknown" else "What else was tried",
-        rivals=[] if verdict == "none" else [_brief(one) for one in rivals[:MOST_RIVALS]],
+        rivals=[] if verdict == "none" else [_brief(rival) for rival in rivals[:MOST_RIVALS]],
         equivalent=[
             f"These logs cannot tell apart {joined(named(member) for member in group)}."
             for group in diagnosis["equivalent"]
@@ -197,21 +197,21 @@ def _brief(rival: Mapping[str, Any]) -> CauseRow:
 def _traces(folder: Path, shown: Sequence[Evidence], explained: bool) -> list[list[Picture]]:
     """Two pictures a log, over time and over speed; logs where causes show most come first."""
     telling = sorted(
-        shown, key=lambda one: -float(np.nan_to_num(rms(one.explained)).max(initial=0.0))
+        shown, key=lambda part: -float(np.nan_to_num(rms(part.explained)).max(initial=0.0))
     )
-    found = []
+    figures = []
     what = "what the causes predict and what is left" if explained else "no cause is named"
-    for number, one in enumerate(telling[:MOST_TRACES], 1):
+    for number, part in enumerate(telling[:MOST_TRACES], 1):
         name = f"{FIGURES}/trace-{number}.png"
-        save(gap_figures.time_figure(one), folder / name)
-        caption = f"{one.rows[one.worst]} in {one.log}: what the model lacks, {what}."
+        save(gap_figures.time_figure(part), folder / name)
+        caption = f"{part.rows[part.worst]} in {part.log}: what the model lacks, {what}."
         pictures = [Picture(name, caption, chart=True)]
-        if np.isfinite(one.speed[:, one.worst]).any():
+        if np.isfinite(part.speed[:, part.worst]).any():
             name = f"{FIGURES}/speed-{number}.png"
-            save(gap_figures.speed_figure(one), folder / name)
+            save(gap_figures.speed_figure(part), folder / name)
             pictures.append(Picture(name, "The same over speed, all of the log.", chart=True))
-        found.append(pictures)
-    return found
+        figures.append(pictures)
+    return figures
 
 
 def _details(
@@ -221,7 +221,7 @@ def _details(
     left: Sequence[str],
 ) -> list[Details]:
     """All that is folded away; of a verdict of `none`, what the logs would have shown is not."""
-    found = [
+    figures = [
         _rows(shown, bool(diagnosis["causes"])),
         Details("Another log", list(traces)) if traces else None,
         _places(diagnosis),
@@ -232,7 +232,7 @@ def _details(
         _listed("Calibration errors that were fitted along", diagnosis.get("nuisance", ())),
         _remarks(diagnosis),
     ]
-    return [one for one in found if one is not None]
+    return [figure_or_none for figure_or_none in figures if figure_or_none is not None]
 
 
 def _rows(shown: Sequence[Evidence], explained: bool) -> Details | None:
@@ -288,8 +288,8 @@ def _limits(diagnosis: Mapping[str, Any]) -> Details | None:
         return None
     header = ["effect", "of which", "where it shows best, from", "where it shows least, from"]
     every = [
-        [title(one["effect"]), one["location"], _words(one["parameter"]), change_text(one)]
-        for one in diagnosis["sensitivity"]
+        [title(entry["effect"]), entry["location"], _words(entry["parameter"]), change_text(entry)]
+        for entry in diagnosis["sensitivity"]
     ]
     rows = [[title(effect), _words(of), *places] for effect, of, *places in smallest]
     return Details(

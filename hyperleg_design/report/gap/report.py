@@ -54,7 +54,7 @@ def diagnose_to_folder(
 
     check_output_folder(out)
     tests, healthy = open_logs(sources, references)
-    found = diagnose(
+    diagnosis = diagnose(
         robot or None,
         tests,
         healthy,
@@ -65,9 +65,9 @@ def diagnose_to_folder(
     ).mapping()
     subject, _ = subjects(robot or None, reference_robot or None, tests, healthy)
     with output_folder(out) as folder:
-        write_json(folder / "diagnosis.json", found)
-        write_gap_page(folder, found, [condition(log, subject) for log in tests[:MOST_SHOWN]])
-    return found, Path(out) / "index.html"
+        write_json(folder / "diagnosis.json", diagnosis)
+        write_gap_page(folder, diagnosis, [condition(log, subject) for log in tests[:MOST_SHOWN]])
+    return diagnosis, Path(out) / "index.html"
 
 
 def excite_to_folder(robot: str, out: str | os.PathLike[str], **options: Any) -> str:

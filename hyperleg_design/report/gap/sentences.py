@@ -272,7 +272,7 @@ def _experiment(experiment: Entry) -> str:
     text = f"{capital(str(name))}: {text}" if name and name != text else capital(text)
     if minutes:
         text += f" ({float(minutes):g} minutes)"
-    separates = [str(one) for one in experiment.get("separates", ())]
+    separates = [str(cause) for cause in experiment.get("separates", ())]
     return text + (f". It tells apart {joined(separates)}." if len(separates) > 1 else ".")
 
 

@@ -72,8 +72,8 @@ def _signals(columns: Sequence[Column]) -> list[str]:
     columns.
     """
     kinds: dict[str, list[Column]] = {}
-    for one in columns:
-        kinds.setdefault(one.column.partition("/")[0], []).append(one)
+    for column in columns:
+        kinds.setdefault(column.column.partition("/")[0], []).append(column)
     lines = []
     for kind, members in kinds.items():
         quantum = max(c.quantum for c in members)
@@ -127,8 +127,8 @@ def gap_text(gap: Gap, most: int = 12) -> str:
             key=lambda r: -r.share,
         )
         if worst.excess > 0 and regimes:
-            told = ", ".join(f"{r.regime} {100 * r.share:.0f} %" for r in regimes[:4])
-            lines.append(f"  {worst.location} mostly in: {told}")
+            shares = ", ".join(f"{r.regime} {100 * r.share:.0f} %" for r in regimes[:4])
+            lines.append(f"  {worst.location} mostly in: {shares}")
     return "\n".join(lines)
 
 
@@ -145,17 +145,17 @@ def chosen(
         Name, value and words of each parameter; the words are empty for a number.
     """
     choices = {p.name: p.choices for p in EFFECTS[effect].parameters}
-    found = []
-    for name, one in parameters.items():
+    rows = []
+    for name, value in parameters.items():
         words = choices.get(name, ())
-        found.append(
+        rows.append(
             (
                 name,
-                one,
-                words[min(max(round(float(one["value"])), 0), len(words) - 1)] if words else "",
+                value,
+                words[min(max(round(float(value["value"])), 0), len(words) - 1)] if words else "",
             )
         )
-    return found
+    return rows
 
 
 def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
@@ -169,13 +169,13 @@ def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, 
         is most.
     """
     groups: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
-    for one in diagnosis.get("sensitivity", ()):
-        groups.setdefault((str(one["effect"]), str(one["parameter"])), []).append(one)
+    for entry in diagnosis.get("sensitivity", ()):
+        groups.setdefault((str(entry["effect"]), str(entry["parameter"])), []).append(entry)
     rows = []
     for (effect, parameter), members in groups.items():
-        ordered = sorted(members, key=lambda one: float(one["change"]))
+        ordered = sorted(members, key=lambda entry: float(entry["change"]))
         least, most = (
-            f"{change_text(one)} at {one['location']}" for one in (ordered[0], ordered[-1])
+            f"{change_text(entry)} at {entry['location']}" for entry in (ordered[0], ordered[-1])
         )
         rows.append((effect, parameter, least, most if len(ordered) > 1 else ""))
     return rows
@@ -217,7 +217,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         )
     for title, rows in (("cause", diagnosis["causes"]), ("rival", diagnosis["rivals"][:4])):
         for row in rows:
-            told = ", ".join(
+            words = ", ".join(
                 choice
                 or f"{n} {p['value']:.4g} {p['unit']} ({p['low']:.4g} .. {p['high']:.4g})".replace(
                     "  ", " "
@@ -226,7 +226,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
             )
             lines.append(
                 f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}, "
-                f"closes {100 * row['closed']:.0f} %; {told}"
+                f"closes {100 * row['closed']:.0f} %; {words}"
             )
     lines += [
         f"  at rest, which is in no balance: {one['says']}" for one in diagnosis.get("at_rest", ())
@@ -253,11 +253,11 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
             for effect, parameter, least, most in rows
         ]
     if diagnosis["separating_experiment"]:
-        told = "; ".join(
+        words = "; ".join(
             f"{key.replace('_', ' ')}: {value}"
             for key, value in diagnosis["separating_experiment"].items()
         )
-        lines.append(f"  to tell them apart: {told}")
+        lines.append(f"  to tell them apart: {words}")
     return "\n".join(lines)
 
 

@@ -95,9 +95,18 @@ def row_facts(row: PaperRow) -> dict[str, Any]:
     def plain(value: float) -> float | None:
         return float(value) if math.isfinite(value) else None
 
-    def side(one: Estimate) -> dict[str, Any]:
-        numbers = {"mean": plain(one.mean), "low": plain(one.low), "high": plain(one.high)}
-        return {**numbers, "seeds": one.seeds, "trials": one.trials, "missing": one.missing}
+    def side(estimate: Estimate) -> dict[str, Any]:
+        numbers = {
+            "mean": plain(estimate.mean),
+            "low": plain(estimate.low),
+            "high": plain(estimate.high),
+        }
+        return {
+            **numbers,
+            "seeds": estimate.seeds,
+            "trials": estimate.trials,
+            "missing": estimate.missing,
+        }
 
     return {
         "place": row.printed.place,

@@ -166,7 +166,15 @@ def _table_four(evaluated: Evaluated, draw: Drawer) -> Part:
         )
     for group in evaluated.groups(T_TEST):
         runs = {d: evaluated.of(group, d) for d in evaluated.designs(group)}
-        shown = next((one.trials[0] for some in runs.values() for one in some if one.trials), None)
+        shown = next(
+            (
+                evaluation.trials[0]
+                for some in runs.values()
+                for evaluation in some
+                if evaluation.trials
+            ),
+            None,
+        )
         step = shown.time_step * shown.substeps if shown is not None else 0.02
         content.append(
             draw(
@@ -183,8 +191,8 @@ def _table_four(evaluated: Evaluated, draw: Drawer) -> Part:
                     (
                         f"{group}_{d}",
                         caption,
-                        lambda p, t=t, one=some[0]: gif.render_gif(
-                            motion.t_test_motion(t, one.protocol), p
+                        lambda p, t=t, evaluation=some[0]: gif.render_gif(
+                            motion.t_test_motion(t, evaluation.protocol), p
                         ),
                         ".gif",
                         False,
