@@ -13,15 +13,12 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import parameters
 from hyperleg_design.robot.parameters import LABELS, Rule
-
-if TYPE_CHECKING:
-    pass
 
 CONFIDENCES = ("high", "medium", "low")
 RPM = 2 * math.pi / 60

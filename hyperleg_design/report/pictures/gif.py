@@ -5,16 +5,12 @@ from __future__ import annotations
 import io
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.errors import HyperlegError
 from hyperleg_design.report.pictures.motion import Motion, drawn_frames
 from hyperleg_design.writing import write_bytes
-
-if TYPE_CHECKING:
-    pass
 
 MOST_BYTES = 2_000_000
 """Largest size of a GIF file [byte]."""

@@ -13,15 +13,12 @@ import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.errors import HyperlegError
 from hyperleg_design.writing import write_bytes
-
-if TYPE_CHECKING:
-    pass
 
 TIMEOUT = 180.0
 """Longest that one picture may take [s]."""

@@ -19,7 +19,7 @@ from hyperleg_design.evaluation.steps import measured_steps
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.page import Cell, Table
-from hyperleg_design.report.pictures import gif, motion, picture
+from hyperleg_design.report.pictures import gif, motion, picture, strip
 from hyperleg_design.report.style import later, save
 from hyperleg_design.report.walks.beside_paper import (
     beside,
@@ -76,7 +76,7 @@ def walks(evaluated: Evaluated, draw: Drawer) -> Part:
                 (
                     f"gait_{group}",
                     caption,
-                    lambda p, named=named: picture.render(motion.strip_scene(named), p),
+                    lambda p, named=named: picture.render(strip.strip_scene(named), p),
                     ".png",
                     True,
                 )

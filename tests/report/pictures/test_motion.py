@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.protocol import Events, TTestProtocol, WalkProtocol
+from hyperleg_design.evaluation.protocol import TTestProtocol
 from hyperleg_design.report.pictures import motion
+from hyperleg_design.report.pictures.solids import PAD
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +32,7 @@ def test_a_walk_moves_as_it_was_recorded(walk):
 
 def test_pads_stand_on_the_floor(walk):
     made = motion.walk_motion(walk, begin=2.0, duration=1.0)
-    pads = [i for i, solid in enumerate(made.solids) if solid.colour == motion.PAD]
+    pads = [i for i, solid in enumerate(made.solids) if solid.colour == PAD]
     lowest = (made.positions[:, pads, 2] - made.solids[pads[0]].size[0]).min(1)
     assert np.abs(lowest).max() < 0.01
 
@@ -51,34 +52,6 @@ def test_the_direction_of_a_walk_does_not_matter(walk):
     one, other = (motion.walk_motion(trial, begin=1.0, duration=1.0) for trial in (walk, turned))
     assert one.positions == pytest.approx(other.positions, abs=1e-6)
     assert one.rotations == pytest.approx(other.rotations, abs=1e-6)
-
-
-def test_a_strip_has_a_row_a_walk_and_forces_that_carry_the_weight(walks):
-    events = WalkProtocol().events
-    scene = motion.strip_scene(
-        {name: (trial, events) for name, trial in walks.items()}, snapshots=5
-    )
-    labels = [text for _, text, _ in scene.labels]
-    assert labels.count("0 %") == labels.count("50 %") == 2
-    assert set(walks) <= set(labels)
-    up = [vector[2] for _, vector, _ in scene.arrows]
-    assert min(up) > 0
-    weights = sum(up) / motion.FORCE_LENGTH
-    assert 0.7 * 10 < weights < 1.3 * 10  # of ten snapshots, one body weight each in the mean
-    for start, _, _ in scene.arrows:
-        assert start[2] in (0.0, pytest.approx(-1.24))
-
-
-def test_a_strip_needs_strides(walk):
-    short = dataclasses.replace(
-        walk,
-        **{
-            f: getattr(walk, f)[:60]
-            for f in ("base_position", "base_orientation", "joint_position", "pad_force")
-        },
-    )
-    with pytest.raises(InputError, match="too few strides"):
-        motion.strip_scene({"toe": (short, Events())})
 
 
 def test_a_t_test_is_followed_over_its_course(course_run):
