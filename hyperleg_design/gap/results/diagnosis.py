@@ -33,8 +33,11 @@ class Value:
 
     value: float
     low: float
+    """Lower end of the interval."""
     high: float
+    """Upper end of the interval."""
     unit: str
+    """Unit of the three numbers; empty without one."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +45,23 @@ class Named:
     """A cause, or a rival of one."""
 
     effect: str
+    """Identifier of the effect."""
     location: str
+    """Joint, motor, link, foot or sensor where it acts."""
     probability: float
+    """Posterior probability [-]."""
     closed: float
     """Share of the excess gap that it closes on held-out data; of several causes, what it adds to
     those before."""
     parameters: Mapping[str, Value]
+    """Parameters of the effect by name."""
 
     def mapping(self) -> dict[str, Any]:
-        """As the file holds it."""
+        """Write the cause as the file holds it.
+
+        Returns:
+            Nested mappings.
+        """
         values = {
             n: {"value": p.value, "low": p.low, "high": p.high, "unit": p.unit}
             for n, p in self.parameters.items()
@@ -69,11 +80,17 @@ class Shrinkage:
     """How large the gap is and how far it shrinks, on held-out data, over the rows that count."""
 
     before: float
+    """Size of the gap with the nominal model."""
     after: float
+    """Size of the gap with the causes added."""
     floor: float
+    """Size that the noise model expects."""
     closed: float
+    """Share of the gap beyond that size which the causes close [-]."""
     closed_interval: tuple[float, float]
+    """95 % interval of this share [-]."""
     unit: str
+    """Unit of `before`, `after` and `floor`."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +98,7 @@ class Place:
     """Where the gap lies."""
 
     location: str
+    """Name of the place."""
     kind: str
     """`joint`, `motor`, `link`, `foot`, `sensor` or `robot`."""
     regime: str
@@ -91,20 +109,28 @@ class Place:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What logs say of the gap."""
+    """The answer of a diagnosis: verdict, gap, causes, rivals, and what to do next."""
 
     verdict: str
     """One of `VERDICTS`."""
     gap: Shrinkage
+    """Size of the gap before and after the causes are added."""
     where: tuple[Place, ...]
+    """Where the gap lies, the largest share first."""
     causes: tuple[Named, ...]
+    """Causes that close the gap together."""
     rivals: tuple[Named, ...]
+    """Other candidates, the most probable first."""
     equivalent: tuple[tuple[tuple[str, str], ...], ...]
     """Sets of (effect, location) that these data cannot tell apart."""
     separating_experiment: Mapping[str, Any] | None
+    """The cheapest experiment that tells such a set apart; None where there is none."""
     not_judged: tuple[Mapping[str, str], ...] = ()
+    """Effects that could not be tried, and why."""
     residual_shape: tuple[Mapping[str, Any], ...] = ()
+    """What the residual that no cause explains looks like, the largest first."""
     checks: tuple[str, ...] = ()
+    """Remarks on the logs."""
     at_rest: tuple[Mapping[str, Any], ...] = ()
     """Joints that hold more than all known friction while they stand: `location`, `torque` beyond
     it [Nm], and `says`."""
@@ -114,6 +140,7 @@ class Diagnosis:
     nuisance: tuple[Mapping[str, Any], ...] = ()
     """Nuisance parameters that were fitted along, the largest first, in usual sizes."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    """Robot, logs, versions, seed and commit."""
     remainder: float | None = None
     """Share of the gap that no listed effect explains, where something unlisted acts."""
     lacks: Mapping[str, Any] | None = None
@@ -121,7 +148,11 @@ class Diagnosis:
     form; no part of the verdict."""
 
     def mapping(self) -> dict[str, Any]:
-        """As `diagnosis.json` holds it, numbers rounded to `DIGITS`."""
+        """Write the diagnosis as `diagnosis.json` holds it.
+
+        Returns:
+            Nested mappings; numbers are rounded to `DIGITS` significant digits.
+        """
         gap = {
             "before": self.gap.before,
             "after": self.gap.after,
