@@ -444,9 +444,10 @@ def _with_named(
     """The measures of a sweep that does not list them, with those that its objectives and maps
     name.
     """
-    maps, objectives = data.get("maps"), data.get("objectives")
-    named = list(objectives) if isinstance(objectives, list) else []
-    named += [m.get("measure") for m in maps or () if isinstance(m, Mapping)]
+    maps, objectives = (
+        part if isinstance(part, list) else [] for part in map(data.get, ("maps", "objectives"))
+    )
+    named = [*objectives, *(m.get("measure") for m in maps if isinstance(m, Mapping))]
     return with_columns(chosen, [str(name) for name in named], base)
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 import yaml
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from hyperleg_design import resources
@@ -227,6 +227,7 @@ FIELDS = ["axes", "variants", "sampling", "count", "seed", "measures", "objectiv
 
 
 @given(data=ANYTHING, field=st.sampled_from(FIELDS))
+@example(data=True, field="maps")
 @settings(max_examples=150, deadline=None)
 def test_anything_else_is_refused_or_read_never_a_crash(data, field):
     """A field of any shape gives a sweep or an InputError."""
