@@ -90,10 +90,8 @@ class CauseRules:
     probability: float = 0.5
     """That anything of the catalogue is wrong [-] (assumed)."""
     usual: float = 2.0
-    """Deviations of the usual calibration error from which a size is rather a fault, of causes that
+    """Deviations of the usual calibration error beyond which a size is a fault, of causes that
     no reference logs tell from it [-] (assumed)."""
-    usual_odds: float = 10.0
-    """Log odds against a fault of no size, which fall to nothing at `usual` [nat] (developed)."""
     width: float = 3.0
     """Prior deviation of a parameter over its effect's usual size [-]; a fit beyond it widens it
     (assumed)."""

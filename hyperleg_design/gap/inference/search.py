@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
@@ -396,25 +397,32 @@ class Search:
                         cause.location, self.evidence.signals[0].subject, values
                     )
                     + min(prior_odds(cause, values), 0.0)
-                    - self.like_usual(cause, values)
+                    - self.like_usual(cause, values, hypothesis.deviation(place))
                 )
                 place += 1
             found += float(np.mean(odds))
         return found
 
-    def like_usual(self, cause: Cause, values: np.ndarray) -> float:
-        """Log odds against a cause that is no larger than the usual calibration error [nat]; what
-        references tell has no such error.
+    def like_usual(self, cause: Cause, values: np.ndarray, deviation: np.ndarray) -> float:
+        """Log odds against a cause that is no larger than the usual calibration error: the
+        posterior probability that one of its parameters lies beyond `usual` deviations of that
+        [nat]. What references tell has no such error.
         """
         if self.evidence.references and not cause.standing:
             return 0.0
-        own = self.rules.cause
-        sizes = []
+        own, factor = self.rules.cause, self.rules.posterior.interval
+        odds = []
         for place, (value, null) in enumerate(zip(values, cause.nulls, strict=True)):
-            spread = self.evidence.usual.get((cause.effect, cause.location, place), 0.0)
-            if not cause.shape[place] and value != null:
-                sizes.append(abs(value - null) / max(own.usual * spread, 1e-300))
-        return own.usual_odds * max(1 - max(sizes, default=np.inf), 0.0)
+            usual = own.usual * self.evidence.usual.get(
+                (cause.effect, cause.location, place), 0.0
+            )
+            if cause.shape[place] or value == null:
+                continue
+            if not usual:
+                return 0.0
+            over = (abs(value - null) - usual) / max(factor * deviation[place], 1e-300)
+            odds.append(-float(norm.logcdf(over)))
+        return min(odds, default=0.0)
 
 
 def eased(
