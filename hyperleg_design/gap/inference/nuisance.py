@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.filtering import FilteredLog
     from hyperleg_design.gap.signals.signals import Signals
 
-TORQUE_CONSTANT = 0.02
+TORQUE_CONSTANT = 0.03
 COULOMB, COULOMB_LEAST = 0.08, 0.0008
 """Of the model's friction, and of the torque that the joint is made for."""
 VISCOUS, VISCOUS_LEAST = 0.12, 0.0007
@@ -102,7 +102,7 @@ WAYS = (0.0015, 0.006)
 SWINGS, OF_SWING = (0.5, 2.0), 0.7
 """Other amplitudes of chatter over those that a log shows at its rate; share of the difference in
 friction (assumed)."""
-AT_ONCE, OF_WAY = 0.5, 0.3
+AT_ONCE, OF_WAY = 1.0, 0.3
 """Share of the model's friction that turns over at once, and on each of these ways."""
 
 
