@@ -89,6 +89,9 @@ class CauseRules:
 
     probability: float = 0.5
     """That anything of the catalogue is wrong [-] (assumed)."""
+    again: float = 0.5
+    """That a further cause is an effect that acts at another place already [-]: gears, drives and
+    settings of one kind fail alike (assumed)."""
     usual: float = 2.0
     """Deviations of the usual calibration error beyond which a size is a fault, of causes that
     no reference logs tell from it [-] (assumed)."""

@@ -4,7 +4,7 @@ each place, an effect at all of its places, and sets of them by forward and back
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -202,22 +202,32 @@ class Search:
             self.threads,
         )
         found = [one for one in fitted if one is not None]
-        effects = list(dict.fromkeys((effect, standing) for effect, _, standing in chosen))
-        whole = [
-            (effect, standing)
-            for effect, standing in effects
-            if EFFECTS[effect].linear
-            and self.count[effect] > 1
-            and all((one.effect, one.standing) != (effect, standing) for one in current.candidates)
-        ][: rules.groups]
-        for effect, standing in whole:
+        found += [
+            self.fit((*current.candidates, one), current.scales)
+            for one in self.everywhere(promises, current)
+        ]
+        return found
+
+    def everywhere(
+        self, promises: Mapping[Name, Sequence[Promise]], current: Hypothesis
+    ) -> list[Candidate]:
+        """Linear effects at all of their places that gain most beside a hypothesis."""
+        scales = eased(self.evidence, current.scales, self.rules)
+        acting = {(one.effect, one.standing) for one in current.candidates}
+        found = []
+        for effect, standing in sorted({(name[0], name[2]) for name in promises} - acting):
+            if not EFFECTS[effect].linear or self.count[effect] < 2:
+                continue
             own = sorted(name for name in promises if (name[0], name[2]) == (effect, standing))
             causes = [self.candidate(promises[name][0], current) for name in own]
             joined = tuple(c for one in causes if one is not None for c in one.causes)
-            if len(joined) > 1:
-                everywhere = Candidate(effect, EVERYWHERE, joined)
-                found.append(self.fit((*current.candidates, everywhere), current.scales))
-        return found
+            if len(joined) < 2:
+                continue
+            stack = Stack.of((*current.causes, *joined), self.evidence.weight)
+            one = Candidate(effect, EVERYWHERE, joined)
+            found.append((self._fitted(stack, scales).gain, one))
+        found.sort(key=lambda entry: (-entry[0], *entry[1].name))
+        return [one for _, one in found[: self.rules.search.groups]]
 
     def promises(self, current: Hypothesis) -> list[Promise]:
         """Gain of every effect at every place beside a hypothesis, at its scales, best first; noise
@@ -383,11 +393,19 @@ class Search:
 
     def log_prior(self, hypothesis: Hypothesis) -> float:
         """Log prior probability of a set of causes at their values [nat]: each effect is as likely
-        as any other, at each of its places, or at all of them.
+        as any other, but for one that acts at another place already, at each of its places, or at
+        all of them.
         """
+        own = self.rules.cause
         found, place = 0.0, 0
+        acting: set[tuple[str, bool]] = set()
         for one in hypothesis.candidates:
-            found += float(np.log(self.rules.cause.probability / len(self.count)))
+            kind = one.effect, one.standing
+            chance = own.probability * (own.again if kind in acting else 1 / len(self.count))
+            if acting and kind not in acting:
+                chance *= 1 - own.again
+            acting.add(kind)
+            found += float(np.log(chance))
             found -= float(np.log(self.count[one.effect] + (self.count[one.effect] > 1)))
             odds = []
             for cause in one.causes:
