@@ -158,25 +158,21 @@ class Search:
         return self.evidence.samples if standing else self.evidence.tests
 
     def result(self) -> Result:
-        """Search forward until no further cause is worth its prior, then drop what is not."""
-        fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.nothing}
-        current = self.nothing
-        for _ in range(self.rules.search.causes * (2 if self.evidence.references else 1)):
-            further = self.further(current)
-            for one in further:
-                before = fitted.get(one.names)
-                if before is None or one.score > before.score:
-                    fitted[one.names] = one
-            best = max(further, key=lambda one: one.score, default=current)
-            if best.score <= current.score:
+        """Search forward until no further cause is worth its prior, drop what is not, and put
+        others in the place of each.
+        """
+        fitted = {(): self.nothing}
+        current, most = self.nothing, self.rules.search.causes * (1 + bool(self.evidence.references))
+        while True:
+            ways = [current] if len(current.candidates) < most else []
+            best = self._better(ways, current, fitted)
+            if best is current and len(current.candidates) > 1:
+                best = self._better(self._fewer(current, fitted), current, fitted)
+            if best is current:
                 break
             current = best
-            for place in range(len(current.candidates) - 1):
-                rest = current.candidates[:place] + current.candidates[place + 1 :]
-                fewer = self.fit(rest, current.scales)
-                fitted.setdefault(fewer.names, fewer)
-                if fewer.score > current.score:
-                    current = fewer
+            for fewer in self._fewer(current, fitted)[:-1]:
+                current = max(current, fewer, key=lambda one: one.score)
         ranked = sorted(fitted.values(), key=lambda one: (-one.score, one.names))
         missing = tuple(
             traced
@@ -184,6 +180,32 @@ class Search:
             if isinstance(traced, screen.NotJudged) and not standing
         )
         return Result(tuple(ranked), missing)
+
+    def _better(
+        self,
+        starts: Sequence[Hypothesis],
+        current: Hypothesis,
+        fitted: dict[tuple[Name, ...], Hypothesis],
+    ) -> Hypothesis:
+        """The best hypothesis of one more cause than any of some, if better than a current one."""
+        for start in starts:
+            for one in self.further(start):
+                before = fitted.get(one.names)
+                if before is None or one.score > before.score:
+                    fitted[one.names] = one
+                current = max(current, one, key=lambda any_: any_.score)
+        return current
+
+    def _fewer(
+        self, current: Hypothesis, fitted: dict[tuple[Name, ...], Hypothesis]
+    ) -> list[Hypothesis]:
+        """A hypothesis without each of its candidates."""
+        found = []
+        for place in range(len(current.candidates)):
+            rest = current.candidates[:place] + current.candidates[place + 1 :]
+            found.append(self.fit(rest, current.scales) if rest else self.nothing)
+            fitted.setdefault(found[-1].names, found[-1])
+        return found
 
     def further(self, current: Hypothesis) -> list[Hypothesis]:
         """Fit the most promising causes beside those of a hypothesis."""
