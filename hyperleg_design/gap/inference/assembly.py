@@ -53,8 +53,8 @@ class Evidence:
     """Share of the numbers of each channel in which its load is no noise."""
 
     def scaled(self, cause: Cause) -> Cause:
-        """A cause that pays for scaling torques, in the channels that are made of these torques, as
-        far as they are no noise there.
+        """A cause that pays for scaling torques, as far as they are no noise in the channels that
+        are made of them; once, as these channels are made of the same torques.
         """
         factor = cause.factor
         if not isinstance(factor, Factor):
@@ -66,7 +66,7 @@ class Evidence:
             own = (channel.residual, channel.column) == (row.residual_name, row.column)
             if own or (channel.residual in MOTORS and np.any(trace[channel.samples] != 0)):
                 place = channel.samples if cause.standing else channel.under_test
-                number += share * float(self.samples.share[place].sum())
+                number = max(number, share * float(self.samples.share[place].sum()))
         return replace(cause, factor=replace(factor, number=number))
 
     def acting(self, cause: Cause, standing: bool) -> Cause:

@@ -162,7 +162,8 @@ class Search:
         others in the place of each.
         """
         fitted = {(): self.nothing}
-        current, most = self.nothing, self.rules.search.causes * (1 + bool(self.evidence.references))
+        current = self.nothing
+        most = self.rules.search.causes * (1 + bool(self.evidence.references))
         while True:
             ways = [current] if len(current.candidates) < most else []
             best = self._better(ways, current, fitted)
@@ -453,9 +454,7 @@ class Search:
         own, factor = self.rules.cause, self.rules.posterior.interval
         odds = []
         for place, (value, null) in enumerate(zip(values, cause.nulls, strict=True)):
-            usual = own.usual * self.evidence.usual.get(
-                (cause.effect, cause.location, place), 0.0
-            )
+            usual = own.usual * self.evidence.usual.get((cause.effect, cause.location, place), 0.0)
             if cause.shape[place] or value == null:
                 continue
             if not usual:

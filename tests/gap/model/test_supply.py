@@ -127,9 +127,6 @@ def test_a_gain_declared_wrongly_is_found_by_its_size(servo):
     assert found.causes[0].parameters["stiffness_scale"].value == pytest.approx(2.0, abs=0.05)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="known miss of the posterior: it names the mass that the currents suggest"
-)
 def test_a_constant_declared_wrongly_is_one_cause_in_both_balances(servo):
     found = diagnose_signals(
         conditioned(servo, run(reading=1.25 * CONSTANT), run(reading=1.25 * CONSTANT, seed=1)),

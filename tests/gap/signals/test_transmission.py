@@ -85,27 +85,28 @@ def test_a_healthy_robot_has_no_gap_in_it(robot_files):
     assert all(r.gap < 2 * r.floor for r in mine)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="known miss of the posterior: motor speeds do not yet decide for the ratio"
-)
-def test_speeds_tell_a_ratio_from_a_torque_constant(robot_files):
-    """A motor whose torque reaches the joints 1.1 times and that turns 1.1 times as fast."""
-    plain = [run("healthy", s, session="today") for s in (0, 1)]
-    strong = [
-        log.changed(
-            signals={**log.signals, "motor_torque/m_back": log.column("motor_torque/m_back") / 1.1}
-        )
-        for log in plain
-    ]
-    blind = diagnose(robot_files["coupled"], strong, threads=1)
-    assert blind.causes[0].effect == "torque_constant"
-    seeing = diagnose(
-        robot_files["coupled"],
-        [with_rotors(robot_files["coupled"], log, m_back=1.1) for log in strong],
-        threads=1,
-    )
-    assert (seeing.causes[0].effect, seeing.causes[0].location) == ("transmission_ratio", "m_back")
-    assert (
-        seeing.causes[0].parameters["scale"].low < 1.1 < seeing.causes[0].parameters["scale"].high
-    )
-    assert not any(c.effect == "torque_constant" for c in seeing.causes)
+def geared(robot, log, scale, motor="m_back"):
+    """A log of the same motion behind a gear of `scale` times the ratio: rotor and joints pull the
+    motor by its own ratio.
+    """
+    subject = load_subject(robot, [log])
+    place, signals = subject.motors.index(motor), condition(log, subject)
+    turned = signals.acceleration @ subject.joint_from_motor[:, place]
+    rotor = subject.rotor_inertia[place] * np.interp(log.time, signals.time, turned)
+    torque = (log.column(f"motor_torque/{motor}") - rotor) / scale + scale * rotor
+    return log.changed(signals={**log.signals, f"motor_torque/{motor}": torque})
+
+
+@pytest.mark.parametrize("speeds", [False, True])
+def test_a_ratio_is_told_from_a_torque_constant(robot_files, speeds):
+    """A motor that pulls 1.1 times as hard and turns 1.1 times as fast: its rotor's share of the
+    torque tells it from a stronger motor, and the speeds of its rotor, where they are logged.
+    """
+    robot = robot_files["coupled"]
+    logs = [geared(robot, run("healthy", s, session="today"), 1.1) for s in (0, 1)]
+    if speeds:
+        logs = [with_rotors(robot, log, m_back=1.1) for log in logs]
+    found = diagnose(robot, logs, threads=1)
+    assert [(c.effect, c.location) for c in found.causes] == [("transmission_ratio", "m_back")]
+    scale = found.causes[0].parameters["scale"]
+    assert scale.low < 1.1 < scale.high
