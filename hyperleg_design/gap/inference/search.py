@@ -161,7 +161,7 @@ class Search:
         """Search forward until no further cause is worth its prior, drop what is not, and put
         others in the place of each.
         """
-        fitted = {(): self.nothing}
+        fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.nothing}
         current = self.nothing
         most = self.rules.search.causes * (1 + bool(self.evidence.references))
         while True:
