@@ -20,6 +20,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.rules import DiscrepancyRules, InferenceRules
@@ -44,6 +45,43 @@ class Scales:
     """Logarithm of the scale of its change from session to session."""
     new: float = 0.0
     """Logarithm of how much larger the change is in sessions under test; 0 of a healthy robot."""
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """Products of one channel at given noise, each session's discrepancy columns turned to where
+    they are apart, so that no scale needs a new decomposition of them.
+    """
+
+    values: np.ndarray
+    """Products of the columns with themselves `(sessions, k)`."""
+    axes: np.ndarray
+    """`(sessions, k, k)`"""
+    cross: np.ndarray
+    """With the residual `(sessions, k)`."""
+    square: float
+    """Of the residual with itself, all sessions."""
+    spread: float
+    """Log determinant of the noise."""
+
+    def log_likelihood(self, change: np.ndarray, standing: float) -> float:
+        """As of `Channel.log_likelihood`.
+
+        Args:
+            change: scale of the change of each session `(sessions,)`.
+            standing: logarithm of the scale of the standing discrepancy.
+        """
+        squares = change[:, None] ** 2
+        shrunk = 1 / (1 + squares * self.values)
+        left_own = self.axes * (shrunk * self.values)[:, None, :]
+        whole = np.exp(2 * standing) * np.tensordot(left_own, self.axes, ((0, 2), (0, 2)))
+        whole[np.diag_indices_from(whole)] += 1.0
+        factor = np.linalg.cholesky(whole)
+        cross = np.einsum("sij,sj->i", self.axes, shrunk * self.cross)
+        taken = np.exp(standing) * solve_triangular(factor, cross, lower=True, check_finite=False)
+        left = self.square - float(np.sum(squares * shrunk * self.cross**2)) - float(taken @ taken)
+        determinant = 2 * float(np.log(np.diag(factor)).sum()) - float(np.log(shrunk).sum())
+        return -0.5 * (left + determinant + self.spread)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,9 +238,8 @@ class Channel:
     def summed(self, noise: np.ndarray, products: np.ndarray | None = None) -> np.ndarray:
         """Products over the noise, by session `(sessions, n, n)`."""
         products = self.products if products is None else products
-        found = np.zeros((len(self.tested), *products.shape[1:]))
-        np.add.at(found, self.session, products / noise[self.band][:, None, None])
-        return found
+        share = (self.session == np.arange(len(self.tested))[:, None]) / noise[self.band]
+        return np.asarray(np.tensordot(share, products, 1))
 
     def change_scales(self, scales: Scales) -> np.ndarray:
         """D of each session `(sessions,)`; 0 where a single session cannot tell it."""
@@ -210,7 +247,7 @@ class Channel:
             return np.zeros(len(self.tested))
         return np.exp(scales.change + np.where(self.tested, scales.new, 0.0))
 
-    def reduced(self, scales: Scales, summed: np.ndarray) -> tuple[np.ndarray, float]:
+    def reduced(self, scales: Scales, summed: np.ndarray) -> np.ndarray:
         """Integrate the discrepancy out.
 
         Args:
@@ -218,37 +255,37 @@ class Channel:
             summed: products by session, the k discrepancy columns first `(sessions, k + m, k + m)`.
 
         Returns:
-            Products of the other m columns in the metric of the marginal covariance `(m, m)`, and
-            the log determinant of that covariance over the noise's.
+            Products of the other m columns in the metric of the marginal covariance `(m, m)`.
         """
         k = self.columns
-        change = self.change_scales(scales) ** 2
+        change = self.change_scales(scales)[:, None, None] ** 2
         own, cross, rest = summed[:, :k, :k], summed[:, :k, k:], summed[:, k:, k:]
         eye = np.eye(k)
-        inner = eye + change[:, None, None] * own
-        factor = np.linalg.cholesky(inner)
-        determinant = 2 * float(np.log(np.diagonal(factor, axis1=1, axis2=2)).sum())
-        solved = np.linalg.solve(inner, np.concatenate([cross, own], -1))
+        solved = np.linalg.solve(eye + change * own, np.concatenate([cross, own], -1))
         cross_left, own_left = solved[..., : cross.shape[-1]].sum(0), solved[..., -k:].sum(0)
-        taken = change[:, None, None] * cross.swapaxes(1, 2) @ solved[..., : cross.shape[-1]]
-        left = (rest - taken).sum(0)
+        taken = change * cross.swapaxes(1, 2) @ solved[..., : cross.shape[-1]]
         shared = np.exp(2 * scales.standing)
         whole = eye + shared * 0.5 * (own_left + own_left.T)
-        factor = np.linalg.cholesky(whole)
-        determinant += 2 * float(np.log(np.diag(factor)).sum())
-        return left - shared * cross_left.T @ np.linalg.solve(whole, cross_left), determinant
+        left: np.ndarray = (rest - taken).sum(0)
+        return left - shared * cross_left.T @ np.linalg.solve(whole, cross_left)
 
-    def log_likelihood(self, scales: Scales, summed: np.ndarray | None = None) -> float:
+    def turned(self, noise: np.ndarray) -> Turned:
+        """The products at some noise, in the axes in which each session's columns are apart."""
+        summed, k = self.summed(noise), self.columns
+        values, axes = np.linalg.eigh(summed[:, :k, :k])
+        cross = (summed[:, None, k, :k] @ axes)[:, 0]
+        spread = float(self.numbers @ np.log(noise))
+        return Turned(np.maximum(values, 0.0), axes, cross, float(summed[:, k, k].sum()), spread)
+
+    def log_likelihood(self, scales: Scales, turned: Turned | None = None) -> float:
         """Marginal log-likelihood of the residual, up to what all models share [nat].
 
         Args:
             scales: hyperparameters.
-            summed: as of `summed(scales.noise)`.
+            turned: the products at the noise of these.
         """
-        summed = self.summed(scales.noise) if summed is None else summed
-        left, determinant = self.reduced(scales, summed)
-        spread = float(self.numbers @ np.log(scales.noise))
-        return -0.5 * (float(left[0, 0]) + determinant + spread)
+        turned = self.turned(scales.noise) if turned is None else turned
+        return turned.log_likelihood(self.change_scales(scales), scales.standing)
 
     def log_prior(self, scales: Scales, rules: InferenceRules) -> float:
         """Log prior density of the hyperparameters, up to a constant [nat]."""
@@ -272,10 +309,10 @@ class Channel:
         return found
 
     def log_posterior(
-        self, scales: Scales, rules: InferenceRules, summed: np.ndarray | None = None
+        self, scales: Scales, rules: InferenceRules, turned: Turned | None = None
     ) -> float:
         """Log-likelihood and log prior of the hyperparameters [nat]."""
-        return self.log_likelihood(scales, summed) + self.log_prior(scales, rules)
+        return self.log_likelihood(scales, turned) + self.log_prior(scales, rules)
 
     def discrepancy(self, scales: Scales) -> tuple[np.ndarray, np.ndarray]:
         """Posterior of w + delta_s: means `(sessions, k)` and covariances `(sessions, k, k)`."""
@@ -307,29 +344,27 @@ class Channel:
             usual = np.ones(len(self.numbers))
             usual[self.bands_tested] = self.usual_noise(scales.noise, rules)
             scales = replace(scales, noise=(weight * usual + left) / (weight + self.numbers))
-            summed = self.summed(scales.noise)
-            scales = self._searched(scales, "standing", rules, summed)
+            turned = self.turned(scales.noise)
+            scales = self._searched(scales, "standing", rules, turned)
             if self.changes:
-                scales = self._searched(scales, "change", rules, summed)
+                scales = self._searched(scales, "change", rules, turned)
         if self.referenced:
-            summed = self.summed(scales.noise)
+            turned = self.turned(scales.noise)
             healthy = replace(scales, new=0.0)
             begin = max(scales.new, float(np.log(rules.discrepancy.unlisted)) / 2)
-            unlisted = self._searched(replace(scales, new=begin), "new", rules, summed)
+            unlisted = self._searched(replace(scales, new=begin), "new", rules, turned)
             scales = max(
-                (healthy, unlisted), key=lambda one: self.log_posterior(one, rules, summed)
+                (healthy, unlisted), key=lambda one: self.log_posterior(one, rules, turned)
             )
         return scales
 
-    def _searched(
-        self, scales: Scales, name: str, rules: InferenceRules, summed: np.ndarray
-    ) -> Scales:
+    def _searched(self, scales: Scales, name: str, rules: InferenceRules, turned: Turned) -> Scales:
         def moved(value: float) -> Scales:
             changes: dict[str, Any] = {name: value}
             return replace(scales, **changes)
 
         def score(value: float) -> float:
-            return self.log_posterior(moved(value), rules, summed)
+            return self.log_posterior(moved(value), rules, turned)
 
         lowest = 2 * ABSENT if name == "new" else -np.inf
         return moved(_climbed(score, float(getattr(scales, name)), lowest))

@@ -155,7 +155,7 @@ def reduced(evidence: Evidence, scales: Sequence[Scales], columns: np.ndarray) -
     for channel, own in zip(evidence.channels, scales, strict=True):
         shown = np.flatnonzero(np.any(columns[:, channel.samples] != 0, 1))
         products = channel.stacked(*channel.crossed(columns[shown])) if len(shown) else None
-        left, _ = channel.reduced(own, channel.summed(own.noise, products))
+        left = channel.reduced(own, channel.summed(own.noise, products))
         place = np.r_[0, 1 + shown]
         found[np.ix_(place, place)] += left
     return found

@@ -165,10 +165,12 @@ class Search:
         current = self.nothing
         most = self.rules.search.causes * (1 + bool(self.evidence.references))
         while True:
-            ways = [current] if len(current.candidates) < most else []
-            best = self._better(ways, current, fitted)
+            best = current
+            if len(current.candidates) < most:
+                best = self._better(self.further(current), current, fitted)
             if best is current and len(current.candidates) > 1:
-                best = self._better(self._fewer(current, fitted), current, fitted)
+                for one, rest in zip(current.candidates, self._fewer(current, fitted), strict=True):
+                    best = self._better(self.further(rest, one), best, fitted)
             if best is current:
                 break
             current = best
@@ -184,17 +186,16 @@ class Search:
 
     def _better(
         self,
-        starts: Sequence[Hypothesis],
+        found: Sequence[Hypothesis],
         current: Hypothesis,
         fitted: dict[tuple[Name, ...], Hypothesis],
     ) -> Hypothesis:
-        """The best hypothesis of one more cause than any of some, if better than a current one."""
-        for start in starts:
-            for one in self.further(start):
-                before = fitted.get(one.names)
-                if before is None or one.score > before.score:
-                    fitted[one.names] = one
-                current = max(current, one, key=lambda any_: any_.score)
+        """The best of some hypotheses, if better than a current one; all are kept."""
+        for one in found:
+            before = fitted.get(one.names)
+            if before is None or one.score > before.score:
+                fitted[one.names] = one
+            current = max(current, one, key=lambda any_: any_.score)
         return current
 
     def _fewer(
@@ -208,8 +209,13 @@ class Search:
             fitted.setdefault(found[-1].names, found[-1])
         return found
 
-    def further(self, current: Hypothesis) -> list[Hypothesis]:
-        """Fit the most promising causes beside those of a hypothesis."""
+    def further(self, current: Hypothesis, instead: Candidate | None = None) -> list[Hypothesis]:
+        """Fit the most promising causes beside those of a hypothesis.
+
+        Args:
+            current: the hypothesis.
+            instead: a candidate whose place they are to take: only those that promise more.
+        """
         rules = self.rules.search
         promises: dict[Name, list[Promise]] = {}
         for one in self.promises(current):
@@ -217,8 +223,13 @@ class Search:
         names = sorted(promises, key=lambda name: (-promises[name][0].gain, name))
         if not names:
             return []
-        least = max(rules.share * promises[names[0]][0].gain, rules.least)
-        chosen = [n for n in names if promises[n][0].gain > least][: rules.candidates]
+        gains = {name: promises[name][0].gain for name in names}
+        groups = self.everywhere(promises, current)
+        gains |= {one.name: gain for gain, one in groups}
+        least = max(rules.share * gains[names[0]], rules.least)
+        if instead is not None:
+            least = max(least, gains.get(instead.name, least))
+        chosen = [name for name in names if gains[name] > least][: rules.candidates]
         fitted = screen.spread(
             lambda name: self.best_of(promises[name][: rules.starts], current),
             chosen,
@@ -227,17 +238,22 @@ class Search:
         found = [one for one in fitted if one is not None]
         found += [
             self.fit((*current.candidates, one), current.scales)
-            for one in self.everywhere(promises, current)
+            for gain, one in groups[: rules.groups]
+            if gain > least
         ]
         return found
 
     def everywhere(
         self, promises: Mapping[Name, Sequence[Promise]], current: Hypothesis
-    ) -> list[Candidate]:
-        """Linear effects at all of their places that gain most beside a hypothesis."""
+    ) -> list[tuple[float, Candidate]]:
+        """Linear effects at all of their places, and what they gain beside a hypothesis at its
+        scales, best first.
+        """
         scales = eased(self.evidence, current.scales, self.rules)
         acting = {(one.effect, one.standing) for one in current.candidates}
-        found = []
+        start, found = 0.0, []
+        if current.causes:
+            start = self._fitted(Stack.of(current.causes, self.evidence.weight), scales).gain
         for effect, standing in sorted({(name[0], name[2]) for name in promises} - acting):
             if not EFFECTS[effect].linear or self.count[effect] < 2:
                 continue
@@ -248,9 +264,8 @@ class Search:
                 continue
             stack = Stack.of((*current.causes, *joined), self.evidence.weight)
             one = Candidate(effect, EVERYWHERE, joined)
-            found.append((self._fitted(stack, scales).gain, one))
-        found.sort(key=lambda entry: (-entry[0], *entry[1].name))
-        return [one for _, one in found[: self.rules.search.groups]]
+            found.append((self._fitted(stack, scales).gain - start, one))
+        return sorted(found, key=lambda entry: (-entry[0], *entry[1].name))
 
     def promises(self, current: Hypothesis) -> list[Promise]:
         """Gain of every effect at every place beside a hypothesis, at its scales, best first; noise

@@ -78,7 +78,7 @@ def test_reduced_products_are_those_in_the_metric_of_the_covariance():
     rng = np.random.default_rng(5)
     channel, white = made(rng)
     columns = rng.standard_normal((3, len(channel.samples)))
-    left, _ = channel.reduced(
+    left = channel.reduced(
         SCALES, channel.summed(SCALES.noise, channel.stacked(*channel.crossed(columns)))
     )
     total = sum(one.shape[1] for one in white)
