@@ -92,7 +92,7 @@ class CauseRules:
     again: float = 0.5
     """That a further cause is an effect that acts at another place already [-]: gears, drives and
     settings of one kind fail alike (assumed)."""
-    usual: float = 2.0
+    usual: float = 3.0
     """Deviations of the usual calibration error beyond which a size is a fault, of causes that
     no reference logs tell from it [-] (assumed)."""
     width: float = 3.0
