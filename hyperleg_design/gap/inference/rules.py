@@ -118,8 +118,10 @@ class SearchRules:
     """Gain in nats from which any is [nat] (assumed)."""
     groups: int = 2
     """Effects that are tried at all of their places at once in one step [-]."""
-    rounds: int = 3
-    """Of fitting causes and scales in turn [-]."""
+    rounds: int = 12
+    """Most rounds of fitting causes and scales in turn [-]."""
+    settled: float = 0.05
+    """Change of a cause in one round, over its deviation, from which both have converged [-]."""
 
 
 @dataclass(frozen=True)

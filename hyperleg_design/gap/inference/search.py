@@ -403,15 +403,19 @@ class Search:
             bool(np.any(stack.columns[:, one.samples]) or np.any(stack.constant[one.samples]))
             for one in channels
         ]
+        rules = self.rules.search
         found = list(scales)
-        for _ in range(self.rules.search.rounds):
-            solution = self._fitted(stack, found)
+        solution = self._fitted(stack, found)
+        for _ in range(rules.rounds):
             trace = solution.theta @ stack.columns + stack.constant
             found = [
                 channel.without(trace).fitted(own, self.rules, 2) if seen else own
                 for channel, own, seen in zip(channels, found, shown, strict=True)
             ]
-        solution = self._fitted(stack, found)
+            before, solution = solution.theta, self._fitted(stack, found)
+            deviation = np.sqrt(np.maximum(np.diag(solution.covariance), 1e-300))
+            if np.all(np.abs(solution.theta - before) < rules.settled * deviation):
+                break
         trace = solution.theta @ stack.columns + stack.constant
         likelihood = solution.occam
         for place, (channel, own) in enumerate(zip(channels, found, strict=True)):
