@@ -5,8 +5,8 @@ A closed loop gives whatever torque is needed, model errors e included. An effec
 of the believed torque for its own trace takes that share of e along, so that least squares would
 always rather scale torques down. The density of the believed torque has the missing term: with u =
 (1 + a phi) believed - needed, it is p(u) (1 + a phi), so the log-likelihood gains n mean log(1 + a
-phi). What scales torques up gains nothing so: noise, which is a share of the torque, would grow
-with it.
+phi). A joint whose torque is less than the floor gains nothing so: that would only tell that the
+floor is high.
 
 Noise of accelerations is in the residual, and in the load that stretches a belt, too: with encoders
 at the joints a belt's trace takes the share x = J compliance omega^2 of it along, all of it where
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
 BELT, SIDE = "transmission_elasticity", 2
 """Effect of belts that stretch, and its parameter that tells where encoders are."""
+FAINT = 0.5
+"""Believed torque over the floor, root mean square, up to which a larger torque gains nothing; from
+the floor on all of it."""
 LEAST = 0.05
 """Factor below which the logarithm is cut."""
 TICKS = 200
@@ -50,13 +53,15 @@ class Factor:
     """At some ticks `(t,)`, over the usual size of the parameter."""
     number: float
     """Independent numbers in the rows that it scales."""
+    shows: float = 1.0
+    """Share of a gain that counts."""
     row: int = 0
     """Row of the joint that it scales most."""
 
     def log(self, phi: float) -> float:
         """N mean log of the factor."""
         found = self.number * float(np.mean(np.log(np.maximum(1 + self.slope * phi, LEAST))))
-        return min(found, 0.0)
+        return self.shows * found if found > 0 else found
 
     def slopes(self, phi: float) -> tuple[float, float]:
         """First derivative of `log`, and its second with the sign turned."""
@@ -131,7 +136,7 @@ def factor(
         np.concatenate([_slope(s.signals, effect, motor, joint) for s in samples.filtered_logs])
         * usual[0]
     )
-    return Factor(0, slopes, number, rows[0])
+    return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint), rows[0])
 
 
 def _shrinking(
@@ -175,6 +180,31 @@ def _carried(signals: Signals, motor: int, joint: int) -> float:
         float(np.mean(whole[joint] ** 2 @ level)),
     )
     return float(signals.subject.joint_from_motor[joint, motor]) * both / max(all_of_it, 1e-300)
+
+
+def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:
+    """How much of a gain counts, by the torque that a motor gives a joint over the floor of its
+    row, 0 to 1.
+    """
+
+    def trace(signals: Signals) -> dict[str, np.ndarray]:
+        given = np.zeros((1, *signals.position.shape))
+        given[0, :, joint] = (
+            np.nan_to_num(signals.believed[:, motor])
+            * signals.subject.joint_from_motor[joint, motor]
+        )
+        return {"motion": given}
+
+    columns = samples.columns(trace, 1)
+    if columns is None:
+        return 0.0
+    own = samples.row == row
+    over = float(
+        np.sqrt(
+            np.average(np.square(columns[0, own] / samples.floor[own]), weights=samples.share[own])
+        )
+    )
+    return float(np.clip((over - FAINT) / (1 - FAINT), 0.0, 1.0))
 
 
 def _slope(signals: Signals, effect: str, motor: int, joint: int) -> np.ndarray:

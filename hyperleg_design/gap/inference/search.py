@@ -14,6 +14,7 @@ from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis import (
     EVERYWHERE,
     Candidate,
@@ -259,7 +260,7 @@ class Search:
                 continue
             own = sorted(name for name in promises if (name[0], name[2]) == (effect, standing))
             causes = [self.candidate(promises[name][0], current) for name in own]
-            joined = tuple(c for one in causes if one is not None for c in one.causes)
+            joined = tuple(ungaining(c) for one in causes if one is not None for c in one.causes)
             if len(joined) < 2:
                 continue
             stack = Stack.of((*current.causes, *joined), self.evidence.weight)
@@ -481,6 +482,15 @@ class Search:
             over = (abs(value - null) - usual) / max(factor * deviation[place], 1e-300)
             odds.append(-float(norm.logcdf(over)))
         return min(odds, default=0.0)
+
+
+def ungaining(cause: Cause) -> Cause:
+    """A cause that gains nothing by scaling torques up: where all torques are scaled, masses and
+    friction may be, too, and all that is left to gain is noise nearer to the expected one.
+    """
+    if isinstance(cause.factor, Factor):
+        return replace(cause, factor=replace(cause.factor, shows=0.0))
+    return cause
 
 
 def eased(
