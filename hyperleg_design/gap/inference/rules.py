@@ -112,8 +112,6 @@ class SearchRules:
     """Starts that a nonlinear effect is fitted from [-]."""
     steps: int = 5
     """Gauss-Newton steps of a start [-]."""
-    share: float = 0.25
-    """Gain over the best one's from which a candidate is fitted to the end [-] (assumed)."""
     least: float = -1.5
     """Gain in nats from which any is [nat] (assumed)."""
     groups: int = 2

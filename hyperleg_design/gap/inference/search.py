@@ -227,7 +227,7 @@ class Search:
         gains = {name: promises[name][0].gain for name in names}
         groups = self.everywhere(promises, current)
         gains |= {one.name: gain for gain, one in groups}
-        least = max(rules.share * gains[names[0]], rules.least)
+        least = rules.least
         if instead is not None:
             least = max(least, gains.get(instead.name, least))
         chosen = [name for name in names if gains[name] > least][: rules.candidates]
