@@ -1,11 +1,14 @@
-"""Evaluation of many designs side by side, over bare physics of the same robots and states.
+"""Evaluation of many designs, over bare physics of the same robots and states.
 
-64 designs with 10 walks each, as `evaluate_designs` runs them: models built, policy, actuation,
-recording, measures. Bare physics is `mujoco.batch.Batch.step` of as many robots, each with its own
-design's model, from states that the walks went through. Shares are of processor time, so they mean
-something on a busy machine; both run in the same process, one after the other.
+64 designs with 10 walks each, as a sweep evaluates them: 16 designs side by side, with models
+built, policy, actuation, recording and measures. Bare physics is `mujoco.batch.Batch.step` of as
+many robots that are not driven by a policy, each with its own design's model, from states that the
+walks went through; it counts the simulation steps until each trial ended. Ratios are of processor
+time of one process, so they mean something on a busy machine.
 
-    python benchmarks/variants.py --designs 64 --distance 2.0
+    python benchmarks/variants.py --designs 64 --distance 20
+
+With `--peer`, `mujoco-uni-runtime` steps the same models from the same states.
 """
 
 from __future__ import annotations
@@ -15,13 +18,13 @@ import time
 
 import numpy as np
 
-from hyperleg_design.evaluation.evaluate import evaluate_designs
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.evaluation.walk import walk_task
 from hyperleg_design.simulation import model as models
 from hyperleg_design.simulation.chunk import _give_models
 from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.sweep.trial_runs import BATCH, evaluate_all
 
 STEPS = 12
 """Policy steps whose states bare physics starts from."""
@@ -42,40 +45,52 @@ def designs_of(policy, count):
     )
 
 
-def bare_seconds(policy, designs, protocol, threads):
-    """Processor time of one policy step of bare physics of all robots [s]."""
-    from mujoco import batch
-
+def states_of(policy, designs, protocol):
+    """Models, states and friction of all robots at some moments of their walks."""
     count = len(designs["toe.mass"])
     environment = Environment(
         designs,
         walk_task(policy.task, protocol),
         simulations=count * int(protocol.trials),
-        threads=threads,
+        threads=1,
         common_random_numbers=True,
     )
-    bare = batch.Batch(environment.model, environment.simulations, threads)
-    _give_models(bare, [environment.models[i] for i in environment.design_index])
-    fields = [
-        name
-        for name in ("dof_damping", "tendon_damping")
-        if environment.chunks[0].batch.expanded(name) is not None
-    ]
-    observation, found = environment.reset()["policy"], []
-    substeps = int(environment.task.physics.substeps)
+    observation = environment.reset()["policy"]
+    moments = []
     for step in range(STEPS * EVERY):
         if step % EVERY == 0:
-            for chunk in environment.chunks:
-                own = slice(chunk.first, chunk.first + chunk.count)
-                bare.state[own] = chunk.batch.state
-                for name in fields:
-                    bare.expand(name)[own] = chunk.batch.expand(name)
-            start = time.process_time()
-            bare.step(nstep=substeps)
-            found.append(time.process_time() - start)
+            moments.append(
+                [
+                    np.concatenate([np.array(get(chunk)) for chunk in environment.chunks])
+                    for get in (
+                        lambda chunk: chunk.batch.state,
+                        lambda chunk: chunk.batch.expanded("dof_damping"),
+                        lambda chunk: chunk.drive.qpos,
+                        lambda chunk: chunk.drive.qvel,
+                        lambda chunk: chunk.batch.bind("ctrl"),
+                    )
+                ]
+            )
         observation = environment.step(policy(observation)).observations["policy"]
     environment.close()
-    return float(np.median(found)), float(environment.task.physics.policy_step)
+    robots = [environment.models[i] for i in environment.design_index]
+    return environment, robots, moments
+
+
+def bare_seconds(environment, robots, moments):
+    """Processor time of one simulation step of one robot in bare physics [s]."""
+    from mujoco import batch
+
+    bare = batch.Batch(robots[0], len(robots), 1)
+    _give_models(bare, robots)
+    substeps, spent = int(environment.task.physics.substeps), []
+    for state, damping, *_ in moments:
+        bare.state[:] = state
+        bare.expand("dof_damping")[:] = damping
+        start = time.process_time()
+        bare.step(nstep=substeps)
+        spent.append(time.process_time() - start)
+    return float(np.median(spent)) / (len(robots) * substeps)
 
 
 def main() -> None:
@@ -83,15 +98,15 @@ def main() -> None:
     parser.add_argument("--designs", type=int, default=64)
     parser.add_argument("--trials", type=int, default=10)
     parser.add_argument("--distance", type=float, default=2.0, help="of each walk [m]")
-    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--batch", type=int, default=BATCH, help="designs side by side")
     chosen = parser.parse_args()
     policy = load_policy("walk-toe-0")
     designs = designs_of(policy, chosen.designs)
     protocol = WalkProtocol(
         trials=chosen.trials,
         distance=chosen.distance,
-        time_limit=1.5 * chosen.distance,
-        steady=Steady(begin=chosen.distance / 2),
+        time_limit=max(1.5 * chosen.distance, 2.0),
+        steady=Steady(begin=min(4.0, chosen.distance / 2)),
     )
     each = [designs.take(i) for i in range(chosen.designs)]
     spent = {}
@@ -99,18 +114,23 @@ def main() -> None:
         start = time.process_time()
         models.simulated_robots(each, policy.task.physics)
         spent[name] = time.process_time() - start
-    wall, start = time.perf_counter(), time.process_time()
-    done = evaluate_designs(policy, designs, protocol, threads=chosen.threads)
-    spent["evaluated"], wall = time.process_time() - start, time.perf_counter() - wall
-    bare, step = bare_seconds(policy, designs, protocol, chosen.threads)
-    # all robots are stepped until the last trial has ended
-    steps = max(max(one.end_times) for one in done) / step
-    physics = bare * steps
+    start, ends = time.process_time(), []
+    for begin in range(0, chosen.designs, chosen.batch):
+        rows = np.arange(begin, min(begin + chosen.batch, chosen.designs))
+        done, _ = evaluate_all(policy, designs.rows(rows), protocol, 1)
+        ends += [end for evaluation in done.values() for end in evaluation.end_times]
+    spent["evaluated"] = time.process_time() - start
+    environment, robots, moments = states_of(
+        policy, designs.rows(np.arange(min(chosen.batch, chosen.designs))), protocol
+    )
+    bare = bare_seconds(environment, robots, moments)
+    physics = bare * sum(ends) / float(environment.task.physics.time_step)
     whole = spent["built"] + spent["evaluated"]
     print(
-        f"{chosen.designs} designs x {chosen.trials} walks of {chosen.distance:g} m, processor "
-        f"time: models {spent['built']:.1f} s (again: {spent['kept']:.2f} s), evaluation "
-        f"{spent['evaluated']:.1f} s ({wall:.1f} s on the clock), bare physics {physics:.1f} s"
+        f"{chosen.designs} designs x {chosen.trials} walks of {chosen.distance:g} m, "
+        f"{chosen.batch} designs side by side, processor time: models {spent['built']:.1f} s "
+        f"(again: {spent['kept']:.2f} s), evaluation {spent['evaluated']:.1f} s, bare physics "
+        f"{physics:.1f} s ({1e6 * bare:.1f} us a step of a robot)"
     )
     print(
         f"bare physics over evaluation: {physics / spent['evaluated']:.2f} with models at hand, "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -113,9 +114,18 @@ def vibration(joint_velocity: Any, time_step: float, above: float = VIBRATION) -
     Returns:
         Root mean square of the filtered velocities [rad/s], `(J,)`.
     """
-    from scipy.signal import butter, sosfiltfilt
+    from scipy.signal import sosfiltfilt
 
     velocity = np.asarray(joint_velocity, float)
-    sections = butter(2, above, "highpass", fs=1 / time_step, output="sos")
-    fast = sosfiltfilt(sections, velocity, axis=0, padlen=min(9, len(velocity) - 1))
+    fast = sosfiltfilt(
+        _high_pass(above, 1 / time_step), velocity, axis=0, padlen=min(9, len(velocity) - 1)
+    )
     return np.asarray(np.sqrt(np.mean(fast**2, 0)))
+
+
+@cache
+def _high_pass(above: float, rate: float) -> np.ndarray:
+    """Second-order sections of the filter, which all trials of a protocol share."""
+    from scipy.signal import butter
+
+    return np.asarray(butter(2, above, "highpass", fs=rate, output="sos"))

@@ -25,15 +25,18 @@ def foot_places(trial: Trial, samples: np.ndarray) -> np.ndarray:
     model = trial.model
     data = mujoco.MjData(model)
     pads = np.array([model.geom(pad).id for pad in trial.layout.pads])
-    found = np.empty((len(samples), len(trial.layout.feet), 2))
-    for i, sample in enumerate(samples):
-        data.qpos[:3], data.qpos[3:7], data.qpos[7:] = (
-            trial.base_position[sample],
-            trial.base_orientation[sample],
-            trial.joint_position[sample],
-        )
+    places = np.empty((len(samples), len(pads), 2))
+    qpos = np.concatenate(
+        [
+            trial.base_position[samples],
+            trial.base_orientation[samples],
+            trial.joint_position[samples],
+        ],
+        -1,
+    )
+    for posture, place in zip(qpos, places, strict=True):
+        data.qpos[:] = posture
         mujoco.mj_kinematics(model, data)
-        places = data.geom_xpos[pads, :2]
-        for foot in range(len(trial.layout.feet)):
-            found[i, foot] = places[trial.layout.pad_foot == foot].mean(0)
-    return found
+        place[:] = data.geom_xpos[pads, :2]
+    feet = range(len(trial.layout.feet))
+    return np.stack([places[:, trial.layout.pad_foot == foot].mean(1) for foot in feet], 1)

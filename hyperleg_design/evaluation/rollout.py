@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -118,7 +119,7 @@ class Trial:
         """Vertical force on each pad [N], `(t, P)`."""
         return self.pad_force[..., 2]
 
-    @property
+    @cached_property
     def foot_load(self) -> np.ndarray:
         """Vertical force on each foot [N], `(t, F)`; of a biped left and right."""
         return np.stack(
@@ -180,7 +181,9 @@ def record(
     )
     limit = round(time_limit / duration)
     environment.assist = None
-    environment.recording = True
+    environment.recording, environment.rewarded = True, False
+    # the results are the same with and without; only time is saved
+    freezing = not environment.draws_later(time_limit)
     observation = environment.reset()["policy"]
     if hasattr(policy, "reset"):
         policy.reset(count)
@@ -198,8 +201,8 @@ def record(
             before_step(environment)
         step = environment.step(action)
         observation = step.observations["policy"]
-        signals = environment.signals()
         if not store:
+            signals = environment.signals()
             # pages of the part that is never reached are never claimed
             sensed_names = [n for n in signals if n.startswith(TOLD)]
             store = {
@@ -207,13 +210,13 @@ def record(
                 for n in (*SIGNALS, *sensed_names)
             }
         now = slice(step_index * substeps, (step_index + 1) * substeps)
-        for name, kept in store.items():
-            kept[:, now] = signals[name]
+        environment.keep_signals(store, now)
         divergences.update({d.simulation: d for d in step.divergences if running[d.simulation]})
         ended = step.ended[running[step.ended]]
         for trial in ended:
             outcomes[trial] = _OF_ENDING[int(step.ending[trial])]
             length[trial], ended_at[trial] = now.start, (step_index + 1) * duration
+        over = [ended]
         running[ended] = False
         if arrived is not None:
             done = np.flatnonzero(
@@ -224,8 +227,11 @@ def record(
                 outcomes[trial] = ARRIVED
             length[done], ended_at[done] = now.stop, (step_index + 1) * duration
             running[done] = False
+            over.append(done)
         if not running.any():
             break
+        if freezing and any(map(len, over)):
+            environment.freeze(np.concatenate(over))
     length[running], ended_at[running] = limit * substeps, limit * duration
     return [
         Trial(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -29,6 +30,10 @@ class Contacts:
     """Pads before the ankle, toe included."""
 
 
+_KEPT: WeakKeyDictionary[Trial, tuple[Events, Contacts, gait.Steps]] = WeakKeyDictionary()
+"""Contacts and steps of trials that are still in use: several measures need them."""
+
+
 def foot_contacts(trial: Trial, events: Events) -> Contacts:
     """Find the contacts of feet, heels and forefeet by the thresholds of a protocol.
 
@@ -39,8 +44,25 @@ def foot_contacts(trial: Trial, events: Events) -> Contacts:
         events: thresholds in body weights, and the shortest contact and gap.
 
     Returns:
-        The contacts at each sample.
+        The contacts at each sample, not to be written into.
     """
+    return _contacts_and_steps(trial, events)[0]
+
+
+def _contacts_and_steps(trial: Trial, events: Events) -> tuple[Contacts, gait.Steps]:
+    """Contacts and steps, found once for each trial and protocol."""
+    kept = _KEPT.get(trial)
+    if kept is None or kept[0] is not events:
+        contacts = _find_contacts(trial, events)
+        steps = gait.find_steps(contacts.feet, contacts.heel, contacts.forefoot, trial.time_step)
+        for values in (*vars(contacts).values(), *vars(steps).values()):
+            values.flags.writeable = False
+        kept = (events, contacts, steps)
+        _KEPT[trial] = kept
+    return kept[1:]
+
+
+def _find_contacts(trial: Trial, events: Events) -> Contacts:
     on, off = events.touchdown_load * trial.layout.weight, events.lift_load * trial.layout.weight
     behind = trial.layout.pad_position[:, 0] < 0
     shortest = max(1, round(events.shortest / trial.time_step))
@@ -69,10 +91,9 @@ def measured_steps(trial: Trial, events: Events) -> gait.Steps:
         events: thresholds of the protocol.
 
     Returns:
-        The steps of all feet.
+        The steps of all feet, not to be written into.
     """
-    contacts = foot_contacts(trial, events)
-    return gait.find_steps(contacts.feet, contacts.heel, contacts.forefoot, trial.time_step)
+    return _contacts_and_steps(trial, events)[1]
 
 
 def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[str, float]:
@@ -183,16 +204,22 @@ def flat_drift(trial: Trial, steps: gait.Steps, contacts: Contacts) -> np.ndarra
     Returns:
         The distance of each step [m], `(k,)`; NaN where the foot never stands flat.
     """
-    drifts = np.full(len(steps), np.nan)
+    drift = np.full(len(steps), np.nan)
     flat = contacts.heel & contacts.forefoot
+    stretches: list[tuple[int, int]] = []
+    rows: list[int] = []
     for i, (foot, down, up) in enumerate(
         zip(steps.foot, steps.touchdown, steps.toe_off, strict=True)
     ):
         standing = down + np.flatnonzero(flat[down : up if up > 0 else len(flat), foot])
         if len(standing) > 1:
-            begin, end = foot_places(trial, standing[[0, -1]])[:, foot]
-            drifts[i] = np.linalg.norm(end - begin)
-    return drifts
+            stretches.append((standing[0], standing[-1]))
+            rows.append(i)
+    places = foot_places(trial, np.array(stretches, int).ravel())
+    for row, begin, end in zip(rows, places[::2], places[1::2], strict=True):
+        foot = steps.foot[row]
+        drift[row] = np.linalg.norm(end[foot] - begin[foot])
+    return drift
 
 
 def mean_of(values: np.ndarray) -> float:

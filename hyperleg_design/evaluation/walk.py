@@ -10,7 +10,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import bearing, course, gait, rollout
 from hyperleg_design.evaluation.landmarks import LANDMARKS, landmark_measures
-from hyperleg_design.evaluation.motor_use import motor_use
+from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
 from hyperleg_design.evaluation.power import LEG_MEANS, cycle_power, flows, ledger
 from hyperleg_design.evaluation.protocol import WalkProtocol
 from hyperleg_design.evaluation.protocol_run import Measured, ProtocolRun
@@ -119,13 +119,14 @@ def measure_walk(trial: Trial, protocol: WalkProtocol) -> Measured:
     window = steady_window(trial, away, protocol)
     if window is None:
         return measures | dict.fromkeys(_STEADY, np.nan), None, None
-    steady, steps = _steady_measures(trial, window, protocol)
+    use = motor_use(trial, *window)
+    steady, steps = _steady_measures(trial, window, use, protocol)
     if trial.layout.limbs != SIDES:
         nothing = {f"right_{name}_power": np.nan for name in LEG_MEANS}
-        return measures | steady | nothing, motor_use(trial, *window), None
+        return measures | steady | nothing, use, None
     cycle = cycle_power(trial, steps)
     leg = {f"right_{name}_power": value for name, value in cycle.means.items()}
-    return measures | steady | leg, motor_use(trial, *window), cycle
+    return measures | steady | leg, use, cycle
 
 
 def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tuple[int, int] | None:
@@ -258,7 +259,7 @@ def _run_measures(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> dic
 
 
 def _steady_measures(
-    trial: Trial, window: tuple[int, int], protocol: WalkProtocol
+    trial: Trial, window: tuple[int, int], use: MotorUse, protocol: WalkProtocol
 ) -> tuple[dict[str, float], gait.Steps]:
     first, last = window
     part = slice(first, last)
@@ -270,7 +271,6 @@ def _steady_measures(
         for flow in ("motor_side", "battery")
     }
     steps = measured_steps(trial, protocol.events).within(first, last + 1)
-    use = motor_use(trial, first, last)
     layout = trial.layout
     measures = {
         "steady_speed": way / duration,

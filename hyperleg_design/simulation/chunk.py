@@ -174,6 +174,11 @@ class Chunk:
         self.target = np.zeros((count, joints))
         """Joint angles that the controller was asked for in the last policy step [rad]."""
         self.recording = False
+        self.rewarded = True
+        """Whether steps give rewards and the observations of all groups, or those of the policy
+        alone."""
+        self._running: np.ndarray | None = None
+        """Simulations whose physics is stepped, in ascending order; None for all."""
         self.thermal = ThermalState(task.thermal, (count, motors))
         self.commander = commander(task.commands, count)
         self.rewards: dict[str, Reward] = dict(task.rewards)
@@ -192,10 +197,25 @@ class Chunk:
         Returns:
             Observations by group, `(n, size)` each.
         """
-        everyone = np.arange(self.count)
+        everyone, self._running = np.arange(self.count), None
         state = self._started(everyone)
         self.motion, self.goal = state.motion, state.goal
-        return observe(self.task.observations, state, self.robot)
+        return observe(self._groups, state, self.robot)
+
+    @property
+    def _groups(self) -> Mapping[str, Sequence[str]]:
+        """Parts of the groups of observations that are computed."""
+        groups = self.task.observations
+        return groups if self.rewarded else {"policy": groups["policy"]}
+
+    def freeze(self, ids: np.ndarray) -> None:
+        """Leave simulations as they are until the next reset.
+
+        Args:
+            ids: their indices within the chunk.
+        """
+        running = np.arange(self.count) if self._running is None else self._running
+        self._running = np.setdiff1d(running, ids)
 
     def step(self, action: np.ndarray) -> Step:
         """Advance all simulations of the chunk by one policy step.
@@ -229,21 +249,25 @@ class Chunk:
         state = self._state(
             self.thermal.advance(self.motor_torque / self._rated, duration), terminated
         )
-        reward_terms = self._rewards(state) * duration
+        reward_terms = (
+            self._rewards(state) * duration
+            if self.rewarded
+            else np.zeros((self.count, len(self.rewards)))
+        )
         if diverged:
             reward_terms[diverged] = 0.0
         ended = np.flatnonzero(ending)
         lengths = self.episode_step[ended]
         self.commander.advance(self.motion, self.goal, duration, self.rng)
         state.command = self.commander.vector(self.goal)
-        observations = observe(task.observations, state, self.robot)
+        observations = observe(self._groups, state, self.robot)
         final = {group: values[ended] for group, values in observations.items()}
         if len(ended):
             fresh = self._started(ended)
             self.motion.put(ended, fresh.motion)
             if self.goal is not None and fresh.goal is not None:
                 self.goal.put(ended, fresh.goal)
-            for group, values in observe(task.observations, fresh, self.robot.take(ended)).items():
+            for group, values in observe(self._groups, fresh, self.robot.take(ended)).items():
                 observations[group][ended] = values
         return Step(
             observations=observations,
@@ -311,7 +335,8 @@ class Chunk:
         failed: np.ndarray | None = None
         self._turn.release()
         try:
-            self.batch.step()
+            if self._running is None or len(self._running):
+                self.batch.step(self._running)
         except SimulationError as error:
             failed = error.ids
         finally:
@@ -532,8 +557,11 @@ class Chunk:
         middle = (self.layout.lower + self.layout.upper) / 2
         return np.where(position < middle, self.stops, -self.stops)
 
-    def signals(self) -> Mapping[str, Any]:
+    def signals(self, *, friction: bool = True) -> Mapping[str, Any]:
         """Collect what happened within the last policy step; see `Environment.signals`.
+
+        Args:
+            friction: also `joint_friction`, which must be computed anew.
 
         Returns:
             Arrays by name.
@@ -543,16 +571,16 @@ class Chunk:
         legs = (substeps, self.count, len(self.layout.limbs), -1)
         matrix = self.drive.model.joint_from_motor
         torque = np.einsum("...jm,...m->...j", matrix, self.motor_torque.reshape(legs))
-        friction = self.drive.friction(
-            velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs)
-        )
-        shaped = {"driven_joint_torque": torque, "joint_friction": friction}
-        signals = {
-            name: values.reshape(substeps, self.count, -1) for name, values in shaped.items()
-        }
+        signals = {"driven_joint_torque": torque.reshape(substeps, self.count, -1)}
         if self.altered is not None:
             signals["driven_joint_torque"] = self.altered[:, 0].copy()
-            signals["joint_friction"] = signals["joint_friction"] + self.altered[:, 1]
+        if friction:
+            resistance = self.drive.friction(
+                velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs)
+            ).reshape(substeps, self.count, -1)
+            signals["joint_friction"] = (
+                resistance if self.altered is None else resistance + self.altered[:, 1]
+            )
         signals |= {
             "base_position": position[..., :3],
             "base_orientation": position[..., 3:7],

@@ -15,7 +15,7 @@ import dataclasses
 import itertools
 import os
 import threading
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
@@ -141,8 +141,12 @@ class Environment:
             for start in range(0, simulations, alone)
             for low, high, stream in zip(inside[:-1], inside[1:], streams, strict=True)
         ]
-        count = min(_parts(simulations), len(blocks))
         threads = threads or os.cpu_count() or 1
+        # With one thread a second chunk only costs time. Where designs have streams of their own, a
+        # trajectory does not depend on how they are shared out, and no snapshot is taken.
+        alone_in_python = common_random_numbers and threads == 1
+        parts = -(-simulations // CHUNK) if alone_in_python else _parts(simulations)
+        count = min(parts, len(blocks))
         workers = min(threads, count)
         # Twice as many threads in MuJoCo as workers: while one chunk is in Python, another's
         # physics has the whole machine.
@@ -380,6 +384,65 @@ class Environment:
     def recording(self, on: bool) -> None:
         for chunk in self.chunks:
             chunk.recording = on
+
+    @property
+    def rewarded(self) -> bool:
+        """Whether steps give rewards and the observations of all groups, as they do by default.
+
+        Otherwise they give the observations of the policy alone, and rewards are zero.
+        """
+        return self.chunks[0].rewarded
+
+    @rewarded.setter
+    def rewarded(self, on: bool) -> None:
+        for chunk in self.chunks:
+            chunk.rewarded = on
+
+    def freeze(self, simulations: np.ndarray) -> None:
+        """Leave some simulations as they are until the next reset, which saves their physics.
+
+        Nothing that steps give of them means anything from then on. The others go on to the last
+        digit as they would have, unless they draw random numbers, which they share with those that
+        would have started anew.
+
+        Args:
+            simulations: their indices.
+        """
+        for chunk in self.chunks:
+            own = simulations - chunk.first
+            chunk.freeze(own[(own >= 0) & (own < chunk.count)])
+
+    def draws_later(self, duration: float) -> bool:
+        """Decide whether running simulations draw random numbers after their start.
+
+        Args:
+            duration: time from the start that counts [s].
+
+        Returns:
+            True with pushes, alterations, commands that are drawn anew within that time, or
+            waypoints without a course.
+        """
+        commands = self.task.commands
+        if isinstance(commands, WaypointCommands):
+            drawn = commands.course_share < 1.0
+        else:
+            drawn = commands.interval < duration + 1.0
+        return bool(drawn or self.task.randomisation.push_speed or self.alterations)
+
+    def keep_signals(self, store: Mapping[str, np.ndarray], samples: slice) -> None:
+        """Write `signals` into arrays, without `joint_friction`.
+
+        Args:
+            store: arrays by the names of the signals that are wanted, `(n, t, ...)`.
+            samples: where the last policy step belongs in time.
+        """
+        for chunk in self.chunks:
+            rows, signals = (
+                slice(chunk.first, chunk.first + chunk.count),
+                chunk.signals(friction=False),
+            )
+            for name, values in store.items():
+                values[rows, samples] = signals[name]
 
     def signals(self) -> dict[str, np.ndarray]:
         """What happened within the last policy step, at the start of each substep; needs

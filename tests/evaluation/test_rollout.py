@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -13,7 +15,7 @@ from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.environment import Environment
-from hyperleg_design.simulation.settings import Limits, Physics, Start
+from hyperleg_design.simulation.settings import Limits, Physics, Randomisation, Start
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.simulation.toe_swap import ANKLES, SHARE, Swap
 
@@ -125,3 +127,62 @@ def test_a_policy_is_told_when_trials_begin(environment):
     script = Scripted(np.zeros((5, 14)), step=4)
     record(script, environment(), 0.2)
     assert script.step == 10
+
+
+FALLS = Start(tilt=0.5, joint_position=0.05)
+"""Start in which some robots fall at once and others stand."""
+
+
+def falling(**changes):
+    """An environment in which some trials end long before others."""
+    task = load_task("walk")
+    settings = {
+        "physics": Physics(),
+        "limits": Limits(duration=10),
+        "start": FALLS,
+        "commands": dataclasses.replace(task.commands, interval=1000.0),
+    }
+    task = task.changed(**(settings | changes))
+    return Environment(
+        load_design("toe"), task, simulations=12, threads=1, common_random_numbers=True
+    )
+
+
+def test_trials_are_the_same_where_ended_ones_are_not_stepped_any_more(monkeypatch):
+    both = []
+    for draws in (False, True):
+        monkeypatch.setattr(Environment, "draws_later", lambda self, duration, d=draws: d)
+        both.append(record(standing(14), falling(), 0.6))
+    assert {trial.outcome for trial in both[0]} == {"fell", "timed_out"}
+    for frozen, stepped in zip(*both, strict=True):
+        assert (frozen.outcome, frozen.end_time) == (stepped.outcome, stepped.end_time)
+        for name in rollout.SIGNALS:
+            assert getattr(frozen, name).tobytes() == getattr(stepped, name).tobytes()
+
+
+def test_ended_trials_are_stepped_where_the_others_would_draw_other_numbers():
+    assert not falling().draws_later(9.0)
+    assert falling(randomisation=Randomisation(push_speed=0.5)).draws_later(9.0)
+    assert falling(commands=load_task("walk").commands).draws_later(9.5)
+    assert not falling(commands=load_task("walk").commands).draws_later(8.0)
+    design, goal = load_design("toe"), load_task("goal")
+    course = dataclasses.replace(goal.commands, course_share=1.0)
+    for commands, expected in ((goal.commands, True), (course, False)):
+        made = Environment(design, goal.changed(commands=commands), simulations=1)
+        assert made.draws_later(1.0) is expected
+    swapped = Environment(design, load_task("walk"), simulations=1, alterations=Swap("lock_toe"))
+    assert swapped.draws_later(1.0)
+
+
+def test_an_evaluation_needs_no_rewards_and_its_policy_sees_the_same():
+    with_rewards, without = falling(), falling()
+    without.rewarded = False
+    seen = [with_rewards.reset()["policy"], without.reset()["policy"]]
+    for _ in range(20):
+        np.testing.assert_array_equal(*seen)
+        steps = [made.step(np.zeros((12, 14))) for made in (with_rewards, without)]
+        seen = [step.observations["policy"] for step in steps]
+        np.testing.assert_array_equal(steps[0].ending, steps[1].ending)
+    assert list(steps[1].observations) == ["policy"]
+    assert np.any(steps[0].reward)
+    assert not np.any(steps[1].reward)
