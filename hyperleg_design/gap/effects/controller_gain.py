@@ -38,8 +38,6 @@ class ControllerGain(Effect):
 
     identifier: ClassVar[str] = "controller_gain"
     kind: ClassVar[str] = "joint"
-    rare: ClassVar[float] = -1.5
-    """Assumed: controllers have the gains that they were told."""
     summary: ClassVar[str] = "a joint controller is stiffer or more damped than declared"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(

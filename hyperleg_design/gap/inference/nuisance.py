@@ -58,7 +58,7 @@ LATE, LATE_TICKS = 0.001, 0.15
 """[s] and ticks of the log, of all drives; a lag of one of them is half."""
 READING = 1
 """Parameter of a torque constant by which currents are read wrongly."""
-CURRENT = 0.02
+CURRENT = 0.005
 """Of the torque that a drive says that it gives, apart from its motor's."""
 GAIN = 0.015
 GYRO, ACCELEROMETER = 0.003, 0.05
