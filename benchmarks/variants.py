@@ -8,13 +8,15 @@ time of one process, so they mean something on a busy machine.
 
     python benchmarks/variants.py --designs 64 --distance 20
 
-With `--peer`, `mujoco-uni-runtime` steps the same models from the same states.
+With `--export FOLDER`, models and states go to files that `variants_peer.py` steps with other
+programs.
 """
 
 from __future__ import annotations
 
 import argparse
 import time
+from pathlib import Path
 
 import numpy as np
 
@@ -93,12 +95,34 @@ def bare_seconds(environment, robots, moments):
     return float(np.median(spent)) / (len(robots) * substeps)
 
 
+def export(folder, environment, robots, moments):
+    """Models as MJCF in full precision, and states of all robots at the moments of `states_of`."""
+    from hyperleg_design.robot.mjcf import _full_precision
+    from hyperleg_design.simulation.model import simulation_spec
+
+    folder.mkdir(parents=True, exist_ok=True)
+    for number, design in enumerate(environment.designs):
+        spec = simulation_spec(design, environment.task.physics)
+        spec.compile()
+        with _full_precision():
+            (folder / f"{number}.xml").write_text(spec.to_xml())
+    names = ("damping", "qpos", "qvel", "ctrl")
+    arrays = {name: np.stack([m[1 + k] for m in moments]) for k, name in enumerate(names)}
+    np.savez(
+        folder / "states.npz",
+        design=environment.design_index,
+        substeps=int(environment.task.physics.substeps),
+        **arrays,
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--designs", type=int, default=64)
     parser.add_argument("--trials", type=int, default=10)
     parser.add_argument("--distance", type=float, default=2.0, help="of each walk [m]")
     parser.add_argument("--batch", type=int, default=BATCH, help="designs side by side")
+    parser.add_argument("--export", type=Path, help="folder for models and states")
     chosen = parser.parse_args()
     policy = load_policy("walk-toe-0")
     designs = designs_of(policy, chosen.designs)
@@ -123,6 +147,8 @@ def main() -> None:
     environment, robots, moments = states_of(
         policy, designs.rows(np.arange(min(chosen.batch, chosen.designs))), protocol
     )
+    if chosen.export:
+        export(chosen.export, environment, robots, moments)
     bare = bare_seconds(environment, robots, moments)
     physics = bare * sum(ends) / float(environment.task.physics.time_step)
     whole = spent["built"] + spent["evaluated"]

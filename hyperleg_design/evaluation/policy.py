@@ -191,11 +191,15 @@ def check_layout(policy: Policy, environment: Environment) -> None:
     for key, own, needed in pairs:
         difference = _first_difference(own, needed)
         if difference:
+            trained, present = (
+                design.variant or design.name for design in (policy.design, environment.designs[0])
+            )
             raise InputError(
                 policy.name,
                 key,
                 None,
-                f"is made for another layout than this robot and task have: {difference}",
+                f"the policy, trained on {trained}, is made for another layout than {present} and this "
+                f"task have: {difference}; expects a policy of {present}",
             )
 
 

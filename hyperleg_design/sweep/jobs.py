@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager
@@ -89,6 +90,8 @@ def cluster(address: str) -> Iterator[Executor | None]:
     if not address:
         yield None
         return
+    if not re.fullmatch(r"[a-z]+://\S+", address):
+        raise InputError("--scheduler", "", address, "expects an address such as tcp://host:8786")
     try:
         import distributed
     except ImportError:

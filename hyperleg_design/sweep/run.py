@@ -138,9 +138,13 @@ def _earlier(
     if finished is None and stopped is None:
         # a run killed before its state was there leaves the marker and at most an empty folder of
         # chunks
-        if folder.is_dir() and any(
-            entry.name not in (MARKER, CHUNKS) for entry in folder.iterdir()
-        ):
+        names = {entry.name for entry in folder.iterdir()} if folder.is_dir() else set()
+        if TABLE in names and resume:
+            raise OutputError(
+                f"{folder}: holds a sweep whose {SUMMARY} is damaged; choose another folder, or "
+                f"restart (--restart) to replace it"
+            )
+        if TABLE not in names and names - {MARKER, CHUNKS}:
             raise OutputError(
                 f"{folder}: holds a result of hyperleg that is no sweep; choose an empty or new "
                 f"folder"
@@ -163,7 +167,7 @@ def _earlier(
         )
     if stopped is not None:
         return None, int(stopped["chunk"])
-    return (finished, None) if (folder / TABLE).is_file() else (None, None)
+    return (finished, None) if table.rows_of(folder / TABLE) >= 0 else (None, None)
 
 
 def _read_state(path: Path) -> dict[str, Any] | None:

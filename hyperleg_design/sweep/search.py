@@ -26,6 +26,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import protocol_mapping
+from hyperleg_design.robot import parameters
 from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.evaluate import evaluate_samples
 from hyperleg_design.sweep.jobs import completed
@@ -155,8 +156,9 @@ def search_of(
     at_hand = measures.columns(needed, sweep.base)
     for name in named:
         if not registry.entry(name).protocol and name not in at_hand:
-            remedy = f"is no measure of {sweep.base.name}; hyperleg list measures shows all"
-            raise InputError("search", "", name, remedy)
+            known = measures.columns(measures.measures_of(sweep.base), sweep.base)
+            near = parameters.unknown(name, sorted(known))
+            raise InputError("search", "", name, near.replace("such field", "such measure"))
     return Search(space, plan, chosen, bounds)
 
 
@@ -245,7 +247,12 @@ def run_search(
     from tqdm import tqdm
 
     folder = Path(out)
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(
+            f"{folder}: cannot be made ({error.strerror}); choose another --out"
+        ) from None
     url = storage or f"sqlite:///{(folder / DATABASE).resolve()}"
     study = open_study(search, url, name or search.sweep.name)
     owner = _owner(folder)

@@ -92,3 +92,11 @@ def test_a_worker_that_is_killed_loses_and_doubles_nothing(tmp_path, monkeypatch
         beside = run_sweep(sweep, tmp_path / "beside", chunk=128, progress=False, executor=executor)
     assert len(written) == len(set(written)) == 32
     assert beside.table_path.read_bytes() == alone.table_path.read_bytes()
+
+
+def test_what_is_no_address_is_one_clear_error():
+    with (
+        pytest.raises(InputError, match=r"--scheduler = 'nonsense'.*tcp://host:8786"),
+        cluster("nonsense"),
+    ):
+        pass

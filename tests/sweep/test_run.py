@@ -191,6 +191,18 @@ def test_another_result_of_ours_is_left_alone(tmp_path):
     assert (folder / "robot.urdf").exists()
 
 
+def test_a_damaged_store_is_made_again_or_says_so(tmp_path):
+    folder = tmp_path / "out"
+    result = go(folder)
+    whole = result.table_path.read_bytes()
+    result.table_path.write_bytes(whole[:300])
+    assert go(folder).table_path.read_bytes() == whole
+    (folder / "summary.json").write_text("garbage")
+    with pytest.raises(OutputError, match=r"summary.json is damaged.*--restart"):
+        go(folder)
+    assert go(folder, resume=False).table_path.read_bytes() == whole
+
+
 def test_a_wrong_definition_writes_nothing(tmp_path):
     path = tmp_path / "wrong.yaml"
     path.write_text(yaml.safe_dump(DEFINITION | {"axes": {"toe.mas": {"values": [1]}}}))

@@ -129,6 +129,15 @@ def test_a_database_that_refuses_or_is_corrupt_is_one_clear_error(tmp_path):
         run_search(small(), tmp_path, 1, progress=False)
 
 
+def test_a_folder_that_cannot_be_made_and_a_measure_that_is_not_there(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match=r"cannot be made.*--out"):
+        run_search(small(), tmp_path / "file" / "out", 1, progress=False)
+    sweep = sweep_from_mapping(SPACE)
+    with pytest.raises(InputError, match=r"did you mean max_joint_torque\.knee"):
+        search_of(sweep, plan(sweep, []), ["max_joint_torque.kne"])
+
+
 def test_constraints_are_read_strictly():
     found = read_constraint("walk.thermal_peak <= 1.5", ["walk"])
     assert found == Constraint("walk.thermal_peak", 1.5, True)

@@ -15,7 +15,7 @@ from hyperleg_design.report.sweep.page import sweep_content
 from hyperleg_design.report.text import table as text_table
 from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.space import Map, Sweep
-from hyperleg_design.sweep.trial_runs import TRIALS
+from hyperleg_design.sweep.trial_runs import REJECTED, TRIALS
 from hyperleg_design.sweep.trial_table import (
     SHOWN,
     best,
@@ -99,7 +99,7 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
         "designs": result.summary["designs"],
         "rejected": result.summary["rejected"],
         "files": [str(folder / name) for name in (TRIALS, DESIGNS, SUMMARY)] + [str(target)],
-        "text": best_text(sweep, chosen, objectives, commands),
+        "text": unsimulated_text(trials) + best_text(sweep, chosen, objectives, commands),
     }
 
 
@@ -322,6 +322,20 @@ def _best_tables(
     ]
     heads = ["best by", *_identity_heads(sweep), *map(registry.label, objectives)]
     return [Table([*heads, "policy is", "build this one"], rows)]
+
+
+def unsimulated_text(trials: pd.DataFrame) -> str:
+    """Count the designs that no trial could be run on, for a terminal.
+
+    Args:
+        trials: of `run_trials`.
+
+    Returns:
+        A line for each reason; empty where all designs were simulated.
+    """
+    refused = trials[trials["outcome"] == REJECTED].drop_duplicates(["sample", "variant"])
+    counts = refused["reason"].value_counts()
+    return "".join(f"{count} cannot be simulated: {reason}\n" for reason, count in counts.items())
 
 
 def best_text(
