@@ -198,8 +198,8 @@ def check_layout(policy: Policy, environment: Environment) -> None:
                 policy.name,
                 key,
                 None,
-                f"the policy, trained on {trained}, is made for another layout than {present} and this "
-                f"task have: {difference}; expects a policy of {present}",
+                f"the policy, trained on {trained}, is made for another layout than {present} and "
+                f"this task have: {difference}; expects a policy of {present}",
             )
 
 
