@@ -199,14 +199,14 @@ def policy_text(trials: pd.DataFrame) -> str:
     """
     parts = [
         f"{row['protocol']}, {row['variant']}: {row['designs']} designs {row['trained']} "
-        f"({len(row['policies'])} policies)"
+        f"({len(row['policies'])} {'policy' if len(row['policies']) == 1 else 'policies'})"
         for row in policies_of(trials)
     ]
     return (
         "; ".join(parts)
-        + ". A zero-shot policy was trained on another design than it walks here: its numbers are "
-        "a lower bound of what a policy trained for the design reaches. Measures are over the "
-        "trials that did not fall; intervals over policies and trials."
+        + ". A zero-shot policy was trained on another design than it walks here; one that is "
+        "trained for the design may do better on it. Measures are over the trials that did not "
+        "fall; intervals over policies and trials."
     )
 
 
