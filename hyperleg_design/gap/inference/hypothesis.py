@@ -26,6 +26,8 @@ EVERYWHERE = "*"
 """Location of an effect that acts at all of its places."""
 FREE = 1e3
 """Prior deviation from which large sizes are looked for, in usual sizes."""
+ALIKE = 1e-12
+"""Share of its own square by which a column differs from all others, at least [-]."""
 ROUNDS = 3
 """Of widening the priors of large fits."""
 
@@ -208,7 +210,8 @@ def _solve(
     first: float,
 ) -> Solution:
     """As `solve`, from a first prior deviation of the sizes."""
-    normal, right = products[1:, 1:], products[1:, 0]
+    # columns that are alike to rounding must not make the normal equations singular
+    normal, right = products[1:, 1:] * (1 + ALIKE * np.eye(len(low))), products[1:, 0]
     theta = np.zeros(len(low))
     deviation = np.where(shape, 1.0, first)
     for turn in range(ROUNDS):

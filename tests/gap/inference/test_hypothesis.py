@@ -52,6 +52,18 @@ def test_parameters_that_nothing_shows_gain_nothing():
     assert found.theta[0] == pytest.approx(0.0)
 
 
+@pytest.mark.parametrize("size", [1.0, 1e11])
+def test_two_columns_that_are_alike_share_what_one_of_them_explains(size):
+    channel, _ = made(np.random.default_rng(6))
+    one = size * np.random.default_rng(7).standard_normal((1, len(channel.samples)))
+    products = reduced(evidence(channel), [SCALES], np.concatenate([one, one]))
+    free = np.full(2, np.inf)
+    both = solve(products, -free, free, np.zeros(2, bool), RULES)
+    alone = solve(products[:2, :2], -free[:1], free[:1], np.zeros(1, bool), RULES)
+    assert np.isfinite(both.gain)
+    assert both.theta.sum() == pytest.approx(alone.theta[0], rel=0.02)
+
+
 def test_channels_add_up():
     rng = np.random.default_rng(4)
     first, _ = made(rng)
