@@ -330,9 +330,21 @@ class Channel:
         means = mean + np.einsum("sij,sj->si", spread, right - own @ mean)
         return means, spread + kept @ shared @ kept.swapaxes(1, 2)
 
-    def fitted(self, scales: Scales, rules: InferenceRules, sweeps: int = 3) -> Scales:
+    def fitted(
+        self,
+        scales: Scales,
+        rules: InferenceRules,
+        sweeps: int = 3,
+        steps: tuple[float, ...] = STEPS,
+    ) -> Scales:
         """Hyperparameters at the maximum of their posterior: noise by expectation maximisation,
         scales by a line search each.
+
+        Args:
+            scales: to begin with.
+            rules: of the inference.
+            sweeps: of noise and scales in turn.
+            steps: of the searches for a scale's logarithm.
         """
         k, weight = self.columns, rules.noise.weight
         for _ in range(sweeps):
@@ -345,20 +357,27 @@ class Channel:
             usual[self.bands_tested] = self.usual_noise(scales.noise, rules)
             scales = replace(scales, noise=(weight * usual + left) / (weight + self.numbers))
             turned = self.turned(scales.noise)
-            scales = self._searched(scales, "standing", rules, turned)
+            scales = self._searched(scales, "standing", rules, turned, steps)
             if self.changes:
-                scales = self._searched(scales, "change", rules, turned)
+                scales = self._searched(scales, "change", rules, turned, steps)
         if self.referenced:
             turned = self.turned(scales.noise)
             healthy = replace(scales, new=0.0)
             begin = max(scales.new, float(np.log(rules.discrepancy.unlisted)) / 2)
-            unlisted = self._searched(replace(scales, new=begin), "new", rules, turned)
+            unlisted = self._searched(replace(scales, new=begin), "new", rules, turned, steps)
             scales = max(
                 (healthy, unlisted), key=lambda one: self.log_posterior(one, rules, turned)
             )
         return scales
 
-    def _searched(self, scales: Scales, name: str, rules: InferenceRules, turned: Turned) -> Scales:
+    def _searched(
+        self,
+        scales: Scales,
+        name: str,
+        rules: InferenceRules,
+        turned: Turned,
+        steps: tuple[float, ...],
+    ) -> Scales:
         def moved(value: float) -> Scales:
             changes: dict[str, Any] = {name: value}
             return replace(scales, **changes)
@@ -367,13 +386,15 @@ class Channel:
             return self.log_posterior(moved(value), rules, turned)
 
         lowest = 2 * ABSENT if name == "new" else -np.inf
-        return moved(_climbed(score, float(getattr(scales, name)), lowest))
+        return moved(_climbed(score, float(getattr(scales, name)), lowest, steps))
 
 
-def _climbed(score: Callable[[float], float], begin: float, lowest: float) -> float:
+def _climbed(
+    score: Callable[[float], float], begin: float, lowest: float, steps: tuple[float, ...]
+) -> float:
     """Where a function of one variable has a local maximum, by steps that shrink."""
     best, value = begin, score(begin)
-    for step in STEPS:
+    for step in steps:
         for _ in range(MOST_STEPS):
             for other in (best + step, max(best - step, lowest)):
                 trial = score(other)

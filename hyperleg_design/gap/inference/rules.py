@@ -112,7 +112,7 @@ class SearchRules:
     """Starts that a nonlinear effect is fitted from [-]."""
     steps: int = 5
     """Gauss-Newton steps of a start [-]."""
-    least: float = -1.5
+    least: float = 0.0
     """Gain in nats from which any is [nat] (assumed)."""
     groups: int = 2
     """Effects that are tried at all of their places at once in one step [-]."""

@@ -14,6 +14,7 @@ from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.channel import STEPS
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis import (
     EVERYWHERE,
@@ -407,10 +408,11 @@ class Search:
         rules = self.rules.search
         found = list(scales)
         solution = self._fitted(stack, found)
-        for _ in range(rules.rounds):
+        for turn in range(rules.rounds):
             trace = solution.theta @ stack.columns + stack.constant
+            sweeps, steps = (2, STEPS) if turn == 0 else (1, STEPS[-1:])
             found = [
-                channel.without(trace).fitted(own, self.rules, 2) if seen else own
+                channel.without(trace).fitted(own, self.rules, sweeps, steps) if seen else own
                 for channel, own, seen in zip(channels, found, shown, strict=True)
             ]
             before, solution = solution.theta, self._fitted(stack, found)
