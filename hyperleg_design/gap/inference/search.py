@@ -166,18 +166,21 @@ class Search:
         fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.nothing}
         current = self.nothing
         most = self.rules.search.causes * (1 + bool(self.evidence.references))
+        fewer: list[Hypothesis] = []
         while True:
             best = current
             if len(current.candidates) < most:
                 best = self._better(self.further(current), current, fitted)
             if best is current and len(current.candidates) > 1:
-                for one, rest in zip(current.candidates, self._fewer(current, fitted), strict=True):
+                fewer = fewer or self._fewer(current, fitted)
+                for one, rest in zip(current.candidates, fewer, strict=True):
                     best = self._better(self.further(rest, one), best, fitted)
             if best is current:
                 break
-            current = best
-            for fewer in self._fewer(current, fitted)[:-1]:
-                current = max(current, fewer, key=lambda one: one.score)
+            current, fewer = best, self._fewer(best, fitted)
+            best = max((current, *fewer[:-1]), key=lambda one: one.score)
+            if best is not current:
+                current, fewer = best, []
         ranked = sorted(fitted.values(), key=lambda one: (-one.score, one.names))
         missing = tuple(
             traced
