@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -27,6 +28,14 @@ from hyperleg_design.sizing.motions.walk import walk
 
 SAMPLES, STRIDES, STRIDE_TIME = 168, 20, 0.84
 DESIGNS = ("toe", "toe_removed_matched")
+
+
+@pytest.fixture(autouse=True)
+def _closed_figures():
+    """Close what a test has drawn."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
 
 
 def planned_walk(design, turn=0.0):

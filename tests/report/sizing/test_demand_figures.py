@@ -26,14 +26,6 @@ def walks():
     return found
 
 
-@pytest.fixture(autouse=True)
-def closed():
-    import matplotlib.pyplot as plt
-
-    yield
-    plt.close("all")
-
-
 def test_cycle_shows_angles_and_torques_of_every_robot(walks):
     figure = cycle_figure(walks)
     titles = [a.get_title() for a in figure.axes if a.get_title()]

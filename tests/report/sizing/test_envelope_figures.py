@@ -10,14 +10,6 @@ from hyperleg_design.robot.design import load_design
 from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
 
 
-@pytest.fixture(autouse=True)
-def _closed():
-    yield
-    import matplotlib.pyplot as plt
-
-    plt.close("all")
-
-
 @pytest.fixture(scope="module")
 def design():
     return load_design("hyperleg")

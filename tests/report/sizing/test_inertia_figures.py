@@ -15,14 +15,6 @@ from hyperleg_design.sizing.inertia import leg_inertia
 from hyperleg_design.sizing.other_robots import SOURCES, compare
 
 
-@pytest.fixture(autouse=True)
-def _closed():
-    yield
-    import matplotlib.pyplot as plt
-
-    plt.close("all")
-
-
 @pytest.fixture(scope="module")
 def designs():
     return [load_design("hyperleg", variant=variant) for variant in VARIANTS]

@@ -14,14 +14,6 @@ from hyperleg_design.sizing import slices, zonotope
 from hyperleg_design.sizing.envelope import motor_envelope
 
 
-@pytest.fixture(autouse=True)
-def _closed():
-    yield
-    import matplotlib.pyplot as plt
-
-    plt.close("all")
-
-
 @pytest.fixture(scope="module")
 def design():
     return load_design("hyperleg")

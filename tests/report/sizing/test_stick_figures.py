@@ -18,14 +18,6 @@ def walk():
     return demand(design, reference_motion(design, "walk", samples=61))
 
 
-@pytest.fixture(autouse=True)
-def _closed():
-    yield
-    import matplotlib.pyplot as plt
-
-    plt.close("all")
-
-
 def test_strip_draws_the_robot_where_the_motion_has_it(walk):
     axes = stick_figure_strip(walk, frames=4, spacing=0.0).axes[0]
     legs = [line for line in axes.lines if len(line.get_xdata()) == 3 and line.get_linewidth() == 4]

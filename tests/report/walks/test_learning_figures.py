@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import pytest
 
 from hyperleg_design.report.walks.learning_figures import SHOWN, learning_figure
@@ -16,4 +15,3 @@ def test_a_line_a_training_a_row_a_group(found):
     assert (
         len(figure.axes[2].get_lines()[0].get_ydata()) == 0
     )  # nothing on cost of transport was recorded
-    plt.close("all")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -37,4 +36,3 @@ def test_ways_speed_and_falls_are_drawn(found):
     assert np.median(ways[0].get_array()) == pytest.approx(2.0, rel=0.02)
     below = next(a for a in figure.axes if a.get_xlabel() == "way of the pelvis [m]")
     assert np.median(below.get_lines()[0].get_ydata()) == pytest.approx(2.0, rel=0.02)
-    plt.close("all")

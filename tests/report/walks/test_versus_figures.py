@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import matplotlib.pyplot as plt
 import pytest
 
 from hyperleg_design.evaluation.attribution import attribute
@@ -18,7 +17,6 @@ def test_changes_stand_beside_the_papers(found):
     )
     assert ours[0].get_xdata()[0] == pytest.approx(100 * rows[0].difference.relative)
     assert axes.get_yticklabels()[0].get_text() == "total power"
-    plt.close("all")
 
 
 def test_steps_of_the_ladder_are_drawn_and_wide_intervals_are_cut():
@@ -37,4 +35,3 @@ def test_steps_of_the_ladder_are_drawn_and_wide_intervals_are_cut():
     assert points == pytest.approx([100 * s.change.relative for s in shares])
     low, high = axes.get_xlim()
     assert -WIDEST <= low < high <= WIDEST
-    plt.close("all")
