@@ -141,6 +141,11 @@ def test_bad_input_is_one_clear_line_and_exit_code_two(capsys, arguments, words)
         ),
         (["--foo"], "--foo: hyperleg has no such option; see hyperleg --help"),
         (
+            ["analyze", "toe"],
+            "value = 'toe': expects an option before it, as in --design toe; "
+            "see hyperleg analyze --help",
+        ),
+        (
             ["analyze", "--variant"],
             "Missing value for argument '--variant'. Expected 1 values; "
             "see hyperleg analyze --help",

@@ -32,7 +32,8 @@ def usage_error(arguments: Sequence[str], verbs: Mapping[str, Any], parser_text:
 
     Returns:
         An error that names the unknown verb or the first unknown option and a similar one of the
-        same verb, or else repeats the parser's complaint; it ends with where the help is.
+        same verb, or a value without an option, or else repeats the parser's complaint; it ends
+        with where the help is.
     """
     program, rest, command = "hyperleg", list(arguments), verbs
     while isinstance(command, Mapping) and rest and not rest[0].startswith("-"):
@@ -47,7 +48,13 @@ def usage_error(arguments: Sequence[str], verbs: Mapping[str, Any], parser_text:
     if unknown is not None:
         remedy = f"{_suggestion(unknown, known)}see {program} --help"
         return InputError("arguments", unknown, None, f"{program} has no such option; {remedy}")
-    return InputError("arguments", "", None, f"{_complaint(parser_text)}; see {program} --help")
+    complaint = _complaint(parser_text)
+    stray = re.match(r"Unrecognized options?: (?!-)(\S+)", complaint)
+    if stray:
+        example = f", as in --design {stray[1]}" if "--design" in known else ""
+        remedy = f"expects an option before it{example}; see {program} --help"
+        return InputError("arguments", "value", stray[1], remedy)
+    return InputError("arguments", "", None, f"{complaint}; see {program} --help")
 
 
 def option_names(command: Any) -> list[str]:
