@@ -44,6 +44,9 @@ class Train:
     threads: Annotated[int, AtLeast(1)] = 1
     """Number of threads of this process; two trainings of one thread each make best use of two
     processor cores."""
+    device: str = "cpu"
+    """Where the networks learn, as torch names it: cuda for a GPU. Simulations stay on the
+    processor."""
     overlay: str = ""
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
 
@@ -65,6 +68,7 @@ class Train:
             "preset": self.preset,
             "out": self.out,
             "threads": self.threads,
+            "device": self.device,
         }
         given |= {"start": self.start} if self.start else {}
         given |= {} if self.iterations is None else {"iterations": self.iterations}

@@ -48,6 +48,7 @@ def main(
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--iterations", type=int)
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--device", default="cpu")
     given = parser.parse_args(arguments)
     if arguments is None and not launch.surrounded():
         launch.run_here(sys.argv[1:], given.threads)
@@ -63,6 +64,7 @@ def main(
             start=given.start,
             designs=given.designs,
             threads=given.threads,
+            device=given.device,
             iterations=given.iterations,
             alterations=alterations,
             overlay=overlay,

@@ -12,6 +12,7 @@ from rsl_rl.models import MLPModel
 from rsl_rl.storage import RolloutStorage
 from tensordict import TensorDict
 
+from hyperleg_design.learning.device import HOST, learning_on
 from hyperleg_design.learning.modulation import ModulatedLayers
 from hyperleg_design.learning.rounding import multiplies_bfloat16, round_layers
 from hyperleg_design.learning.symmetry import HalfMirrored, Mirrors
@@ -44,6 +45,8 @@ class IterationPPO(PPO):  # type: ignore[misc]
     """Least and largest learning rate."""
     divergence = 0.0
     """KL divergence in the last epoch of the latest update [nat]."""
+    update_device = HOST
+    """Where the networks learn; simulations and actions stay on the processor."""
 
     def update(self) -> dict[str, float]:
         """Run the epochs of one iteration, then set the learning rate for the next one.
@@ -51,7 +54,8 @@ class IterationPPO(PPO):  # type: ignore[misc]
         Returns:
             The losses by name.
         """
-        losses = super().update()
+        with learning_on(self, self.update_device):
+            losses = super().update()
         meter = self.symmetry
         assert isinstance(meter, HalfMirrored)
         last = meter.divergences[-self.num_mini_batches :]

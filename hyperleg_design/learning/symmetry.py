@@ -28,6 +28,10 @@ class TorchMirror:
         self.index = torch.as_tensor(mirror.index.copy(), dtype=torch.long)
         self.sign = torch.as_tensor(mirror.sign.copy(), dtype=torch.float32)
 
+    def to(self, device: str) -> None:
+        """Move to a device, in place."""
+        self.index, self.sign = self.index.to(device), self.sign.to(device)
+
     def __call__(self, values: torch.Tensor) -> torch.Tensor:
         """Mirror image, `(..., k)`."""
         return values[..., self.index] * self.sign
@@ -41,6 +45,15 @@ class Mirrors:
         self.groups = {
             name: TorchMirror(mirror) for name, mirror in maps.items() if name != "action"
         }
+
+    def to(self, device: str) -> None:
+        """Move all maps to a device, in place.
+
+        Args:
+            device: as torch writes it.
+        """
+        for mirror in (self.action, *self.groups.values()):
+            mirror.to(device)
 
     def append_mirrored(
         self, env: Any, obs: TensorDict | None, actions: torch.Tensor | None
@@ -91,7 +104,7 @@ class HalfMirrored(Symmetry):  # type: ignore[misc]
             batch: which is changed.
             original_batch_size: number of samples.
         """
-        self.mirrored = torch.rand(original_batch_size) < self.share
+        self.mirrored = (torch.rand(original_batch_size) < self.share).to(batch.actions.device)
         if not self.share:
             return
         where = self.mirrored[:, None]

@@ -34,6 +34,7 @@ from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.algorithm import IterationPPO, as_tensors, make_algorithm
 from hyperleg_design.learning.checkpoint import load_checkpoint, save_checkpoint
 from hyperleg_design.learning.design_sampler import DesignSampler
+from hyperleg_design.learning.device import HOST, check_device
 from hyperleg_design.learning.export import CRITIC_FORMAT, export_policy
 from hyperleg_design.learning.meter import Meter
 from hyperleg_design.learning.preset import Preset, load_preset
@@ -84,6 +85,7 @@ def train(
     start: str | Path | None = None,
     designs: str | Path | DesignSpread | None = None,
     threads: int = 1,
+    device: str = HOST,
     iterations: int | None = None,
     alterations: Alterations | None = None,
     overlay: Mapping[str, Any] | None = None,
@@ -104,6 +106,8 @@ def train(
             learns the one design.
         threads: of physics and learning. One by default: trainings side by side use processors
             best. Resuming is bit for bit with the same number only.
+        device: where the networks learn, as torch writes it (`cuda`); simulations and actions stay
+            on the processor. Results on another device differ in their last digits.
         iterations: stop, with a checkpoint, after so many more; all by default.
         alterations: of the simulated robot, or what makes them for a design.
         overlay: what they are, as JSON takes it: written down, and compared when the training goes
@@ -133,6 +137,7 @@ def train(
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     task.check_robot(layout_of(task.posed(design)), design.name)
+    check_device(device)
     folder = check_output_folder(out)
     origin = {
         "start": started and started.source,
@@ -145,10 +150,12 @@ def train(
     write_text(folder / MARKER, "made by hyperleg\n")
     with _alone(folder), _limited_threads(threads):
         if not (folder / RUN).exists():
-            write_json(folder / RUN, description)
+            write_json(folder / RUN, {**description, "device": device})
         training = Training(
             task, design, seed, preset, folder, threads, description, started, alterations, spread
         )
+        if isinstance(training.algorithm, IterationPPO):
+            training.algorithm.update_device = device
         return training.run(iterations, show or (lambda line: None))
 
 

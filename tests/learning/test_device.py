@@ -1,0 +1,26 @@
+"""Updates on another device: nothing is lost on the way there and back."""
+
+import json
+
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.learning.device import check_device
+from hyperleg_design.learning.train import train
+
+
+def _losses(folder, device, **options):
+    train("walk_guided", "toe_locked", 1, "guided", folder, iterations=2, device=device, **options)
+    lines = (folder / "progress.jsonl").read_text().splitlines()
+    return [(each["reward"], each["losses"]) for each in map(json.loads, lines)]
+
+
+def test_an_update_on_another_device_is_the_same_update(tmp_path):
+    """`cpu:0` is the processor by another name, so all is moved and the numbers must not change."""
+    assert _losses(tmp_path / "here", "cpu") == _losses(tmp_path / "there", "cpu:0")
+
+
+@pytest.mark.parametrize("device", ["foo", "cuda:99", ""])
+def test_a_device_that_is_not_there_is_an_error(device):
+    with pytest.raises(InputError, match=r"--device.*no such device"):
+        check_device(device)
