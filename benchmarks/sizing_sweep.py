@@ -26,8 +26,9 @@ from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.sizing.envelope import motor_envelope
 from hyperleg_design.sweep import measures
+from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.evaluate import evaluate_samples
-from hyperleg_design.sweep.space import Sweep, sweep_from_mapping
+from hyperleg_design.sweep.space import sweep_from_mapping
 
 TARGET_RATIO, TARGET_MEMORY = 200.0, 4.0
 LOOP_DESIGNS, BATCH, REPEATS = 15, 4096, 7

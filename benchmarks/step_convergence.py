@@ -32,7 +32,7 @@ def main() -> None:
     from hyperleg_design.evaluation.policy import load_policy
     from hyperleg_design.evaluation.protocol import load_protocol
     from hyperleg_design.robot.design import parse_overrides
-    from hyperleg_design.simulation.commands import WaypointCommands
+    from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("policies", nargs="+")

@@ -24,7 +24,7 @@ from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.evaluation.walk import walk_task
 from hyperleg_design.simulation import model as models
-from hyperleg_design.simulation.chunk import _give_models
+from hyperleg_design.simulation.batch_models import give_models
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.sweep.trial_runs import BATCH, evaluate_all
 
@@ -84,7 +84,7 @@ def bare_seconds(environment, robots, moments):
     from mujoco import batch
 
     bare = batch.Batch(robots[0], len(robots), 1)
-    _give_models(bare, robots)
+    give_models(bare, robots)
     substeps, spent = int(environment.task.physics.substeps), []
     for state, damping, *_ in moments:
         bare.state[:] = state

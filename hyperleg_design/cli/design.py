@@ -254,7 +254,8 @@ class Sweep(Printing):
         from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.run import run_sweep
         from hyperleg_design.sweep.space import load_sweep
-        from hyperleg_design.sweep.trial_runs import plan, run_trials
+        from hyperleg_design.sweep.trial_plan import plan
+        from hyperleg_design.sweep.trial_runs import run_trials
 
         sweep, show = load_sweep(self.file), not self.json
         protocols = self.evaluate or sweep.evaluated

@@ -46,13 +46,13 @@ class View(Printing):
         Raises:
             InputError: both a recording and a policy, or a port or design that cannot be used.
         """
-        from hyperleg_design.report.viewer import viewer
+        from hyperleg_design.report.viewer import needs, viewer
         from hyperleg_design.report.viewer.walk import walk_of_file, walk_of_policy
 
         if self.recording and self.policy:
             raise InputError("view", "--policy", self.policy, "leave it out or --recording")
-        viewer.check_installed()
-        viewer.check_port(self.host, self.port)
+        needs.check_installed()
+        needs.check_port(self.host, self.port)
         designs = [
             load_robot(name, overrides=self.set, variant=self.variant or None)
             for name in self.designs

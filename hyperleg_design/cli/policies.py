@@ -181,7 +181,8 @@ class Evaluate(Printing):
             InputError: no policy, the same policy twice, or options that do not fit together.
         """
         from hyperleg_design.evaluation.evaluate import evaluate_many
-        from hyperleg_design.evaluation.result import swapped, write_results
+        from hyperleg_design.evaluation.result import swapped
+        from hyperleg_design.evaluation.result_tables import write_results
         from hyperleg_design.evaluation.shipped import check_different, find_policy
         from hyperleg_design.report.evaluation_text import evaluation_rows, evaluation_text
         from hyperleg_design.simulation.toe_swap import Swap

@@ -13,8 +13,8 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.measures import T_TEST, WALK
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameters import number, text
+from hyperleg_design.robot import parameter_fields, parameters
+from hyperleg_design.robot.parameter_fields import number, text
 from hyperleg_design.simulation.settings import Checked
 
 MEASURES = {"walk": WALK, "t_test": T_TEST}
@@ -146,8 +146,8 @@ def plan_from_mapping(data: Mapping[str, Any], where: str) -> AnalysisPlan:
         compared=str(arms["compared"]),
         attribution=tuple(str(design) for design in data["attribution"]),
         seeds={key: _count(value, where, f"seeds.{key}") for key, value in seeds.items()},
-        level=parameters.checked(data["level"], parameters.Rule("number"), where, "level"),
-        power=parameters.checked(data["power"], parameters.Rule("number"), where, "power"),
+        level=parameters.checked(data["level"], parameter_fields.Rule("number"), where, "level"),
+        power=parameters.checked(data["power"], parameter_fields.Rule("number"), where, "power"),
         primary=primary,
         secondary=secondary,
         plateau=parameters.from_mapping(PlateauRule, data.get("plateau", {}), where, "plateau"),
@@ -188,7 +188,9 @@ def _list(value: Any, where: str, path: str) -> list[Any]:
 
 
 def _count(value: Any, where: str, path: str) -> int:
-    number = parameters.checked(value, parameters.Rule("number", low=2, high=1000), where, path)
+    number = parameters.checked(
+        value, parameter_fields.Rule("number", low=2, high=1000), where, path
+    )
     if number != int(number):
         raise InputError(where, path, value, "expects a whole number")
     return int(number)

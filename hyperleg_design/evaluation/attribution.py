@@ -16,7 +16,8 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import statistics
 
 if TYPE_CHECKING:
-    from hyperleg_design.evaluation.statistics import Difference, Groups
+    from hyperleg_design.evaluation.resampling import Groups
+    from hyperleg_design.evaluation.statistics import Difference
 
 LADDER = ("toe", "toe_locked", "toe_removed_matched", "toe_removed")
 CAUSES = ("toe joint", "torque of the toe's motor at knee and ankle", "mass of toe and motor")

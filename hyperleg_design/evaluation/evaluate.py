@@ -22,8 +22,8 @@ from hyperleg_design.evaluation.protocol_run import ProtocolRun
 from hyperleg_design.evaluation.result import Evaluation, evaluations_of
 from hyperleg_design.evaluation.t_test import t_test_run
 from hyperleg_design.evaluation.walk import walk_run
-from hyperleg_design.simulation.commands import WaypointCommands
 from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

@@ -16,8 +16,8 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.course import course_length
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameters import number
+from hyperleg_design.robot import parameter_fields, parameters
+from hyperleg_design.robot.parameter_fields import number
 from hyperleg_design.simulation.settings import Checked, Randomisation, Start
 
 MOST_TRIALS = 4096
@@ -262,10 +262,10 @@ def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:
             given["points"] = _points(rest.pop("points"), where)
         if "order" in rest:
             given["order"] = _order(rest.pop("order"), where)
-    sections = parameters.section_types(cls)
+    sections = parameter_fields.section_types(cls)
     fields = {f.name: f for f in dataclasses.fields(cls)}
     known = [
-        *(n for n, f in fields.items() if n in sections or parameters.is_leaf(f)),
+        *(n for n, f in fields.items() if n in sections or parameter_fields.is_leaf(f)),
         *(("points", "order") if cls is TTestProtocol else ()),
     ]
     try:
@@ -278,7 +278,9 @@ def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:
                 given[key] = parameters.from_mapping(sections[key], value, where, key)
             else:
                 plain, _ = parameters.labelled(value, where, key)
-                given[key] = parameters.checked(plain, parameters.rule_of(fields[key]), where, key)
+                given[key] = parameters.checked(
+                    plain, parameter_fields.rule_of(fields[key]), where, key
+                )
         return cls(**given)
     except InputError as error:
         raise InputError(where, error.field, error.value, error.remedy) from None
@@ -297,7 +299,7 @@ def protocol_mapping(protocol: Protocol) -> dict[str, Any]:
     mapping: dict[str, Any] = {"kind": kind, "name": protocol.name}
     for item in dataclasses.fields(protocol):
         value = getattr(protocol, item.name)
-        if parameters.is_leaf(item):
+        if parameter_fields.is_leaf(item):
             mapping[item.name] = value
         elif dataclasses.is_dataclass(value):
             mapping[item.name] = parameters.leaves(value)
@@ -312,7 +314,7 @@ def protocol_mapping(protocol: Protocol) -> dict[str, Any]:
 def _points(data: Any, where: str) -> dict[str, tuple[float, float]]:
     if not isinstance(data, Mapping) or not data:
         raise InputError(where, "points", data, "expects names with places [x, y] in metres")
-    rule = parameters.Rule("number", "m", -1e4, 1e4, size=2)
+    rule = parameter_fields.Rule("number", "m", -1e4, 1e4, size=2)
     points = {}
     for name, value in data.items():
         x, y = parameters.checked(value, rule, where, f"points.{name}")

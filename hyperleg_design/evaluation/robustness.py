@@ -18,7 +18,8 @@ from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, WalkProtocol
-from hyperleg_design.evaluation.result import by_checkpoint, trial_table
+from hyperleg_design.evaluation.result import by_checkpoint
+from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.shipped import check_different, find_policy
 from hyperleg_design.robot.load import walker

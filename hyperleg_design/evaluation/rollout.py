@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     import mujoco
 
     from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.simulation.chunk import Divergence
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
+    from hyperleg_design.simulation.step import Divergence
     from hyperleg_design.simulation.tasks import Task
 
 ARRIVED, TIMED_OUT, FELL, LOST, DIVERGED = "arrived", "timed_out", "fell", "lost", "diverged"

@@ -19,13 +19,24 @@ checkpoints, or the trials of its one, that cannot speak about seeds, and says s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.effect_size import cliffs_delta, hedges_g
+from hyperleg_design.evaluation.resampling import (
+    Groups,
+    flat_seed,
+    mean_over_seeds,
+    measured_groups,
+    paired_error,
+    paired_groups,
+    resampled_means,
+    standard_error,
+    t_interval,
+    welch,
+)
 
 RESAMPLES = 10_000
 """Number of resamples of a bootstrap."""
@@ -39,14 +50,6 @@ NOT_TOLD_APART = "cannot be told apart"
 TOO_FEW_SEEDS = "too few seeds to tell"
 NOTHING_MEASURED = "nothing was measured"
 AGREES = "agrees"
-
-_DRAWS = 2_000_000
-"""Numbers drawn at once, so that memory stays small."""
-
-Groups = Sequence[Any]
-"""One array of values a seed, or one list of arrays, an array a checkpoint."""
-_Seed = list[np.ndarray]
-"""Measured values of a seed, an array a checkpoint."""
 
 
 @dataclass(frozen=True)
@@ -160,15 +163,15 @@ def estimate(
         InputError: no group, or a level or number of resamples that makes no sense.
     """
     _check(level, resamples)
-    seeds_measured, missing = _measured(groups)
-    trials = sum(len(_flat(g)) for g in seeds_measured)
+    seeds_measured, missing = measured_groups(groups)
+    trials = sum(len(flat_seed(g)) for g in seeds_measured)
     if not seeds_measured:
         return Estimate(np.nan, np.nan, np.nan, np.nan, 0, 0, missing, level)
-    mean = float(np.mean([_mean(g) for g in seeds_measured]))
-    error, freedom = _standard_error(
-        seeds_measured, _means(seeds_measured, resamples, np.random.default_rng(seed))
+    mean = float(np.mean([mean_over_seeds(g) for g in seeds_measured]))
+    error, freedom = standard_error(
+        seeds_measured, resampled_means(seeds_measured, resamples, np.random.default_rng(seed))
     )
-    low, high = _interval(mean, error, freedom, level)
+    low, high = t_interval(mean, error, freedom, level)
     return Estimate(mean, low, high, error, len(seeds_measured), trials, missing, level)
 
 
@@ -196,7 +199,7 @@ def share(
         return interval
     count, happened = (
         interval.trials,
-        round(sum(float(_flat(g).sum()) for g in _measured(groups)[0])),
+        round(sum(float(flat_seed(g).sum()) for g in measured_groups(groups)[0])),
     )
     tail = (1 - level) / 2
     low = 0.0 if happened == 0 else float(beta.ppf(tail, happened, count - happened + 1))
@@ -244,28 +247,30 @@ def difference(
     """
     _check(level, resamples)
     if paired:
-        first, second = _pairs(first, second)
-    (a, _), (b, _) = _measured(first), _measured(second)
+        first, second = paired_groups(first, second)
+    (a, _), (b, _) = measured_groups(first), measured_groups(second)
     if not a or not b:
         nan = np.nan
         return Difference(
             nan, nan, nan, nan, nan, nan, nan, nan, "", paired, NOTHING_MEASURED, level
         )
-    base = float(np.mean([_mean(g) for g in b]))
-    mean = float(np.mean([_mean(g) for g in a])) - base
+    base = float(np.mean([mean_over_seeds(g) for g in b]))
+    mean = float(np.mean([mean_over_seeds(g) for g in a])) - base
     rng = np.random.default_rng(seed)
     if paired:
-        error, freedom = _paired_error(a, b, resamples, rng)
+        error, freedom = paired_error(a, b, resamples, rng)
     else:
         (error_a, freedom_a), (error_b, freedom_b) = (
-            _standard_error(g, _means(g, resamples, rng)) for g in (a, b)
+            standard_error(g, resampled_means(g, resamples, rng)) for g in (a, b)
         )
         error = float(np.hypot(error_a, error_b))
-        freedom = _welch(error_a, freedom_a, error_b, freedom_b)
-    low, high = _interval(mean, error, freedom, level)
+        freedom = welch(error_a, freedom_a, error_b, freedom_b)
+    low, high = t_interval(mean, error, freedom, level)
     by_seed = len(a) > 1 and len(b) > 1
     x, y = (
-        np.array([_mean(g) for g in s]) if by_seed else np.concatenate([_flat(g) for g in s])
+        np.array([mean_over_seeds(g) for g in s])
+        if by_seed
+        else np.concatenate([flat_seed(g) for g in s])
         for s in (a, b)
     )
     scale = abs(base) if base else np.nan
@@ -285,42 +290,6 @@ def difference(
     )
 
 
-def hedges_g(first: Any, second: Any) -> float:
-    """Compute Hedges' g, the difference of two means over their pooled standard deviation.
-
-    It is corrected for few values by the factor 1 - 3 / (4 (n + m) - 9).
-
-    Args:
-        first: `(n,)`
-        second: `(m,)`
-
-    Returns:
-        The effect size [-]; NaN without spread or with fewer than two values on a side.
-    """
-    x, y = np.asarray(first, float), np.asarray(second, float)
-    freedom = len(x) + len(y) - 2
-    if min(len(x), len(y)) < 2:
-        return np.nan
-    pooled = np.sqrt(((len(x) - 1) * x.var(ddof=1) + (len(y) - 1) * y.var(ddof=1)) / freedom)
-    if pooled == 0:
-        return np.nan
-    return float((x.mean() - y.mean()) / pooled * (1 - 3 / (4 * freedom - 1)))
-
-
-def cliffs_delta(first: Any, second: Any) -> float:
-    """Compute Cliff's delta: the share of pairs with first > second minus that with first < second.
-
-    Args:
-        first: `(n,)`
-        second: `(m,)`
-
-    Returns:
-        The effect size, -1 .. 1 [-].
-    """
-    x, y = np.asarray(first, float), np.asarray(second, float)
-    return float(np.mean(np.sign(x[:, None] - y[None, :])))
-
-
 def _check(level: float, resamples: int) -> None:
     if not 0 < level < 1:
         raise InputError(
@@ -328,157 +297,6 @@ def _check(level: float, resamples: int) -> None:
         )
     if resamples < 100:
         raise InputError("statistics", "resamples", resamples, "expects at least 100")
-
-
-def _checkpoints(group: Any) -> _Seed:
-    """A seed's values, an array a checkpoint."""
-    nested = (
-        isinstance(group, list | tuple)
-        and len(group) > 0
-        and all(np.ndim(part) == 1 for part in group)
-    )
-    return (
-        [np.asarray(part, float) for part in group]
-        if nested
-        else [np.atleast_1d(np.asarray(group, float))]
-    )
-
-
-def _flat(seed: _Seed) -> np.ndarray:
-    """All values of a seed."""
-    return np.concatenate(seed)
-
-
-def _mean(seed: _Seed) -> float:
-    """Mean of the checkpoints' means."""
-    return float(np.mean([values.mean() for values in seed]))
-
-
-def _measured(groups: Groups) -> tuple[list[_Seed], int]:
-    """Values of each seed that has any, without empty checkpoints, and how many values are
-    missing.
-    """
-    seeds = [_checkpoints(g) for g in groups]
-    if not seeds or any(a.ndim != 1 for seed in seeds for a in seed):
-        raise InputError(
-            "statistics",
-            "groups",
-            [[list(a.shape) for a in s] for s in seeds],
-            "expects one array of values a seed, or a list of them",
-        )
-    if any(np.isinf(a).any() for seed in seeds for a in seed):
-        raise InputError(
-            "statistics",
-            "groups",
-            "infinite",
-            "expects finite values, or NaN where nothing could be measured",
-        )
-    measured = [[a[~np.isnan(a)] for a in seed] for seed in seeds]
-    missing = sum(len(a) for seed in seeds for a in seed) - sum(
-        len(a) for seed in measured for a in seed
-    )
-    return [found for found in ([a for a in seed if len(a)] for seed in measured) if found], missing
-
-
-def _pairs(first: Groups, second: Groups) -> tuple[list[Any], list[Any]]:
-    if len(first) != len(second):
-        raise InputError(
-            "statistics", "paired", [len(first), len(second)], "needs as many seeds on both sides"
-        )
-    both = [
-        (x, y)
-        for x, y in zip(first, second, strict=True)
-        if all(np.isfinite(_flat(_checkpoints(g))).any() for g in (x, y))
-    ]
-    return [x for x, _ in both] or [[np.nan]], [y for _, y in both] or [[np.nan]]
-
-
-def _means(groups: Groups, resamples: int, rng: np.random.Generator) -> np.ndarray:
-    """Means of hierarchical resamples, `(resamples,)`: seeds with replacement, then checkpoints of
-    each, then trials of each.
-    """
-    seeds = [_checkpoints(g) for g in groups]
-    return _drawn_means(seeds, rng.integers(len(seeds), size=(resamples, len(seeds))), rng)
-
-
-def _drawn_means(groups: list[_Seed], chosen: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Means over chosen seeds `(resamples, places)` of their checkpoints and trials drawn with
-    replacement, `(resamples,)`.
-    """
-    counts = np.array([len(seed) for seed in groups])
-    lengths = np.zeros((len(groups), counts.max()), int)
-    for row, seed in zip(lengths, groups, strict=True):
-        row[: len(seed)] = [len(values) for values in seed]
-    table = np.zeros((*lengths.shape, lengths.max()))
-    for block, seed in zip(table, groups, strict=True):
-        for row, values in zip(block, seed, strict=False):
-            row[: len(values)] = values
-    resampled = np.empty(len(chosen))
-    picked = (rng.random((*chosen.shape, table.shape[1])) * counts[chosen][..., None]).astype(int)
-    at_once = max(1, _DRAWS // (chosen.shape[1] * table.shape[1] * table.shape[2]))
-    for begin in range(0, len(chosen), at_once):
-        seeds = chosen[begin : begin + at_once]
-        count = counts[seeds][..., None]
-        checkpoint = picked[begin : begin + at_once]
-        length = lengths[seeds[..., None], checkpoint][..., None]
-        trial = (rng.random((*checkpoint.shape, table.shape[2])) * length).astype(int)
-        drawn = table[seeds[..., None, None], checkpoint[..., None], trial]
-        drawn[np.arange(table.shape[2]) >= length] = (
-            0.0  # of shorter checkpoints, drawn for nothing
-        )
-        means = drawn.sum(-1) / length[..., 0]
-        means[np.arange(table.shape[1]) >= count] = 0.0  # likewise of seeds with fewer checkpoints
-        resampled[begin : begin + at_once] = (means.sum(-1) / count[..., 0]).mean(-1)
-    return resampled
-
-
-def _standard_error(groups: list[_Seed], means: np.ndarray) -> tuple[float, int]:
-    """Corrected for few seeds (few checkpoints or trials where there is one seed), and degrees of
-    freedom.
-    """
-    units = next(
-        n
-        for n in (len(groups), len(groups[0]), len(groups[0][0]))
-        if n > 1 or n == len(groups[0][0])
-    )
-    return (
-        (float(means.std() * np.sqrt(units / (units - 1))), units - 1) if units > 1 else (np.nan, 0)
-    )
-
-
-def _paired_error(
-    a: list[_Seed], b: list[_Seed], resamples: int, rng: np.random.Generator
-) -> tuple[float, int]:
-    """Standard error of the mean of the seeds' differences: seeds are drawn together, and trials of
-    each side independently.
-    """
-    seeds = len(a)
-    if seeds == 1:
-        error_a, error_b = (_standard_error(g, _means(g, resamples, rng)) for g in (a, b))
-        return float(np.hypot(error_a[0], error_b[0])), _welch(*error_a, *error_b)
-    chosen = rng.integers(seeds, size=(resamples, seeds))
-    differences = _drawn_means(a, chosen, rng) - _drawn_means(b, chosen, rng)
-    return float(differences.std() * np.sqrt(seeds / (seeds - 1))), seeds - 1
-
-
-def _welch(error_a: float, freedom_a: int, error_b: float, freedom_b: int) -> int:
-    """Degrees of freedom of a difference (Welch and Satterthwaite), rounded down."""
-    if not freedom_a or not freedom_b:
-        return 0
-    if error_a == 0 and error_b == 0:
-        return freedom_a + freedom_b
-    return max(
-        1, int((error_a**2 + error_b**2) ** 2 / (error_a**4 / freedom_a + error_b**4 / freedom_b))
-    )
-
-
-def _interval(mean: float, error: float, freedom: int, level: float) -> tuple[float, float]:
-    from scipy.stats import t
-
-    if not freedom or not np.isfinite(error):
-        return np.nan, np.nan
-    reach = float(t.ppf((1 + level) / 2, freedom)) * error
-    return mean - reach, mean + reach
 
 
 def _verdict(low: float, high: float, seeds: int) -> str:

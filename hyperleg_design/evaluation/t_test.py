@@ -14,7 +14,7 @@ from hyperleg_design.evaluation.power import flows, ledger
 from hyperleg_design.evaluation.protocol import TTestProtocol
 from hyperleg_design.evaluation.protocol_run import ProtocolRun
 from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
-from hyperleg_design.simulation.commands import WaypointCommands
+from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 from hyperleg_design.sizing.energy import cost_of_transport
 
 if TYPE_CHECKING:

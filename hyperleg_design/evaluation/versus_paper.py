@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation import statistics
+from hyperleg_design.evaluation import resampling, statistics
 from hyperleg_design.evaluation.paper import Printed
 from hyperleg_design.evaluation.result import by_checkpoint
 from hyperleg_design.evaluation.statistics import (
@@ -92,7 +92,7 @@ def paper_rows(
 
 
 def _row(
-    item: Printed, groups: Mapping[str, statistics.Groups], variants: tuple[str, str], seed: int
+    item: Printed, groups: Mapping[str, resampling.Groups], variants: tuple[str, str], seed: int
 ) -> PaperRow:
     toe, ablation = (statistics.estimate(groups[v], seed=seed) for v in variants)
     difference = statistics.difference(groups[variants[0]], groups[variants[1]], seed=seed)

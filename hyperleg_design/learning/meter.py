@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.simulation.commands import WaypointCommands
+from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
-    from hyperleg_design.simulation.chunk import Step
     from hyperleg_design.simulation.environment import Environment
+    from hyperleg_design.simulation.step import Step
 
 MEMORY = 0.9
 """Weight of the past in the running means that steer the assist; assumed."""

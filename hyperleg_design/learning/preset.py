@@ -12,8 +12,8 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.final_reward import check_final_share
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameters import flag, number, text
+from hyperleg_design.robot import parameter_fields, parameters
+from hyperleg_design.robot.parameter_fields import flag, number, text
 from hyperleg_design.simulation.rewards import TERMS
 from hyperleg_design.simulation.settings import Checked
 
@@ -401,7 +401,7 @@ def _check_term(term: str, settings: list[str], where: str, path: str) -> None:
 
 def _number(value: Any, where: str, path: str, low: float = -1e12, high: float = 1e12) -> float:
     return float(
-        parameters.checked(value, parameters.Rule("number", low=low, high=high), where, path)
+        parameters.checked(value, parameter_fields.Rule("number", low=low, high=high), where, path)
     )
 
 

@@ -8,9 +8,9 @@ import dataclasses
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.robot import parameters
-from hyperleg_design.simulation.commands import WaypointCommands
+from hyperleg_design.robot import parameter_fields, parameters
 from hyperleg_design.simulation.tasks import _SECTIONS
+from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
     from hyperleg_design.learning.preset import Preset, Ramp, Stage
@@ -64,7 +64,7 @@ def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:
     """
     mapping: dict[str, Any] = {"name": preset.name}
     for field in dataclasses.fields(preset):
-        if parameters.is_leaf(field):
+        if parameter_fields.is_leaf(field):
             mapping[field.name] = getattr(preset, field.name)
     mapping["algorithm"] = parameters.leaves(preset.algorithm)
     mapping["network"] = {

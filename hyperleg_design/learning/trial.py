@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.learning.meter import mean_speed
-from hyperleg_design.simulation.commands import WaypointCommands
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.model import pad_loads
 from hyperleg_design.simulation.rewards import TOUCH
 from hyperleg_design.simulation.tasks import Reward, Task
 from hyperleg_design.simulation.terminations import COURSE_FINISHED
+from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

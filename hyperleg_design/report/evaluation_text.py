@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.evaluation.measures import OUTCOMES, measure_of
-from hyperleg_design.evaluation.result import by_checkpoint, counted, trial_table
+from hyperleg_design.evaluation.result import by_checkpoint, counted
+from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.statistics import Estimate, estimate, share
 from hyperleg_design.report.text import table
 

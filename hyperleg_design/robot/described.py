@@ -16,7 +16,8 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameters import Origin, Rule
+from hyperleg_design.robot.parameter_fields import Rule
+from hyperleg_design.robot.parameters import Origin
 
 if TYPE_CHECKING:
     from typing import Self

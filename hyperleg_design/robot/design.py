@@ -18,7 +18,7 @@ import yaml
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import parse_yaml, read_yaml, short_name
-from hyperleg_design.robot import parameters
+from hyperleg_design.robot import parameter_fields, parameters
 from hyperleg_design.robot.ablation import ablate, states
 from hyperleg_design.robot.consistency import check_design
 from hyperleg_design.robot.hyperleg import SPRING_LEAVES, HyperLeg
@@ -228,7 +228,7 @@ def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, A
 def _build(
     data: dict[str, Any], name: str, where: str, origins: dict[str, Origin], variant: str
 ) -> Design:
-    sections = parameters.section_types(Design)
+    sections = parameter_fields.section_types(Design)
     optional = {f.name for f in dataclasses.fields(Design) if f.default_factory is not MISSING}
     for key in data:
         if key not in sections:

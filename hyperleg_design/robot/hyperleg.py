@@ -12,21 +12,23 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, SIDES
-from hyperleg_design.robot.sections import (
-    Actuators,
+from hyperleg_design.robot.model_sections import (
     Contact,
-    Electrical,
-    Foot,
     FrictionModel,
     GearModel,
+    MassModel,
+    StopModel,
+)
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, SIDES
+from hyperleg_design.robot.reference_sections import ReferenceBuild
+from hyperleg_design.robot.sections import (
+    Actuators,
+    Electrical,
+    Foot,
     Hip,
     Joints,
-    MassModel,
     Pelvis,
-    ReferenceBuild,
     Segment,
-    StopModel,
     Toe,
     Transmission,
 )

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameters import flag, number, text
+from hyperleg_design.robot.parameter_fields import flag, number, text
 
 
-class _Checked:
+class Checked:
     """Checks the leaves of a section when it is made."""
 
     def __post_init__(self) -> None:
@@ -17,7 +17,7 @@ class _Checked:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Pelvis(_Checked):
+class Pelvis(Checked):
     """The trunk; its origin lies midway between the hip centres."""
 
     mass: Any = number("kg", 0.1, 200)
@@ -35,7 +35,7 @@ class Pelvis(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Hip(_Checked):
+class Hip(Checked):
     """Three intersecting axes, yaw, roll, pitch; the two carriers between them belong to the
     thigh's mass.
     """
@@ -51,7 +51,7 @@ class Hip(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Segment(_Checked):
+class Segment(Checked):
     """Thigh or shank: a long segment that hangs from its upper joint."""
 
     mass: Any = number("kg", 0.01, 50)
@@ -71,7 +71,7 @@ class Segment(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Foot(_Checked):
+class Foot(Checked):
     """The foot, from the ankle to the toe axis; pitch and roll axes of the ankle intersect."""
 
     mass: Any = number("kg", 0.01, 20)
@@ -95,7 +95,7 @@ class Foot(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Toe(_Checked):
+class Toe(Checked):
     """All that lies ahead of the toe axis."""
 
     mass: Any = number("kg", 0, 10)
@@ -118,7 +118,7 @@ class Toe(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Joint(_Checked):
+class Joint(Checked):
     """One joint of a leg, the same on both sides."""
 
     lower_deg: Any = number("deg", -180, 180)
@@ -151,7 +151,7 @@ class Joints:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Actuator(_Checked):
+class Actuator(Checked):
     """A motor with its gear; the ankle has two of the same."""
 
     motor: Any = text(varies=True)
@@ -181,7 +181,7 @@ class Actuators:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Reductions(_Checked):
+class Reductions(Checked):
     """Total reductions in one posture, with the reference build's gears: magnitudes of the entries
     of `joint_from_motor`.
     """
@@ -199,7 +199,7 @@ class Reductions(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LinkageScale(_Checked):
+class LinkageScale(Checked):
     """Factors on the reductions behind the gears, in every posture: what another pulley or lever
     would do.
     """
@@ -218,7 +218,7 @@ class LinkageScale(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Linkage(_Checked):
+class Linkage(Checked):
     """What the posture-dependent model assumes between and beyond the two printed postures."""
 
     walking_ankle_pitch_deg: Any = number("deg", -60, 60)
@@ -239,7 +239,7 @@ class Linkage(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Transmission(_Checked):
+class Transmission(Checked):
     """Cooperative actuation of the leg."""
 
     walking: Reductions
@@ -251,7 +251,7 @@ class Transmission(_Checked):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Electrical(_Checked):
+class Electrical(Checked):
     """Battery, bus voltage and efficiency of the drivers."""
 
     constants: Any = text("paper", "vendor", default="paper")
@@ -262,149 +262,3 @@ class Electrical(_Checked):
     """Efficiency of the driver from battery to motor [-]."""
     efficiency_regen: Any = number("", 0, 1)
     """Efficiency of the driver from motor to battery [-]."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Place(_Checked):
-    """Where the reference build has an actuator."""
-
-    housed_in: Any = text("pelvis", "thigh", "shank")
-    """Segment that carries it."""
-    position_fraction: Any = number("", 0, 1, default=0.0)
-    """Where along thigh or shank it sits, over the length from the upper joint [-]."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Places:
-    """Where the reference build has its actuators."""
-
-    hip_yaw: Place
-    hip_roll: Place
-    hip_pitch: Place
-    knee: Place
-    ankle: Place
-    toe: Place
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ReferenceReductions(_Checked):
-    """Total reductions of the reference build in one posture; 0 stands for the design's own."""
-
-    knee: Any = number("", 0, 1000, default=0.0)
-    """Knee over each of the knee, ankle and toe motors [-]."""
-    ankle_pitch: Any = number("", 0, 1000, default=0.0)
-    """Ankle pitch over each ankle motor [-]."""
-    ankle_roll: Any = number("", 0, 1000, default=0.0)
-    """Ankle roll over each ankle motor [-]."""
-    toe_ankle_pitch: Any = number("", 0, 1000, default=0.0)
-    """Ankle pitch over the toe motor [-]."""
-    toe: Any = number("", 0, 1000, default=0.0)
-    """Toe over the toe motor [-]."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ReferenceTransmission:
-    """Reductions for which friction and gears are declared."""
-
-    walking: ReferenceReductions = field(default_factory=ReferenceReductions)
-    standing: ReferenceReductions = field(default_factory=ReferenceReductions)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ReferenceBuild(_Checked):
-    """The build for which segment masses, lengths, friction and reductions are declared."""
-
-    hip_motor: Any = text()
-    knee_motor: Any = text()
-    ankle_motor: Any = text()
-    toe_motor: Any = text()
-    hip_gear: Any = number("", 1, 500)
-    """Reduction of the gears of the hip motors [-]."""
-    knee_gear: Any = number("", 1, 500)
-    """Reduction of the gear of the knee motor [-]."""
-    ankle_gear: Any = number("", 1, 500)
-    """Reduction of the gears of the ankle motors [-]."""
-    toe_gear: Any = number("", 1, 500)
-    """Reduction of the gear of the toe motor [-]."""
-    thigh_length: Any = number("m", 0.05, 2)
-    """Length of the thigh [m]."""
-    shank_length: Any = number("m", 0.05, 2)
-    """Length of the shank [m]."""
-    places: Places
-    transmission: ReferenceTransmission = field(default_factory=ReferenceTransmission)
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class MassModel(_Checked):
-    """How masses follow from the choice of motors, gears and lengths."""
-
-    law: Any = text(default="components")
-    """Name of a registered law: `components`, or `fixed` for the declared masses whatever the
-    motors."""
-    gear_mass_per_torque: Any = number("kg/Nm", 0, 0.2)
-    """Gear mass over its peak output torque [kg/Nm]."""
-    thigh_ballast: Any = number("kg", 0, 20, default=0.0)
-    """Dead mass at the toe motor's place, to match the mass of another variant [kg]."""
-    expected_total: Any = number("kg", 0, 500, default=0.0)
-    """Printed mass of the reference build, checked on loading; 0 for no check [kg]."""
-    expected_leg: Any = number("kg", 0, 100, default=0.0)
-    """Printed mass of one leg of the reference build, checked on loading; 0 for no check [kg]."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class FrictionModel(_Checked):
-    """How joint friction follows from motors and reductions."""
-
-    law: Any = text(default="declared")
-    """Name of a registered law: `reflected`, or `declared` for the joints' own numbers whatever the
-    motors and reductions."""
-    motor_share: Any = number("", 0, 1, default=0.5)
-    """Part of the declared friction that belongs to motors and gears and is reflected through the
-    reductions [-]; the rest belongs to the joint."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class GearModel(_Checked):
-    """What other reductions than the reference build's change in the gears."""
-
-    law: Any = text(default="declared")
-    """Name of a registered law: `catalogue`, or `declared` for no change."""
-    inertia_per_torque: Any = number("kg m^2/Nm^(5/3)", 0, 1e-5, default=0.0)
-    """Inertia of a gear at its rotor over its peak output torque to the power 5/3."""
-    stage_mass_per_torque: Any = number("kg/Nm", 0, 0.2, default=0.0)
-    """Mass of belt, pulleys and levers behind the gears over the peak torque at the joint
-    [kg/Nm]."""
-    loss_per_doubling: Any = number("", 0, 0.1, default=0.0)
-    """Part of the transmitted power that is lost for each doubling of the reduction [-]."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class StopModel(_Checked):
-    """Stops at the ends of the joints' ranges of motion; MuJoCo's `solreflimit` and
-    `solimplimit`.
-    """
-
-    time_constant: Any = number("s", 0.0005, 0.2, default=0.02)
-    """Time constant of the stop's spring and damper [s]; MuJoCo keeps it at two simulation steps or
-    more."""
-    damping_ratio: Any = number("", 0.05, 5, default=1.0)
-    """Damping ratio of the stop's spring and damper [-]."""
-    impedance: Any = number("", 0.5, 0.9999, default=0.95)
-    """MuJoCo's impedance d of a stop under load [-]: the spring's rest penetration under a steady
-    load falls in proportion to 1 - d."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Contact(_Checked):
-    """Sole pads and the contact of the pads with the ground."""
-
-    friction: Any = number("", 0, 5)
-    """Sliding friction coefficient [-]."""
-    torsional_friction: Any = number("m", 0, 0.5)
-    """Torsional friction coefficient [m]."""
-    pad_radius: Any = number("m", 0.002, 0.1)
-    """Radius of the spherical sole pads [m]."""
-    time_constant: Any = number("s", 0.001, 0.2)
-    """Time constant of the contact's spring and damper [s]."""
-    damping_ratio: Any = number("", 0.05, 5)
-    """Damping ratio of the contact's spring and damper [-]."""

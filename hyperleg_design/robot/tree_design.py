@@ -19,14 +19,9 @@ from functools import cache
 from typing import Any
 
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.parameters import number
-from hyperleg_design.robot.sections import (
-    Contact,
-    Electrical,
-    FrictionModel,
-    GearModel,
-    StopModel,
-)
+from hyperleg_design.robot.model_sections import Contact, FrictionModel, GearModel, StopModel
+from hyperleg_design.robot.parameter_fields import number
+from hyperleg_design.robot.sections import Electrical
 from hyperleg_design.robot.tree_sections import (
     LimbCopy,
     LinkSection,

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import parameters
+from hyperleg_design.robot import parameter_fields, parameters
 from hyperleg_design.robot.parameters import Origin
 from hyperleg_design.robot.tree_check import check_tree_design, ordered
 from hyperleg_design.robot.tree_design import NAMED, TreeDesign, named_class, ratios_class
@@ -172,7 +172,7 @@ def tree_design_from_mapping(data: Mapping[str, Any], name: str, where: str) -> 
     origins: dict[str, Origin] = {}
     parts: dict[str, Any] = {}
     given = {**rest, **sections, "transmission": ratios}
-    for key, section in parameters.section_types(cls).items():
+    for key, section in parameter_fields.section_types(cls).items():
         content = given.get(key, DEFAULTS.get(key, {}))
         parts[key] = parameters.from_mapping(section, content, where, key, origins)
     return cls(name=name, variant=variant, origins=origins, source=where, **parts)

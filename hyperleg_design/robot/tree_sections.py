@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameters import flag, number, text
+from hyperleg_design.robot.parameter_fields import flag, number, text
 
 
 class Checked:

@@ -15,104 +15,18 @@ simulation.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from hyperleg_design.simulation.machine import Machine
+
 if TYPE_CHECKING:
     import mujoco
 
     from hyperleg_design.robot.described import RobotDesign
-
-
-@dataclass(frozen=True, eq=False)
-class Machine:
-    """Controller, motors and transmission of a robot of J joints and K motors; each array may lead
-    with the simulations.
-    """
-
-    joints: tuple[str, ...]
-    motors: tuple[str, ...]
-    joint_from_motor: np.ndarray
-    """M of the transmission as it is, `(J, K)` [-]: joint torque M tau, motor velocity M^T
-    q_dot."""
-    motor_from_joint: np.ndarray
-    """Matrix by which the controller turns joint torques into motor torques, `(K, J)` [-]."""
-    stiffness: np.ndarray
-    """Position gains of the controller [Nm/rad], `(J,)`."""
-    damping: np.ndarray
-    """Velocity gains of the controller [Nms/rad], `(J,)`."""
-    rotor_inertia: np.ndarray
-    """Rotor inertia on the motor's side of M [kg m^2], `(K,)`; the simulator keeps it where its
-    model has it."""
-    no_load_speed: np.ndarray
-    """No-load speed [rad/s], `(K,)`; infinite where unlimited."""
-    stall_torque: np.ndarray
-    """Where the voltage line meets zero speed [Nm], `(K,)`; inf where unlimited."""
-    peak_torque: np.ndarray
-    """Peak torque [Nm], `(K,)`; infinite where unlimited."""
-    power_constant: np.ndarray
-    """Joule heat over squared torque [W/Nm^2], `(K,)`; 0 where unknown."""
-    rated_torque: np.ndarray
-    """Continuous torque [Nm], `(K,)`; inf where unknown."""
-    voltage: float = float("nan")
-    """Nominal, of the battery [V]; NaN where unknown."""
-    free: np.ndarray | None = None
-    """Rotors that an alteration moves by itself, `(K,)` of bool; set by `Belt`."""
-
-    @property
-    def rigid_inertia(self) -> np.ndarray:
-        """Rotor inertia that belongs into the simulator's model [kg m^2], `(K,)`."""
-        return np.asarray(
-            self.rotor_inertia
-            if self.free is None
-            else np.where(self.free, 0.0, self.rotor_inertia)
-        )
-
-    def joint(self, name: str) -> int:
-        """Find a joint in all arrays over joints.
-
-        Args:
-            name: of the joint.
-
-        Returns:
-            Its index.
-        """
-        return self.joints.index(name)
-
-    def motor(self, name: str) -> int:
-        """Find a motor in all arrays over motors.
-
-        Args:
-            name: of the motor.
-
-        Returns:
-            Its index.
-        """
-        return self.motors.index(name)
-
-    def changed(self, field: str, place: int, change: Callable[[np.ndarray], Any]) -> Machine:
-        """Copy the machine with another constant of one joint or motor.
-
-        Args:
-            field: name of a `(J,)` or `(K,)` field.
-            place: of the joint or motor.
-            change: from the constant, `()` or `(n,)`, to the new one, `()` or `(n,)`.
-
-        Returns:
-            The copy.
-        """
-        old = np.asarray(getattr(self, field), float)
-        new = np.asarray(change(old[..., place]), float)
-        values = np.array(
-            np.broadcast_to(old, (*np.broadcast_shapes(old.shape[:-1], new.shape), old.shape[-1]))
-        )
-        values[..., place] = new
-        changes: dict[str, Any] = {field: values}
-        return dataclasses.replace(self, **changes)
 
 
 @dataclass(slots=True, eq=False)

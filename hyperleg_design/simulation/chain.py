@@ -18,7 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.simulation.actuation import applied
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Machine, Tick, overrides
+from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick, overrides
+from hyperleg_design.simulation.machine import Machine
 from hyperleg_design.simulation.two_mass import joined
 
 

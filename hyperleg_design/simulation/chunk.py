@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from hyperleg_design.simulation import model as models
 from hyperleg_design.simulation.actuation import applied, smoothed_action
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.assist import Assist
+from hyperleg_design.simulation.batch_models import give_models, vary_models
 from hyperleg_design.simulation.commands import commander
 from hyperleg_design.simulation.drive import Drive
 from hyperleg_design.simulation.layout import GRAVITY, Layout
@@ -28,6 +28,7 @@ from hyperleg_design.simulation.model import PAD_SENSOR_SIZE
 from hyperleg_design.simulation.observations import observe
 from hyperleg_design.simulation.rewards import TERMS, Robot
 from hyperleg_design.simulation.state import Goal, Motion, Sensed, State, read_motion
+from hyperleg_design.simulation.step import Divergence, Step
 from hyperleg_design.simulation.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task
 from hyperleg_design.simulation.thermal import ThermalState
@@ -44,52 +45,6 @@ _ROTORS_BEFORE = 6
 _BROKEN = slice(1, 6)
 """MuJoCo's warnings that mark a step as wrong: contacts or constraints left out, bad position,
 velocity, acceleration."""
-
-
-@dataclass(frozen=True, eq=False)
-class Divergence:
-    """A simulation that left what can be computed, with the state from which it did within one
-    policy step.
-    """
-
-    simulation: int
-    episode_step: int
-    """Policy steps since the episode began."""
-    reason: str
-    position: np.ndarray
-    """MuJoCo's qpos before, `(7 + J,)`."""
-    velocity: np.ndarray
-    """MuJoCo's qvel before, `(6 + J,)`."""
-    action: np.ndarray
-    """Last action of the policy, `(J,)`."""
-
-
-@dataclass(eq=False)
-class Step:
-    """What one policy step of n simulations gives back; ended simulations have been started anew
-    already.
-    """
-
-    observations: dict[str, np.ndarray]
-    """Observations by group, `(n, size)`, single precision; of the new episode where one ended."""
-    reward: np.ndarray
-    """Rewards, `(n,)`; zero for a diverged simulation."""
-    terminated: np.ndarray
-    """Whether the robot fell, `(n,)`."""
-    truncated: np.ndarray
-    """Whether the episode ended otherwise, `(n,)`."""
-    ending: np.ndarray
-    """Index into `ENDINGS`, `(n,)`."""
-    reward_terms: np.ndarray
-    """Each term, weighted, `(n, terms)` in the order of the task's rewards; they sum to the
-    reward."""
-    ended: np.ndarray
-    """Simulations that ended, `(m,)`."""
-    final_observations: dict[str, np.ndarray]
-    """Their last observations before the new start, by group, `(m, size)`."""
-    episode_steps: np.ndarray
-    """Length of the episodes that ended [policy steps], `(m,)`."""
-    divergences: list[Divergence]
 
 
 class Chunk:
@@ -119,9 +74,9 @@ class Chunk:
         # each of its steps.
         self._starter = batch.Batch(model, count, 1)
         if len(models) > 1:
-            _give_models(self.batch, models)
-            _give_models(self._starter, models)
-        _vary_models(self.batch, task, rng)
+            give_models(self.batch, models)
+            give_models(self._starter, models)
+        vary_models(self.batch, task, rng)
         verticals = [a.vertical for a in alterations if a.vertical is not None]
         self._vertical = verticals[0] if verticals else None
         """Direction against gravity where alterations make that another than the world's z."""
@@ -598,44 +553,6 @@ class Chunk:
         if self.told is not None:
             signals |= self.told.signals
         return {name: np.moveaxis(values, 0, 1) for name, values in signals.items()}
-
-
-def _give_models(batch: Any, models: Sequence[mujoco.MjModel]) -> None:
-    """Give each simulation the values of a model of its own; all are compiled from designs with the
-    same structure.
-    """
-    from mujoco.batch import MODEL_FIELDS
-
-    distinct = {id(model): model for model in models}
-    place = {key: i for i, key in enumerate(distinct)}
-    rows = [place[id(model)] for model in models]
-    for name in sorted(MODEL_FIELDS):
-        values = [_field(model, name) for model in distinct.values()]
-        if all(np.array_equal(values[0], v) for v in values[1:]):
-            continue
-        own = batch.expand(name)
-        # MuJoCo shares what lies past a field's first rows, such as bounding volumes of meshes
-        wanted = np.stack(values)
-        own[:] = (wanted if wanted.ndim < 2 else wanted[:, : own.shape[1]])[rows].reshape(own.shape)
-
-
-def _field(model: mujoco.MjModel, name: str) -> Any:
-    place, _, option = name.partition(".")
-    return np.asarray(getattr(getattr(model, place), option) if option else getattr(model, name))
-
-
-def _vary_models(batch: Any, task: Task, rng: RowStreams) -> None:
-    settings = task.randomisation
-    if settings.mass:
-        factor = rng.uniform(1 - settings.mass, 1 + settings.mass, (batch.nsim, batch.model.nbody))
-        batch.expand("body_mass")[:] *= factor
-        batch.expand("body_inertia")[:] *= factor[..., None]
-    if settings.floor_friction:
-        batch.expand("geom_friction")[..., 0] *= rng.uniform(
-            1 - settings.floor_friction, 1 + settings.floor_friction, (batch.nsim, 1)
-        )
-    if settings.mass:
-        batch.set_const()
 
 
 def _quaternion(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> np.ndarray:

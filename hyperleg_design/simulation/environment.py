@@ -15,7 +15,7 @@ import dataclasses
 import itertools
 import os
 import threading
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
@@ -25,13 +25,14 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.simulation import mirror, observations
 from hyperleg_design.simulation.alteration import Alterations, made
 from hyperleg_design.simulation.assist import Assist
-from hyperleg_design.simulation.chunk import Chunk, Divergence, Step
-from hyperleg_design.simulation.commands import WaypointCommands
+from hyperleg_design.simulation.chunk import Chunk
 from hyperleg_design.simulation.layout import GRAVITY, layout_of, stacked
 from hyperleg_design.simulation.model import simulated_robots, simulation_model
-from hyperleg_design.simulation.settings import Limits
+from hyperleg_design.simulation.standing import check_standing
+from hyperleg_design.simulation.step import Divergence, Step, joined, merged
 from hyperleg_design.simulation.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task, check_reward
+from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
     import mujoco
@@ -333,7 +334,7 @@ class Environment:
         Returns:
             Observations by group, `(n, size)` each.
         """
-        return _joined(self._each(Chunk.reset, [()] * len(self.chunks)))
+        return joined(self._each(Chunk.reset, [()] * len(self.chunks)))
 
     def step(self, action: np.ndarray) -> Step:
         """Advance all simulations by one policy step; those whose episode ends start a new one.
@@ -369,7 +370,7 @@ class Environment:
         parts = self._each(
             Chunk.step, [(action[c.first : c.first + c.count],) for c in self.chunks]
         )
-        step = parts[0] if len(parts) == 1 else _merged(parts)
+        step = parts[0] if len(parts) == 1 else merged(parts)
         if step.divergences:
             self.divergence_count += len(step.divergences)
             self.divergences = (self.divergences + step.divergences)[-DIVERGENCES_KEPT:]
@@ -467,7 +468,7 @@ class Environment:
                 False,
                 "must be set before the step whose signals are read",
             )
-        return _joined([c.signals() for c in self.chunks])
+        return joined([c.signals() for c in self.chunks])
 
     def close(self) -> None:
         """Stop the threads of the simulation."""
@@ -488,69 +489,6 @@ class Environment:
         return [w.result() for w in waiting]
 
 
-def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: str) -> None:
-    """Check that a robot can stand in its default posture.
-
-    Args:
-        model: its compiled model.
-        layout: of the robot.
-        limits: at which height a robot counts as fallen.
-        name: of the robot, for error messages.
-
-    Raises:
-        InputError: its pelvis would be under the height that counts as fallen, or its weight beside
-        its soles.
-    """
-    import mujoco
-
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    mujoco.mj_forward(model, data)
-    height, least = float(data.qpos[2]), float(limits.of(layout.default_height).height)
-    if height <= least:
-        remedy = (
-            f"the {layout.base} stands lower than a fall, {least:g} m; set limits.height or "
-            f"limits.height_share of the task, or longer legs"
-        )
-        raise InputError(name, "", round(height, 4), remedy)
-    pads = np.array([data.geom(pad).xpos[:2] for pad in layout.pads])
-    middle = data.subtree_com[1][:2]
-    if np.any(middle < pads.min(0)) or np.any(middle > pads.max(0)):
-        remedy = (
-            "the centre of mass lies beside the soles in the default posture; change "
-            "joints.*.default_deg"
-        )
-        raise InputError(name, "", np.round(middle, 4).tolist(), remedy)
-
-
 def _parts(simulations: int) -> int:
     """Number of parts into which the simulations are divided for the threads."""
     return max(-(-simulations // CHUNK), 2 if simulations >= SMALLEST_SPLIT else 1)
-
-
-def _joined(parts: Iterable[Any]) -> dict[str, np.ndarray]:
-    parts = list(parts)
-    return {
-        name: np.concatenate([p[name] for p in parts])
-        if len(parts) > 1
-        else np.asarray(parts[0][name])
-        for name in parts[0]
-    }
-
-
-def _merged(parts: list[Step]) -> Step:
-    arrays = (
-        "reward",
-        "terminated",
-        "truncated",
-        "ending",
-        "reward_terms",
-        "ended",
-        "episode_steps",
-    )
-    return Step(
-        observations=_joined(p.observations for p in parts),
-        final_observations=_joined(p.final_observations for p in parts),
-        divergences=[d for p in parts for d in p.divergences],
-        **{name: np.concatenate([getattr(p, name) for p in parts]) for name in arrays},
-    )

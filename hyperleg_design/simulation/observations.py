@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.simulation.commands import clipped
 from hyperleg_design.simulation.layout import Layout
 from hyperleg_design.simulation.rewards import Robot
 from hyperleg_design.simulation.state import State
+from hyperleg_design.simulation.waypoint_commands import clipped
 
 SCAN = (17, 11)
 """Points of the height scan, along x and y (Isaac Lab: 1.6 m x 1.0 m at 0.1 m)."""

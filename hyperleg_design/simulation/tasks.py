@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameters
+from hyperleg_design.robot import parameter_fields, parameters
 from hyperleg_design.robot.mjcf import TIME_STEP
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.simulation import human_gait
-from hyperleg_design.simulation.commands import VelocityCommands, WaypointCommands
+from hyperleg_design.simulation.commands import VelocityCommands
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
 from hyperleg_design.simulation.observations import PARTS
 from hyperleg_design.simulation.rewards import TERMS
@@ -30,6 +30,7 @@ from hyperleg_design.simulation.settings import (
     Start,
     Thermal,
 )
+from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
@@ -273,7 +274,7 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
         str(term): _reward(entry, where, f"rewards.{term}")
         for term, entry in _mapping(data["rewards"], where, "rewards").items()
     }
-    rule = parameters.Rule("number", unit="deg", low=-180, high=180)
+    rule = parameter_fields.Rule("number", unit="deg", low=-180, high=180)
     posture = {
         str(joint): float(parameters.checked(angle, rule, where, f"posture_deg.{joint}"))
         for joint, angle in _mapping(data.get("posture_deg", {}), where, "posture_deg").items()
@@ -320,7 +321,7 @@ def _commands(data: Any, where: str) -> VelocityCommands | WaypointCommands:
 
 def _reward(entry: Any, where: str, path: str) -> Reward:
     values = {"weight": entry} if not isinstance(entry, Mapping) else dict(entry)
-    rule = parameters.Rule("number")
+    rule = parameter_fields.Rule("number")
     values = {str(k): parameters.checked(v, rule, where, f"{path}.{k}") for k, v in values.items()}
     if "weight" not in values:
         raise InputError(where, f"{path}.weight", None, "is missing")

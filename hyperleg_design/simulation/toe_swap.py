@@ -26,7 +26,8 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.ablation import states
 from hyperleg_design.robot.names import LAYOUTS, SIDES
 from hyperleg_design.simulation.actuation import motor_from_joint
-from hyperleg_design.simulation.alteration import Alteration, Live, Machine, Tick
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+from hyperleg_design.simulation.machine import Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design

@@ -20,7 +20,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hyperleg_design.simulation.actuation import applied
-from hyperleg_design.simulation.alteration import Alteration, Live, Machine, Tick
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+from hyperleg_design.simulation.machine import Machine
 
 DAMPING_RATIO = 0.05
 """Damping ratio of the rotor on its belt where no damping is given (assumed: belts with steel cords

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import parameters
+from hyperleg_design.robot import parameter_fields, parameters
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.motors import catalogue, find_motor
 
@@ -284,7 +284,7 @@ def _range(
 
 
 def _number(value: Any, where: str, place: str) -> float:
-    number: float = parameters.checked(value, parameters.Rule("number"), where, place)
+    number: float = parameters.checked(value, parameter_fields.Rule("number"), where, place)
     return number
 
 

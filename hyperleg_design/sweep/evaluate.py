@@ -10,7 +10,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.sweep import measures
-from hyperleg_design.sweep.space import Sweep
+from hyperleg_design.sweep.definition import Sweep
 
 Columns = dict[str, np.ndarray]
 """Columns of a table by name, equally long."""

@@ -7,14 +7,11 @@ is nan.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from hyperleg_design.reading import summary_line
 from hyperleg_design.robot import (
     consistency,
     dimensions,
@@ -23,172 +20,22 @@ from hyperleg_design.robot import (
     transmission,
     tree_limb,
 )
-from hyperleg_design.robot.bodies import Inertial
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.friction import joint_friction
-from hyperleg_design.robot.inertials import inertials
-from hyperleg_design.robot.load import FAMILIES
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.robot.tree_design import TreeDesign
 from hyperleg_design.sizing import zonotope
-from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
-from hyperleg_design.sizing.inertia import LegInertia, leg_inertia
-from hyperleg_design.sweep import reference_loads
+from hyperleg_design.sizing.envelope import MotorEnvelope
+from hyperleg_design.sweep.batch import Batch
+from hyperleg_design.sweep.measure import BOTH, HYPERLEG, MEASURES, TREE, Measure, measure
 from hyperleg_design.sweep.reference_loads import StaticLoad
 
-HYPERLEG, TREE = FAMILIES
-BOTH = FAMILIES
-"""Families of the measures that every design has."""
 SEGMENTS = ("pelvis", "thigh", "shank", "foot", "toe")
 
 PUSH_OFF_DIRECTION = {"knee": -1.0, "ankle_pitch": 1.0}
 """Joint speeds of `push_off_power` over each other: knee extension and plantar flexion alike, the
 toe held (assumed)."""
-
-
-class Batch:
-    """A batch of designs `(n,)` of one variant, and what several measures need of it, computed
-    once.
-    """
-
-    def __init__(self, design: RobotDesign) -> None:
-        self.design: Any = design
-        self.size = (design.batch_shape or (1,))[0]
-        self.start = 0 if isinstance(design, TreeDesign) else 3
-        """First joint of those that `below_hip` holds."""
-
-    @cached_property
-    def masses(self) -> masses.MassTable:
-        """Masses of the segments of all designs."""
-        return masses.mass_table(self.design)
-
-    @cached_property
-    def inertials(self) -> dict[str, Inertial]:
-        """Inertials of the links of the left leg and of the pelvis."""
-        return inertials(self.design)
-
-    @cached_property
-    def leg(self) -> LegInertia:
-        """Mass and inertia of one leg."""
-        return leg_inertia(self.design)
-
-    @cached_property
-    def walking(self) -> np.ndarray:
-        """`joint_from_motor` in the printed walking posture."""
-        return transmission.joint_from_motor(self.design, "walking")
-
-    @cached_property
-    def envelope(self) -> MotorEnvelope:
-        """Torque-speed envelopes of the motors of one leg."""
-        return motor_envelope(self.design)
-
-    @cached_property
-    def squat(self) -> StaticLoad:
-        """The squat of `reference_loads`, for all designs."""
-        return reference_loads.squat(self.design, self.inertials)
-
-    @cached_property
-    def push_off(self) -> StaticLoad:
-        """The push-off of `reference_loads`, for all designs."""
-        return reference_loads.push_off(self.design, self.inertials)
-
-    def below_hip(self) -> tuple[np.ndarray, np.ndarray]:
-        """Collect what lies below the hip, in the walking posture; for a design that describes its
-        own tree, the whole limb.
-
-        Returns:
-            Matrix M [-] and peak torques of the motors [Nm].
-        """
-        return self.walking[..., self.start :, self.start :], self.envelope.peak_torque[
-            ..., self.start :
-        ]
-
-
-@dataclass(frozen=True)
-class Measure:
-    """A column, or one a part, of a sweep's table."""
-
-    name: str
-    unit: str
-    """SI; empty for ratios."""
-    better: str
-    """`low` or `high`: what a designer wants of it."""
-    parts: tuple[str, ...]
-    """Suffixes of its columns; empty for one column named after it."""
-    doc: str
-    compute: Callable[[Batch], np.ndarray]
-    families: tuple[str, ...] = (HYPERLEG,)
-    """Families of the designs that have it."""
-    usual: bool = True
-    """Whether a sweep that does not say which measures it wants computes it."""
-    parts_of: Callable[[Any], Iterable[str]] = transmission.joint_names
-    """Parts of a design that writes its tree out: its joints by default."""
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Names of its columns for HyperLeg."""
-        return self.columns_of(None)
-
-    def columns_of(self, design: RobotDesign | None) -> tuple[str, ...]:
-        """Name the columns of the measure.
-
-        Args:
-            design: a robot; HyperLeg where there is none.
-
-        Returns:
-            One name for each part, or one for the whole robot.
-        """
-        tree = self.parts and isinstance(design, TreeDesign)
-        parts = self.parts_of(design) if tree else self.parts
-        return tuple(f"{self.name}.{part}" for part in parts) or (self.name,)
-
-
-MEASURES: dict[str, Measure] = {}
-"""All measures by name, in the order of the table."""
-
-
-def measure(
-    unit: str,
-    better: str,
-    parts: tuple[str, ...] = (),
-    *,
-    families: tuple[str, ...] = (HYPERLEG,),
-    usual: bool = True,
-    name: str = "",
-    parts_of: Callable[[Any], Iterable[str]] = transmission.joint_names,
-) -> Callable[[Callable[[Batch], np.ndarray]], Callable[[Batch], np.ndarray]]:
-    """Register a function as a measure; its docstring is the measure's.
-
-    Args:
-        unit: of the values; empty without one.
-        better: `low` or `high`, the direction that is better.
-        parts: joints or motors that the measure has a value for each of; empty for one value a
-            design.
-        families: of the designs that have the measure.
-        usual: whether sweeps that do not list their measures compute it.
-        name: of the measure; that of the function by default.
-        parts_of: gives the parts of a design that describes its own tree; its joints by default.
-
-    Returns:
-        A decorator, which returns the function unchanged.
-
-    Raises:
-        ValueError: the name is taken, or docstring or direction is missing.
-    """
-
-    def register(function: Callable[[Batch], np.ndarray]) -> Callable[[Batch], np.ndarray]:
-        title, doc = name or function.__name__, summary_line(function)
-        if title in MEASURES or better not in ("low", "high") or not doc:
-            raise ValueError(
-                f"measure {title} is there already, or lacks a docstring or a direction"
-            )
-        MEASURES[title] = Measure(
-            title, unit, better, parts, doc, function, families, usual, parts_of
-        )
-        return function
-
-    return register
 
 
 def columns(names: Iterable[str], design: RobotDesign | None = None) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures as trial_measures
 from hyperleg_design.robot import parameters
 from hyperleg_design.sweep import measures as sizing
+from hyperleg_design.sweep.measure import MEASURES, TREE
 
 PROTOCOLS = {"walk": trial_measures.WALK, "t_test": trial_measures.T_TEST}
 """Measures of trials by protocol."""
@@ -52,7 +53,7 @@ def entries() -> dict[str, Entry]:
     """
     known = {
         column: Entry(column, m.unit, m.better, m.doc)
-        for m in sizing.MEASURES.values()
+        for m in MEASURES.values()
         for column in m.columns
     }
     for protocol, table in PROTOCOLS.items():
@@ -85,7 +86,7 @@ def entry(name: str) -> Entry:
         arrival = trial_measures.measure_of(rest)
         return Entry(name, arrival.unit, _BETTER[arrival.better], arrival.meaning, protocol)
     measure = sizing.measure_of(name)
-    if sizing.TREE not in measure.families:
+    if TREE not in measure.families:
         raise KeyError(name)
     return Entry(name, measure.unit, measure.better, measure.doc)
 

@@ -28,10 +28,13 @@ from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import protocol_mapping
 from hyperleg_design.robot import parameters
 from hyperleg_design.sweep import measures, registry
+from hyperleg_design.sweep.constraint import Constraint, read_constraint, usual_constraints
+from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.evaluate import evaluate_samples
 from hyperleg_design.sweep.jobs import completed
-from hyperleg_design.sweep.space import Sweep, with_columns
-from hyperleg_design.sweep.trial_runs import BATCH, Plan, evaluate_values, kind_of
+from hyperleg_design.sweep.space import with_columns
+from hyperleg_design.sweep.trial_plan import Plan, kind_of
+from hyperleg_design.sweep.trial_runs import BATCH, evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
 
 if TYPE_CHECKING:
@@ -43,54 +46,6 @@ VARIANT = "variant"
 """Parameter that chooses the toe, where there are several."""
 REASON, ROW, OWN = "reason", "row", "owner"
 """Attributes of a trial: why it failed, all that was measured, and who runs it."""
-_BOUND = re.compile(r"\s*([\w.]+)\s*(<=|>=)\s*(\S+)\s*")
-
-
-@dataclass(frozen=True)
-class Constraint:
-    """A bound on a measure."""
-
-    name: str
-    """Full name of the measure."""
-    bound: float
-    at_most: bool
-    """Whether the measure must not be above the bound; else not below."""
-
-    def violation(self, value: float) -> float:
-        """Amount by which a value breaks the constraint; not positive where the constraint holds,
-        infinite where the value is unknown.
-        """
-        if not np.isfinite(value):
-            return float("inf")
-        return value - self.bound if self.at_most else self.bound - value
-
-
-def read_constraint(text: str, protocols: Sequence[str]) -> Constraint:
-    """A constraint from a text such as `walk.thermal_peak<=1`.
-
-    Raises:
-        InputError: no such form, measure, or number.
-    """
-    match = _BOUND.fullmatch(text)
-    try:
-        if match is None:
-            raise ValueError
-        bound = float(match[3])
-    except ValueError:
-        raise InputError(
-            "--constraint", "", text, "expects MEASURE<=NUMBER or MEASURE>=NUMBER"
-        ) from None
-    entry = registry.resolve(match[1], protocols, "--constraint")
-    return Constraint(entry.name, bound, match[2] == "<=")
-
-
-def usual_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
-    """Falls, heat and torque within bounds under each protocol (assumed)."""
-    return tuple(
-        Constraint(f"{protocol}.{name}", bound, True)
-        for protocol in protocols
-        for name, bound in (("fell", 0.05), ("thermal_peak", 1.0), ("limit_share", 0.05))
-    )
 
 
 @dataclass(frozen=True)

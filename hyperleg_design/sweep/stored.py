@@ -19,9 +19,11 @@ import numpy as np
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.measures import OUTCOMES
+from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.run import SweepResult
-from hyperleg_design.sweep.space import Sweep, load_sweep
-from hyperleg_design.sweep.trial_runs import TRIALS, Plan, evaluate_batch, kind_of, trials_state
+from hyperleg_design.sweep.space import load_sweep
+from hyperleg_design.sweep.trial_plan import Plan, kind_of
+from hyperleg_design.sweep.trial_runs import TRIALS, evaluate_batch, trials_state
 from hyperleg_design.sweep.trial_table import SHOWN
 from hyperleg_design.writing import write_bytes
 

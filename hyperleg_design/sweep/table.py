@@ -12,8 +12,8 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.sweep import measures
+from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.evaluate import Columns
-from hyperleg_design.sweep.space import Sweep
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -13,8 +13,8 @@ from hyperleg_design.evaluation.measures import OUTCOMES
 from hyperleg_design.evaluation.result import counted
 from hyperleg_design.evaluation.statistics import estimate, share
 from hyperleg_design.sweep import registry
+from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.pareto import nondominated
-from hyperleg_design.sweep.space import Sweep
 from hyperleg_design.sweep.trial_runs import REJECTED
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from hyperleg_design.evaluation import course
 from hyperleg_design.evaluation.protocol import TTestProtocol
-from hyperleg_design.simulation.commands import segment_distance
+from hyperleg_design.simulation.waypoint_commands import segment_distance
 
 T = TTestProtocol().course
 

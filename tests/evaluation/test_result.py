@@ -7,18 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import WalkProtocol
-from hyperleg_design.evaluation.result import (
-    by_seed,
-    cycle_table,
-    evaluation_of,
-    motor_table,
-    trial_table,
-    write_results,
-)
+from hyperleg_design.evaluation.result import evaluation_of
 from hyperleg_design.evaluation.rollout import FELL
 from hyperleg_design.evaluation.walk import measure_walk
 
@@ -35,55 +26,9 @@ def evaluations(planned_trial, design):
     ]
 
 
-def test_a_row_a_trial(evaluations):
-    table = trial_table(evaluations)
-    assert len(table) == 10
-    assert table["outcome"].tolist() == ["arrived", "fell"] * 5
-    assert (
-        table.loc[0, "steady_cost_of_transport"]
-        == evaluations[0].measures[0]["steady_cost_of_transport"]
-    )
-    assert table["variant"].unique().tolist() == ["toe"]
-
-
-def test_a_row_a_motor_of_trials_that_have_a_steady_state(evaluations):
-    table = motor_table(evaluations)
-    assert len(table) == 5 * 14
-    assert table.loc[2, "motor"] == "left_hip_pitch"
-    assert table.loc[2, "rms_torque"] == pytest.approx(evaluations[0].motors[0].rms_torque[2])
-
-
-def test_checkpoints_of_a_seed_are_pooled_and_unknown_seeds_stand_alone(evaluations):
-    groups = by_seed(trial_table(evaluations), "fell")
-    assert sorted(len(g) for g in groups) == [2, 2, 2, 4]
-    assert statistics.share(groups).mean == 0.5
-    times = by_seed(trial_table(evaluations), "time")
-    found = statistics.estimate(times)
-    assert (found.trials, found.missing) == (5, 5)
-    with pytest.raises(InputError, match="no_such"):
-        by_seed(trial_table(evaluations), "no_such")
-
-
 def test_values_of_an_evaluation(evaluations):
     assert evaluations[0].outcomes == ["arrived", "fell"]
     assert np.array_equal(evaluations[0].values("fell"), [0, 1])
-
-
-def test_letting_signals_go_changes_no_table(evaluations):
-    light = [one.light() for one in evaluations]
-    assert [len(one.trials) for one in light] == [1] * 5
-    for table in (trial_table, motor_table, cycle_table):
-        assert table(light).equals(table(evaluations))
-
-
-def test_the_cycle_table_is_the_mean_over_strides(evaluations):
-    table = cycle_table(evaluations[:1])
-    cycle = evaluations[0].cycles[0]
-    assert len(table) == 101 * (7 + 7)
-    knee = table[(table["kind"] == "mechanical") & (table["part"] == "knee")]
-    assert knee["mean"].to_numpy() == pytest.approx(cycle.mechanical[:, :, 3].mean(0))
-    assert knee["strides"].unique().tolist() == [len(cycle.mechanical)]
-    assert cycle_table([dataclasses.replace(evaluations[0], cycles=[None, None])]).empty
 
 
 def test_paths_lie_in_the_frame_of_the_start(planned_trial, turned_trial, design):
@@ -100,31 +45,3 @@ def test_paths_lie_in_the_frame_of_the_start(planned_trial, turned_trial, design
     assert straight[0].tolist() == [0, 0]
     assert straight[-1, 0] > 20
     assert turned == pytest.approx(straight, abs=1e-9)
-
-
-def test_results_are_written_whole_and_the_same_again(evaluations, tmp_path):
-    import json
-
-    import pandas as pd
-
-    first, second = (write_results(tmp_path / name, evaluations) for name in ("a", "b"))
-    names = {
-        "trials.parquet",
-        "motors.parquet",
-        "cycles.parquet",
-        "paths.parquet",
-        "evaluation.json",
-    }
-    assert {p.name for p in first.iterdir()} == names | {".hyperleg"}
-    for name in names:
-        assert (first / name).read_bytes() == (second / name).read_bytes()
-    assert pd.read_parquet(first / "trials.parquet").equals(trial_table(evaluations))
-    described = json.loads((first / "evaluation.json").read_text())
-    assert described["protocols"][0]["distance"] == 20
-    assert [p["seed"] for p in described["policies"]] == [0, 0, 1, -1, -1]
-    assert described["versions"]["mujoco"]
-    foreign = tmp_path / "foreign"
-    foreign.mkdir()
-    (foreign / "mine.txt").write_text("mine")
-    with pytest.raises(OutputError, match="did not write"):
-        write_results(foreign, evaluations)

@@ -95,7 +95,8 @@ def test_the_assist_is_taken_away(environment):
 
 def test_a_diverged_trial_is_reported_with_its_state(environment, monkeypatch):
     from hyperleg_design.simulation import terminations
-    from hyperleg_design.simulation.chunk import Chunk, Divergence
+    from hyperleg_design.simulation.chunk import Chunk
+    from hyperleg_design.simulation.step import Divergence
 
     plain = Chunk._find_diverged
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation import statistics
+from hyperleg_design.evaluation import effect_size, resampling, statistics
 from hyperleg_design.evaluation.statistics import difference, estimate, share
 
 
@@ -36,7 +36,7 @@ def test_plain_percentiles_would_not_cover():
     hits = []
     for _ in range(300):
         groups = drawn(rng, 5, 10, 1.0, 0.1)
-        means = statistics._means(groups, 400, rng)
+        means = resampling.resampled_means(groups, 400, rng)
         low, high = np.quantile(means, [0.025, 0.975])
         hits.append(low <= 0 <= high)
     assert np.mean(hits) < 0.9
@@ -85,7 +85,7 @@ def test_checkpoints_are_a_level_of_their_own():
     assert found.mean == pytest.approx((2.5 + 2.0) / 2)
     assert (found.seeds, found.trials) == (2, 15)
     rng = np.random.default_rng(11)
-    means = statistics._drawn_means([nested[0]], np.zeros((40_000, 1), int), rng)
+    means = resampling._drawn_means([nested[0]], np.zeros((40_000, 1), int), rng)
     assert sorted(set(means.tolist())) == [1.0, 2.5, 4.0]
     assert means.var() == pytest.approx(1.5**2 / 2, rel=0.03)  # two draws of two values 3 apart
     one = estimate([[rng.normal(0, 0.01, 10), rng.normal(1, 0.01, 10), rng.normal(2, 0.01, 10)]])
@@ -154,7 +154,7 @@ def test_groups_of_unequal_length_are_drawn_from_their_own_values():
     groups = [np.array([1.0, 2.0]), np.array([5.0] * 7), np.array([9.0])]
     rng = np.random.default_rng(8)
     for which, expected in ((0, 1.5), (1, 5.0), (2, 9.0)):
-        drawn_means = statistics._drawn_means(
+        drawn_means = resampling._drawn_means(
             [[g] for g in groups], np.full((20_000, 3), which), rng
         )
         assert drawn_means.mean() == pytest.approx(expected, abs=0.01)
@@ -166,7 +166,7 @@ def test_groups_of_unequal_length_are_drawn_from_their_own_values():
 def test_memory_stays_small_and_pieces_fit_together(monkeypatch):
     groups = drawn(np.random.default_rng(9), 5, 10, 1, 1)
     whole = estimate(groups, resamples=2000)
-    monkeypatch.setattr(statistics, "_DRAWS", 500)
+    monkeypatch.setattr(resampling, "_DRAWS", 500)
     assert estimate(groups, resamples=2000) == whole
 
 
@@ -183,11 +183,11 @@ def test_no_fall_in_fifty_walks_still_has_an_upper_bound():
 
 def test_effect_sizes_of_a_textbook_example():
     x, y = [3.0, 4, 5, 6, 7], [1.0, 2, 3, 4, 5]
-    assert statistics.hedges_g(x, y) == pytest.approx(2 / np.sqrt(2.5) * (1 - 3 / 31))
-    assert statistics.cliffs_delta(x, y) == pytest.approx((19 - 3) / 25)
-    assert statistics.cliffs_delta(y, x) == -statistics.cliffs_delta(x, y)
-    assert np.isnan(statistics.hedges_g([1.0], [2.0, 3.0]))
-    assert np.isnan(statistics.hedges_g([1.0, 1.0], [2.0, 2.0]))
+    assert effect_size.hedges_g(x, y) == pytest.approx(2 / np.sqrt(2.5) * (1 - 3 / 31))
+    assert effect_size.cliffs_delta(x, y) == pytest.approx((19 - 3) / 25)
+    assert effect_size.cliffs_delta(y, x) == -effect_size.cliffs_delta(x, y)
+    assert np.isnan(effect_size.hedges_g([1.0], [2.0, 3.0]))
+    assert np.isnan(effect_size.hedges_g([1.0, 1.0], [2.0, 2.0]))
 
 
 @pytest.mark.parametrize(

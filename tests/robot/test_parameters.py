@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameters import Origin, Rule, checked, flag, number, text
+from hyperleg_design.robot.parameter_fields import Rule, flag, number, text
+from hyperleg_design.robot.parameters import Origin, checked
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

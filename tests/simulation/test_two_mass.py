@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.simulation.alteration import Machine
 from hyperleg_design.simulation.chain import Chain
+from hyperleg_design.simulation.machine import Machine
 from hyperleg_design.simulation.two_mass import Belt, joined
 
 INERTIA, ROTOR, RATIO, STEP = 0.05, 2e-4, 8.0, 0.005

@@ -19,7 +19,7 @@ from hyperleg_design.sweep.finalists import (
 from hyperleg_design.sweep.fine_tuning import FineTuning
 from hyperleg_design.sweep.search import Search, run_search, search_of
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_runs import plan
+from hyperleg_design.sweep.trial_plan import plan
 
 optuna = pytest.importorskip("optuna")
 

@@ -13,7 +13,8 @@ from hyperleg_design.robot.motors import catalogue
 from hyperleg_design.robot.names import JOINTS, VARIANTS
 from hyperleg_design.sizing.envelope import MotorEnvelope, torque_limits
 from hyperleg_design.sizing.zonotope import support
-from hyperleg_design.sweep import measures
+from hyperleg_design.sweep import measure, measures
+from hyperleg_design.sweep.batch import Batch
 
 BASE = load_design("hyperleg")
 N = 24
@@ -139,7 +140,7 @@ def test_actuators_weigh_what_a_change_of_motor_changes():
 def test_holding_heat_is_least_among_all_motor_torques():
     """In the locked toe's leg one motor is spare; no other split of the torque is cooler."""
     design = ablate(BASE, "toe_locked")
-    one = measures.Batch(design)
+    one = Batch(design)
     spare = np.linalg.svd(one.walking)[2][-1]
     tau = transmission.motor_torque(one.walking, one.push_off.torque, one.envelope.power_constant)
     heat = float(measures.evaluate(design, ["push_off_heat"])["push_off_heat"][0])
@@ -177,7 +178,7 @@ def test_largest_power_is_the_maximum_over_the_rates(seed, motors):
 
 
 def test_push_off_power_is_a_support_of_the_speed_dependent_set():
-    one = measures.Batch(BASE)
+    one = Batch(BASE)
     direction = np.array([0, 0, 0, -1.0, 1.0, 0, 0])
     best = 0.0
     for rate in np.linspace(0, 8, 4001):
@@ -202,12 +203,12 @@ def test_a_measure_needs_a_name_of_its_own_and_a_direction():
         return one
 
     with pytest.raises(ValueError, match="total_mass"):
-        measures.measure("kg", "low")(total_mass)
+        measure.measure("kg", "low")(total_mass)
 
     def another(one):
         """Undirected."""
         return one
 
     with pytest.raises(ValueError, match="another"):
-        measures.measure("kg", "best")(another)
-    assert "another" not in measures.MEASURES
+        measure.measure("kg", "best")(another)
+    assert "another" not in measure.MEASURES

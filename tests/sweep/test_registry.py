@@ -4,13 +4,13 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures as trial_measures
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.sizing.analysis import analyze
+from hyperleg_design.sweep import measure, registry
 from hyperleg_design.sweep import measures as sizing
-from hyperleg_design.sweep import registry
 
 
 def test_all_that_sweeps_compute_and_evaluate_measures_is_there_under_the_same_name():
     known = registry.entries()
-    assert set(sizing.columns(sizing.MEASURES)) <= set(known)
+    assert set(sizing.columns(measure.MEASURES)) <= set(known)
     for protocol, table in (("walk", trial_measures.WALK), ("t_test", trial_measures.T_TEST)):
         for name in table:
             entry = registry.resolve(f"{protocol}.{name}", [protocol])

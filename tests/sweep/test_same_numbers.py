@@ -23,7 +23,8 @@ from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.evaluate import evaluate_range
 from hyperleg_design.sweep.search import run_search, search_of
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_runs import evaluate_values, plan
+from hyperleg_design.sweep.trial_plan import plan
+from hyperleg_design.sweep.trial_runs import evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
 
 NO_MEASURES = {

@@ -6,7 +6,6 @@ import socket
 import subprocess
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from hyperleg_design import cli
@@ -14,17 +13,9 @@ from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.sweep import measures
 from hyperleg_design.sweep import search as searching
-from hyperleg_design.sweep.search import (
-    Constraint,
-    found_designs,
-    read_constraint,
-    run_search,
-    search_of,
-    trial_frame,
-    usual_constraints,
-)
+from hyperleg_design.sweep.search import found_designs, run_search, search_of, trial_frame
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_runs import plan
+from hyperleg_design.sweep.trial_plan import plan
 
 optuna = pytest.importorskip("optuna")
 
@@ -136,19 +127,6 @@ def test_a_folder_that_cannot_be_made_and_a_measure_that_is_not_there(tmp_path):
     sweep = sweep_from_mapping(SPACE)
     with pytest.raises(InputError, match=r"did you mean max_joint_torque\.knee"):
         search_of(sweep, plan(sweep, []), ["max_joint_torque.kne"])
-
-
-def test_constraints_are_read_strictly():
-    found = read_constraint("walk.thermal_peak <= 1.5", ["walk"])
-    assert found == Constraint("walk.thermal_peak", 1.5, True)
-    assert found.violation(2.0) == 0.5
-    assert found.violation(np.nan) == np.inf
-    assert read_constraint("total_mass>=30", []).violation(31.0) == -1.0
-    for text in ("thermal_peak", "walk.fell<=x", "walk.fell<0.1", "fall<=1"):
-        with pytest.raises(InputError):
-            read_constraint(text, ["walk"])
-    names = {c.name for c in usual_constraints(["walk"])}
-    assert names == {"walk.fell", "walk.thermal_peak", "walk.limit_share"}
 
 
 def test_designs_are_walked(tmp_path):

@@ -13,7 +13,8 @@ from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.sweep import stored
 from hyperleg_design.sweep.run import SweepResult, run_sweep
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_runs import TRIALS, plan, run_trials, trials_state
+from hyperleg_design.sweep.trial_plan import plan
+from hyperleg_design.sweep.trial_runs import TRIALS, run_trials, trials_state
 from hyperleg_design.sweep.trial_table import design_table
 
 SHORT = WalkProtocol(trials=2, distance=1.5, time_limit=3.0, steady=Steady(begin=0.3))

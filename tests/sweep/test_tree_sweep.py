@@ -9,7 +9,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.dimensions import total_mass
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.sweep import measures
+from hyperleg_design.sweep import measure, measures
 from hyperleg_design.sweep.run import run_sweep
 from hyperleg_design.sweep.space import sweep_from_mapping
 
@@ -40,7 +40,7 @@ def test_each_row_is_the_robot_with_these_values(tmp_path):
 def test_measures_that_need_hyperleg_are_refused_by_name():
     design = load_robot("mini_cheetah")
     assert "push_off_power" not in measures.measures_of(design)
-    assert set(measures.measures_of(design)) < set(measures.MEASURES)
+    assert set(measures.measures_of(design)) < set(measure.MEASURES)
     with pytest.raises(InputError, match="push_off_power"):
         sweep_from_mapping(SWEEP | {"measures": ["push_off_power"]})
 

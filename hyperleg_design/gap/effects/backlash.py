@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects import belt
+from hyperleg_design.gap.effects import belt, slack
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import (
     FEW,
@@ -70,7 +70,7 @@ class Backlash(Effect):
         """See `Effect.trace`."""
         motor = signals.subject.motors.index(location)
         angle, side, coasting, behind = np.atleast_2d(np.asarray(values, float)).T
-        moved = belt.slack(
+        moved = slack.slack(
             signals, motor, angle * belt.moved_most(signals.subject, motor), side, coasting, behind
         )
         return belt.trace(signals, motor, moved, side, behind=behind)
@@ -80,7 +80,7 @@ class Backlash(Effect):
         bounce as in the trace.
         """
         motor = subject.motors.index(location)
-        bounce = np.log(belt.RESTITUTION)
+        bounce = np.log(slack.RESTITUTION)
         damping = (
             2
             * abs(bounce)

@@ -19,7 +19,8 @@ from hyperleg_design.gap.effects.placing import (
     is_logged,
     limited,
 )
-from hyperleg_design.simulation.alteration import Alteration, Machine
+from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.simulation.machine import Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model import pads, rigid
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
@@ -46,7 +46,7 @@ def needed(
         found["base"] = rigid.base_wrench(subject, *motion, base)
     if signals.pad_force is not None:
         rotation = None if base is None else base.rotation
-        torque, wrench = rigid.contact_torque(
+        torque, wrench = pads.contact_torque(
             subject, position, rotation, np.nan_to_num(signals.pad_force)
         )
         found["motion"] = found["motion"] - torque

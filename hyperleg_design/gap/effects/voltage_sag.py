@@ -25,7 +25,8 @@ from hyperleg_design.gap.effects.placing import (
     motor_velocity,
 )
 from hyperleg_design.gap.signals.loading import FULL
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Machine, Tick
+from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
+from hyperleg_design.simulation.machine import Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

@@ -12,18 +12,22 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
-from hyperleg_design.gap.effects import LOOK_ALIKES
 from hyperleg_design.gap.experiments import information as info
-from hyperleg_design.gap.experiments.motions import LeftOut, Motion, recommended
+from hyperleg_design.gap.experiments.designed_experiment import (
+    CLEAR,
+    Experiment,
+)
+from hyperleg_design.gap.experiments.motions import Motion, recommended
+from hyperleg_design.gap.experiments.pair import Pair, apart, pairs_of
+from hyperleg_design.gap.experiments.plan import plan_mapping
 from hyperleg_design.gap.experiments.rehearsal import knows_gains, rehearsed
-from hyperleg_design.gap.experiments.rig_room import Room, room_of
+from hyperleg_design.gap.experiments.rig_room import room_of
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.signals.conditioning import condition
@@ -31,115 +35,13 @@ from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.writing import write_json, write_text
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.experiments.information import Blocks, Place
+    from hyperleg_design.gap.experiments.information import Blocks
     from hyperleg_design.gap.model.subject import Subject
-
-CLEAR = 3.0
-"""Standard deviations from which an effect of usual size shows, and from which two are told
-apart."""
 RATE = 200.0
 """Of the targets [Hz]."""
 RATES = (50.0, 2000.0)
 """Allowed [Hz]."""
 FORMATS = ("csv", "parquet", "both")
-
-
-@dataclass(frozen=True)
-class Pair:
-    """Two look-alikes at one joint."""
-
-    joint: str
-    first: tuple[str, str]
-    second: tuple[str, str]
-    by: str
-    """What separates them."""
-
-
-@dataclass(frozen=True, eq=False)
-class Experiment:
-    """Recommended motions of one robot and what they tell."""
-
-    subject: Subject
-    room: Room
-    rate: float
-    noise: float
-    torque: bool
-    """Whether the rig is taken to measure motor torque or current."""
-    motions: tuple[Motion, ...]
-    left_out: tuple[LeftOut, ...]
-    blocks: Blocks
-    grams: Mapping[str, np.ndarray]
-    """Fisher information by motion `(c, c)`."""
-    pairs: tuple[Pair, ...]
-    chosen: tuple[str, ...]
-    """Shortest set of motions that tells what all of them can, in the order in which they add
-    most."""
-    notes: tuple[str, ...]
-
-    def motion(self, name: str) -> Motion:
-        """Look up a motion.
-
-        Args:
-            name: of the motion.
-
-        Returns:
-            The motion.
-        """
-        return next(m for m in self.motions if m.name == name)
-
-    def gram(self, names: Sequence[str] | None = None) -> np.ndarray:
-        """Sum the information of some motions.
-
-        Args:
-            names: of the motions; all by default.
-
-        Returns:
-            Fisher information, `(c, c)`.
-        """
-        return info.summed(
-            self.grams, names if names is not None else [m.name for m in self.motions]
-        )
-
-    def apart(self, pair: Pair, names: Sequence[str] | None = None) -> float:
-        """Compute how far two look-alikes are told apart by some motions.
-
-        Args:
-            pair: of look-alikes.
-            names: of the motions; all by default.
-
-        Returns:
-            The distance of the less clear of the two [standard deviations].
-        """
-        return apart(self.gram(names), self.blocks, pair)
-
-    def shown(self, place: Place, names: Sequence[str] | None = None) -> float:
-        """Compute how far an effect of usual size stands out.
-
-        Args:
-            place: effect and location.
-            names: of the motions; all by default.
-
-        Returns:
-            The distance [standard deviations].
-        """
-        return info.strength(self.gram(names), self.blocks, place)
-
-
-def apart(gram: np.ndarray, blocks: Blocks, pair: Pair) -> float:
-    """Compute what is left of each of two effects after the other explained what it can.
-
-    Args:
-        gram: Fisher information, `(c, c)`.
-        blocks: of the robot.
-        pair: of look-alikes.
-
-    Returns:
-        The lesser of the two [standard deviations].
-    """
-    return min(
-        info.distinction(gram, blocks, pair.first, [pair.second]),
-        info.distinction(gram, blocks, pair.second, [pair.first]),
-    )
 
 
 def design_experiment(
@@ -211,56 +113,6 @@ def design_experiment(
         chosen,
         _notes(subject, torque),
     )
-
-
-def pairs_of(subject: Subject, blocks: Blocks) -> tuple[Pair, ...]:
-    """List the look-alikes joint by joint.
-
-    Args:
-        subject: the robot.
-        blocks: of the robot.
-
-    Returns:
-        The pairs that can sit on this robot.
-    """
-    found: list[Pair] = []
-    for first, second, by in LOOK_ALIKES:
-        for index, joint in enumerate(subject.joints):
-            places = [place_at(name, index, subject, blocks) for name in (first, second)]
-            if (
-                places[0] is not None
-                and places[1] is not None
-                and not any((p.first, p.second) == (places[0], places[1]) for p in found)
-            ):
-                found.append(Pair(joint, places[0], places[1], by))
-    return tuple(found)
-
-
-def place_at(effect: str, joint: int, subject: Subject, blocks: Blocks) -> Place | None:
-    """Find where an effect sits that acts on a joint most: the joint, its main motor, the link that
-    it carries, or the robot.
-
-    Args:
-        effect: its identifier.
-        joint: index of the joint.
-        subject: the robot.
-        blocks: of the robot.
-
-    Returns:
-        Effect and location; None where the effect cannot sit there.
-    """
-    known = [location for name, location in blocks.places if name == effect]
-    motor = subject.motors[int(np.argmax(np.abs(subject.joint_from_motor[joint])))]
-    links = [
-        name
-        for name, carrier in zip(subject.tree.links, subject.tree.link_joint, strict=True)
-        if carrier == joint
-    ]
-    for name in (subject.joints[joint], motor, *links):
-        if name in known:
-            return effect, name
-    shared = [name for name in known if name in ("robot", "battery")]
-    return (effect, shared[0]) if shared else None
 
 
 def shortest_set(
@@ -349,151 +201,6 @@ def _notes(subject: Subject, torque: bool) -> tuple[str, ...]:
         "and voltage_sag two states of the battery."
     )
     return tuple(notes)
-
-
-def inseparable(experiment: Experiment) -> tuple[Pair, ...]:
-    """List the look-alikes that both show, or would, and that all motions together cannot tell
-    apart.
-
-    Args:
-        experiment: the plan.
-
-    Returns:
-        The pairs.
-    """
-    gram = experiment.gram()
-    return tuple(
-        pair
-        for pair in experiment.pairs
-        if apart(gram, experiment.blocks, pair) < CLEAR
-        and all(
-            info.strength(gram, experiment.blocks, place) >= CLEAR
-            for place in (pair.first, pair.second)
-        )
-    )
-
-
-def hidden(experiment: Experiment) -> tuple[Place, ...]:
-    """List the effects at places where, at their usual size, no motion shows them.
-
-    Args:
-        experiment: the plan.
-
-    Returns:
-        Effects and locations.
-    """
-    gram = experiment.gram()
-    return tuple(
-        place
-        for place in experiment.blocks.places
-        if info.strength(gram, experiment.blocks, place) < CLEAR
-    )
-
-
-def plan_mapping(experiment: Experiment) -> dict[str, Any]:
-    """Write the plan as JSON holds it.
-
-    Args:
-        experiment: the plan.
-
-    Returns:
-        Nested mappings.
-    """
-    subject, blocks = experiment.subject, experiment.blocks
-    chosen = experiment.gram(experiment.chosen)
-    grams = {m.name: experiment.grams[m.name] for m in experiment.motions}
-
-    def effects_of(gram: np.ndarray) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        for place in blocks.places:
-            deviations = {
-                k: _number(v)
-                for k, v in info.standard_deviations(gram, blocks, place, subject).items()
-            }
-            clear = info.strength(gram, blocks, place)
-            found.setdefault(place[0], {})[place[1]] = {
-                "stands_out": _number(clear),
-                "standard_deviation": deviations,
-            }
-        return found
-
-    return {
-        "schema": 1,
-        "robot": subject.path,
-        "base": "fixed",
-        "rate": experiment.rate,
-        "noise": {
-            "share_of_strength": experiment.noise,
-            "correlation_time": info.NOISE_TIME,
-            "torque_measured": experiment.torque,
-        },
-        "clear_from": CLEAR,
-        "start_posture": dict(
-            zip(subject.joints, (float(v) for v in experiment.room.centre), strict=True)
-        ),
-        "motions": [
-            {
-                "name": m.name,
-                "purpose": m.purpose,
-                "duration": m.duration,
-                "scale": m.scale,
-                "drives_off": float(m.off.sum() / experiment.rate),
-                "use": {
-                    "range": m.use.range,
-                    "speed": m.use.speed,
-                    "envelope": m.use.envelope,
-                    "continuous": m.use.continuous,
-                    "worst": m.use.worst,
-                },
-                "shows": sorted(
-                    {
-                        place[0]
-                        for place in blocks.places
-                        if info.strength(grams[m.name], blocks, place) >= CLEAR
-                    }
-                ),
-                "tells_apart": _pairs_told(grams[m.name], experiment),
-                "effects": effects_of(grams[m.name]),
-            }
-            for m in experiment.motions
-        ],
-        "left_out": [{"name": one.name, "why": one.why} for one in experiment.left_out],
-        "shortest_set": {
-            "motions": list(experiment.chosen),
-            "duration": float(sum(experiment.motion(n).duration for n in experiment.chosen)),
-            "effects": effects_of(chosen),
-            "tells_apart": _pairs_told(chosen, experiment),
-        },
-        "inseparable": [
-            _pair(pair, experiment.gram(), experiment) for pair in inseparable(experiment)
-        ],
-        "not_shown": [
-            {"effect": effect, "location": location} for effect, location in hidden(experiment)
-        ],
-        "notes": list(experiment.notes),
-    }
-
-
-def _pairs_told(gram: np.ndarray, experiment: Experiment) -> list[dict[str, Any]]:
-    return [_pair(pair, gram, experiment) for pair in experiment.pairs]
-
-
-def _pair(pair: Pair, gram: np.ndarray, experiment: Experiment) -> dict[str, Any]:
-    blocks = experiment.blocks
-    return {
-        "joint": pair.joint,
-        "first": list(pair.first),
-        "second": list(pair.second),
-        "separated_by": pair.by,
-        "apart": _number(apart(gram, blocks, pair)),
-        "principal_angle": _number(
-            float(np.degrees(info.principal_angle(gram, blocks, pair.first, pair.second)))
-        ),
-    }
-
-
-def _number(value: float) -> float | None:
-    return float(f"{value:.4g}") if np.isfinite(value) else None
 
 
 def write_motion(

@@ -25,7 +25,7 @@ from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.experiments import trajectories
 from hyperleg_design.gap.experiments.rehearsal import closed_loop, knows_gains, swung
 from hyperleg_design.gap.experiments.rig_room import LONG, Room, Use, targets_for, use_of
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model import inertial_regressor, rigid
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
@@ -320,7 +320,9 @@ def _inertial_gram(subject: Subject, position: np.ndarray, step: float) -> np.nd
             None,
         )
         if link is not None:
-            columns.append(rigid.regressor(subject, position, velocity, acceleration, None, link))
+            columns.append(
+                inertial_regressor.regressor(subject, position, velocity, acceleration, None, link)
+            )
     matrix = (np.concatenate(columns, -1) / joint_strength(subject)[None, :, None]).reshape(
         -1, 10 * len(columns)
     )

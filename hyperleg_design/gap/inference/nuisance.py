@@ -25,7 +25,7 @@ from hyperleg_design.gap.effects.placing import (
     motor_velocity,
 )
 from hyperleg_design.gap.effects.series import first_derivative
-from hyperleg_design.gap.model import friction, rigid
+from hyperleg_design.gap.model import friction, pads
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.gap.signals.transmission import turned
@@ -396,11 +396,11 @@ def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
     if one.effect == FORCES_LATE:
         torque, wrench = (
             -one.spread * first_derivative(values.T, signals.step).T
-            for values in rigid.contact_torque(subject, signals.position, rotation, force)
+            for values in pads.contact_torque(subject, signals.position, rotation, force)
         )
     elif one.effect == FORCES_SCALED:
         scaled = one.spread * np.where(own[:, None], force, 0.0)
-        torque, wrench = rigid.contact_torque(subject, signals.position, rotation, scaled)
+        torque, wrench = pads.contact_torque(subject, signals.position, rotation, scaled)
     else:
         force = np.where(own[:, None], force, 0.0)
         load = np.maximum(force[..., 2], 0.0)
@@ -410,7 +410,7 @@ def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
             else 1.0
         )
         higher, lower = (
-            rigid.contact_torque(subject, signals.position, rotation, force, lift)
+            pads.contact_torque(subject, signals.position, rotation, force, lift)
             for lift in (one.spread * share, 0.0)
         )
         torque, wrench = (a - b for a, b in zip(higher, lower, strict=True))

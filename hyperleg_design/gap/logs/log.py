@@ -30,60 +30,19 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.gap.logs import blocks
+from hyperleg_design.gap.logs.columns import CONTACT, MOTOR_SIGNALS, VECTOR_SIGNALS, known_column
 from hyperleg_design.gap.logs.metadata import Metadata, metadata_from_mapping, read_metadata_mapping
+from hyperleg_design.gap.logs.parquet_columns import parquet_columns
+from hyperleg_design.gap.logs.tidy import check_clock, tidied
 
-if TYPE_CHECKING:
-    import pyarrow.parquet
-
-JOINT_SIGNALS = ("position_target", "position", "velocity", "joint_torque")
-MOTOR_SIGNALS = (
-    "motor_torque_command",
-    "motor_torque",
-    "motor_current",
-    "motor_velocity",
-    "motor_temperature",
-)
-VECTOR_SIGNALS = {
-    "gyro": ("x", "y", "z"),
-    "accelerometer": ("x", "y", "z"),
-    "base_position": ("x", "y", "z"),
-    "base_orientation": ("w", "x", "y", "z"),
-    "base_velocity": ("x", "y", "z"),
-}
-BATTERY = "battery_voltage"
-CONTACT = "contact_force"
-UNITS = {
-    "t": "s",
-    "position_target": "rad",
-    "position": "rad",
-    "velocity": "rad/s",
-    "joint_torque": "Nm",
-    "motor_torque_command": "Nm",
-    "motor_torque": "Nm",
-    "motor_current": "A",
-    "motor_velocity": "rad/s",
-    "motor_temperature": "degC",
-    BATTERY: "V",
-    "gyro": "rad/s",
-    "accelerometer": "m/s^2",
-    "base_position": "m",
-    "base_orientation": "",
-    "base_velocity": "m/s",
-    CONTACT: "N",
-}
-"""By signal."""
 SCHEMA_KEY = b"hyperleg"
 """Of the Parquet schema's metadata."""
-MAX_VALUES = 32 * 1024 * 1024
-"""Numbers that one log may hold (256 MiB, half an hour of 100 columns at 200 Hz); of longer ones,
-blocks spread evenly are read."""
-BLOCK_ROWS = 16384
-"""Rows that are read or left out together, at full rate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +67,7 @@ class Log:
     def __post_init__(self) -> None:
         """Check."""
         time = _frozen(self.time, self.name, "t")
-        _check_clock(time, self.name)
+        check_clock(time, self.name)
         object.__setattr__(self, "time", time)
         signals = {}
         for column, values in self.signals.items():
@@ -257,37 +216,6 @@ class Log:
         return self.changed(metadata=self.metadata.remarked(*remarks)) if remarks else self
 
 
-def known_column(column: str) -> bool:
-    """Decide whether the log format has a column.
-
-    Args:
-        column: its full name.
-
-    Returns:
-        True if it has.
-    """
-    kind, slash, name = column.partition("/")
-    if kind in JOINT_SIGNALS or kind in MOTOR_SIGNALS:
-        return bool(name)
-    if kind in VECTOR_SIGNALS:
-        return name in VECTOR_SIGNALS[kind]
-    return (kind == CONTACT and len(name) > 2 and name[-2:] in ("_x", "_y", "_z")) or (
-        kind == BATTERY and not slash
-    )
-
-
-def unit(column: str) -> str:
-    """Look up the unit of a column.
-
-    Args:
-        column: its full name.
-
-    Returns:
-        The unit; empty without one.
-    """
-    return UNITS.get(column.partition("/")[0], "")
-
-
 def write_log(path: str | os.PathLike[str], log: Log) -> Path:
     """Write a log as one Parquet file, with its metadata inside.
 
@@ -309,15 +237,15 @@ def write_log(path: str | os.PathLike[str], log: Log) -> Path:
     schema_metadata = {SCHEMA_KEY: json.dumps(log.metadata.mapping(), allow_nan=False).encode()}
     table = pyarrow.table({"t": log.time, **log.signals}).replace_schema_metadata(schema_metadata)
     sink = pyarrow.BufferOutputStream()
-    pyarrow.parquet.write_table(table, sink, compression="zstd", row_group_size=BLOCK_ROWS)
+    pyarrow.parquet.write_table(table, sink, compression="zstd", row_group_size=blocks.BLOCK_ROWS)
     return write_bytes(path, sink.getvalue().to_pybytes())
 
 
 def read_log(path: str | os.PathLike[str]) -> Log:
     """Read a Parquet log and its side file `NAME.json`, whose fields take precedence.
 
-    Of recordings with more than `MAX_VALUES` numbers, only blocks spread evenly over the recording
-    are read, and a remark states this.
+    Of recordings with more than `blocks.MAX_VALUES` numbers, only blocks spread evenly over the
+    recording are read, and a remark states this.
 
     Args:
         path: of the file.
@@ -335,7 +263,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     path = Path(path)
     try:
         with pyarrow.parquet.ParquetFile(path) as file:
-            time, signals, remarks = _columns(file, path)
+            time, signals, remarks = parquet_columns(file, path)
             inside = (file.schema_arrow.metadata or {}).get(SCHEMA_KEY)
     except FileNotFoundError:
         raise InputError(str(path), "", None, "does not exist") from None
@@ -374,7 +302,7 @@ def finished_log(
         InputError: an unusable clock, or no position.
     """
     time, signals, more = tidied(time, signals, path.name)
-    _check_clock(time, path.name)
+    check_clock(time, path.name)
     if not any(
         column.startswith("position/") and np.isfinite(values).any()
         for column, values in signals.items()
@@ -411,180 +339,6 @@ def metadata_beside(path: Path, inside: Mapping[str, Any]) -> Metadata:
     return metadata_from_mapping(inside, path.name)
 
 
-def tidied(
-    time: np.ndarray, signals: Mapping[str, np.ndarray], name: str
-) -> tuple[np.ndarray, dict[str, np.ndarray], tuple[str, ...]]:
-    """Rows without a time left out, rows that repeat a time merged (two streams written at one
-    stamp), infinities made NaN.
-
-    Args:
-        time: `(t,)` [s].
-        signals: by column, `(t,)`.
-        name: of the file, for messages.
-
-    Returns:
-        Time, signals, and what was done.
-
-    Raises:
-        InputError: more than half of the rows repeat or lack a time: the clock is too coarse or
-        stands still.
-    """
-    time, remarks = np.asarray(time, float), []
-    signals = {column: np.asarray(values, float) for column, values in signals.items()}
-    known = np.isfinite(time)
-    infinite = sorted(column for column, values in signals.items() if np.isinf(values).any())
-    if infinite:
-        remarks.append(f"infinite values count as unknown: {', '.join(infinite[:6])}")
-        signals |= {
-            column: np.where(np.isinf(signals[column]), np.nan, signals[column])
-            for column in infinite
-        }
-    if not known.all():
-        if known.mean() < 0.5:
-            raise InputError(
-                name,
-                "t",
-                None,
-                f"is no number in {int((~known).sum())} of {len(known)} rows: expects a time in "
-                f"every row",
-            )
-        remarks.append(f"{int((~known).sum())} rows have no time and were left out")
-        time, signals = time[known], {column: values[known] for column, values in signals.items()}
-    first = np.concatenate([[True], np.diff(time) != 0])[: len(time)]
-    if first.all():
-        return time, signals, tuple(remarks)
-    repeats = int((~first).sum())
-    if repeats > len(time) / 2:
-        raise InputError(
-            name,
-            "t",
-            None,
-            f"repeats in {repeats} of {len(time)} rows: the clock is too coarse or stands still",
-        )
-    remarks.append(f"{repeats} rows repeat the time of the row before and were merged with it")
-    starts = np.flatnonzero(first)
-    ends = np.append(starts[1:], len(time))
-    merged = {column: values[starts] for column, values in signals.items()}
-    for later in range(1, int((ends - starts).max())):
-        row = np.minimum(
-            starts + later, ends - 1
-        )  # what the first of several rows does not know, a later one may
-        for column, values in signals.items():
-            merged[column] = np.where(np.isnan(merged[column]), values[row], merged[column])
-    return time[starts], merged, tuple(remarks)
-
-
-def chosen_blocks(rows: int, columns: int) -> np.ndarray:
-    """Choose which blocks of `BLOCK_ROWS` rows to read so that no more than `MAX_VALUES` numbers
-    are held.
-
-    Args:
-        rows: of the file.
-        columns: of the file.
-
-    Returns:
-        True for each block to read, `(blocks,)`.
-    """
-    blocks = -(-rows // BLOCK_ROWS)
-    most = max(1, MAX_VALUES // (BLOCK_ROWS * max(columns, 1)))
-    if blocks <= most:
-        return np.ones(blocks, bool)
-    chosen = np.zeros(blocks, bool)
-    chosen[np.arange(most) * blocks // most] = True
-    return chosen
-
-
-def shortened(rows: int, kept: int) -> str:
-    """Write the remark on a recording that is too long to be read whole.
-
-    Args:
-        rows: of the file.
-        kept: rows that were read.
-
-    Returns:
-        The remark.
-    """
-    return (
-        f"too long to be held in memory: {kept} of its {rows} rows were read, in blocks at "
-        f"full "
-        f"rate spread over the recording"
-    )
-
-
-def _columns(
-    file: pyarrow.parquet.ParquetFile, path: Path
-) -> tuple[np.ndarray, dict[str, np.ndarray], list[str]]:
-    import pyarrow
-
-    schema = file.schema_arrow
-    if "t" not in schema.names:
-        raise InputError(
-            path.name,
-            "t",
-            list(schema.names)[:6],
-            "is missing: expects the time in seconds in a column t",
-        )
-    wanted = ["t", *(c for c in schema.names if known_column(c))]
-    if len(set(wanted)) != len(wanted):
-        raise InputError(
-            path.name, next(c for c in wanted if wanted.count(c) > 1), None, "stands twice"
-        )
-    for column in wanted:
-        kind = schema.field(column).type
-        if not (
-            pyarrow.types.is_floating(kind)
-            or pyarrow.types.is_integer(kind)
-            or pyarrow.types.is_boolean(kind)
-            or pyarrow.types.is_null(kind)
-        ):
-            raise InputError(
-                path.name, column, str(kind), "is no column of numbers: expects floats"
-            )
-    rows = file.metadata.num_rows
-    if not rows:
-        raise InputError(path.name, "", None, "is an empty log: it has no rows")
-    others = [c for c in schema.names if c not in wanted and not c.startswith("__")]
-    remarks = (
-        [
-            f"columns that the format does not know were left out: "
-            f"{', '.join(others[:8])}{' ...' if len(others) > 8 else ''}"
-        ]
-        if others
-        else []
-    )
-    chosen = chosen_blocks(rows, len(wanted))
-    parts: dict[str, list[np.ndarray]] = {c: [] for c in wanted}
-    start = 0
-    for group in range(file.metadata.num_row_groups):
-        count = file.metadata.row_group(group).num_rows
-        if count and chosen[start // BLOCK_ROWS : (start + count - 1) // BLOCK_ROWS + 1].any():
-            first = start
-            for batch in file.iter_batches(
-                BLOCK_ROWS, row_groups=[group], columns=wanted, use_threads=False
-            ):
-                keep = chosen[(first + np.arange(batch.num_rows)) // BLOCK_ROWS]
-                first += batch.num_rows
-                if keep.any():
-                    for column in wanted:
-                        parts[column].append(_array(batch.column(column))[keep])
-        start += count
-    found = {c: np.concatenate(parts.pop(c)) for c in wanted}
-    time = found.pop("t")
-    if len(time) < rows:
-        remarks.append(shortened(rows, len(time)))
-    return time, found, remarks
-
-
-def _array(column: Any) -> np.ndarray:
-    import pyarrow
-
-    if pyarrow.types.is_null(column.type):
-        return np.full(len(column), np.nan)
-    return np.asarray(
-        column.cast(pyarrow.float64(), safe=False).to_numpy(zero_copy_only=False), float
-    )
-
-
 def _inside(content: bytes | None, path: Path) -> dict[str, Any]:
     if content is None:
         return {}
@@ -597,24 +351,6 @@ def _inside(content: bytes | None, path: Path) -> dict[str, Any]:
             path.name, "schema metadata hyperleg", found, "expects names with values, { ... }"
         )
     return found
-
-
-def _check_clock(time: np.ndarray, name: str) -> None:
-    if len(time) < 2:
-        raise InputError(name, "t", len(time), "is an empty log: expects at least two rows")
-    if not np.isfinite(time).all():
-        row = int(np.flatnonzero(~np.isfinite(time))[0])
-        raise InputError(name, "t", None, f"is no number in row {row}: expects a time in every row")
-    back = np.flatnonzero(np.diff(time) <= 0)
-    if len(back):
-        row = int(back[0]) + 1
-        found = f"{time[row]:.9g} s in row {row} after {time[row - 1]:.9g} s"
-        raise InputError(
-            name,
-            "t",
-            found,
-            "runs backwards or repeats: sort the rows, or split the recording there",
-        )
 
 
 def _frozen(values: Any, where: str, column: str) -> np.ndarray:

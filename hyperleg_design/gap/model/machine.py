@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.simulation.alteration import Machine
+from hyperleg_design.simulation.machine import Machine
 from hyperleg_design.simulation.two_mass import LIGHTEST
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model import robot_file
+from hyperleg_design.gap.model import file_drives, file_joints, robot_file
 from hyperleg_design.gap.model.mechanism import BASE, Mechanism, mechanism_of
 from hyperleg_design.gap.model.oracle import disagreements
 from hyperleg_design.gap.model.subject import Pad, Subject
@@ -151,8 +151,8 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
         )
     kept = every if known is None else known
     whole = robot_file.compiled(spec, path)
-    drives = robot_file.read_drives(whole, kept)
-    indices = [j for j in robot_file.single_joints(whole) if whole.joint(j).name in kept]
+    drives = file_drives.read_drives(whole, kept)
+    indices = [j for j in file_joints.single_joints(whole) if whole.joint(j).name in kept]
     notes += fold_into_joints(
         spec, fixed_tendons(whole, indices), [whole.joint(j).name for j in indices]
     )
@@ -179,8 +179,8 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     for tendon in drives.couplings:
         _add_tendon(spec, COUPLING.format(tendon.name), tree.joints, tendon)
     model = robot_file.compiled(spec, path)
-    coulomb, viscous = robot_file.friction(model)
-    spring, rest = robot_file.springs(model)
+    coulomb, viscous = file_joints.friction(model)
+    spring, rest = file_joints.springs(model)
     names = tuple(n for n, u in zip(drives.names, used, strict=True) if u)
     aliases = tuple(n for n, u in zip(drives.aliases, used, strict=True) if u)
     unlimited = np.full(len(names), np.inf)
@@ -232,8 +232,8 @@ def _assembled(
     **v: Any,
 ) -> Subject:
     count = tree.count
-    robot_file.take_out_friction(model)
-    low, high = robot_file.limits(model)
+    file_joints.take_out_friction(model)
+    low, high = file_joints.limits(model)
     notes = list(v["notes"])
     if v["held"]:
         notes.append(

@@ -13,7 +13,8 @@ import numpy as np
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.evaluate import evaluate_many
 from hyperleg_design.evaluation.measures import measure_of
-from hyperleg_design.gap.playback.replay import best_input, replay, short_windows
+from hyperleg_design.gap.playback.replay import best_input, replay
+from hyperleg_design.gap.playback.windows import short_windows
 
 if TYPE_CHECKING:
     from pathlib import Path

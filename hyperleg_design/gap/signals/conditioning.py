@@ -15,7 +15,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.frozen import frozen
-from hyperleg_design.gap.model import friction, rigid
+from hyperleg_design.gap.model import friction, pads, rigid
 from hyperleg_design.gap.model.supply import over_nominal
 from hyperleg_design.gap.signals import contact, transmission
 from hyperleg_design.gap.signals.base_motion import base_motion
@@ -124,7 +124,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     )
     residual: dict[str, np.ndarray] = {}
     if ground.pad_force is not None:
-        pushed, wrench = rigid.contact_torque(
+        pushed, wrench = pads.contact_torque(
             subject,
             motion.value,
             None if base is None else base.rotation,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.pads import pad_points
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
@@ -148,7 +148,7 @@ def _foot_chain(subject: Subject, foot: int) -> list[int]:
 
 def _may_touch(subject: Subject, position: np.ndarray, base: BaseMotion) -> np.ndarray:
     """Feet near the lowest one, by forward kinematics."""
-    points = rigid.pad_points(subject, position, base.rotation)
+    points = pad_points(subject, position, base.rotation)
     height = np.einsum("ti,tpi->tp", base.rotation[:, 2], points)
     of_foot = np.array([p.foot for p in subject.pads])
     lowest = np.stack([height[:, of_foot == f].min(1) for f in range(len(subject.feet))], 1)

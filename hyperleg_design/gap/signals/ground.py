@@ -31,7 +31,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model import pads
 from hyperleg_design.gap.signals.contact import TOUCHING_FORCE
 
 if TYPE_CHECKING:
@@ -284,13 +284,13 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
     if signals.contact is None or base is None or not subject.pads:
         return ()
     relative = np.einsum(
-        "tij,tpj->tpi", base.rotation, rigid.pad_points(subject, signals.position, base.rotation)
+        "tij,tpj->tpi", base.rotation, pads.pad_points(subject, signals.position, base.rotation)
     )
     points = base.position[:, None] + relative
     velocity = np.einsum("tij,tj->ti", base.rotation, base.linear_velocity)[:, None] + np.gradient(
         relative, signals.step, axis=0
     )
-    velocity += rigid.pad_rolling(subject, signals.position, base.rotation, signals.step)
+    velocity += pads.pad_rolling(subject, signals.position, base.rotation, signals.step)
     of_foot = np.array([p.foot for p in subject.pads])
     found = []
     for index in range(len(subject.feet)):

@@ -8,7 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.model.rigid import regressor, regressors
+from hyperleg_design.gap.model.inertial_regressor import regressor, regressors
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals

@@ -11,14 +11,14 @@ import numpy as np
 
 from hyperleg_design.gap.effects import LOOK_ALIKES
 from hyperleg_design.gap.experiments import information as info
-from hyperleg_design.gap.experiments.excite import CLEAR, hidden, inseparable
+from hyperleg_design.gap.experiments.designed_experiment import CLEAR, hidden, inseparable
 from hyperleg_design.report.style import figure_style, save
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from hyperleg_design.gap.experiments.excite import Experiment
+    from hyperleg_design.gap.experiments.designed_experiment import Experiment
 
 MOST_DRAWN = 7
 """Joints drawn of a robot with more: one leg's."""
@@ -120,7 +120,7 @@ def _pair_rows(
     """How far each kind of pair is told apart, at the worst of the joints at which both show by all
     motions together.
     """
-    from hyperleg_design.gap.experiments.excite import apart
+    from hyperleg_design.gap.experiments.pair import apart
 
     whole, blocks = experiment.gram(), experiment.blocks
     rows = []

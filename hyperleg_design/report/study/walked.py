@@ -10,7 +10,7 @@ from hyperleg_design.report.study.context import Made
 from hyperleg_design.report.sweep.trials import evaluated_content
 from hyperleg_design.sweep.run import run_sweep
 from hyperleg_design.sweep.stored import Stored, rerun, stored, stored_names
-from hyperleg_design.sweep.trial_runs import plan
+from hyperleg_design.sweep.trial_plan import plan
 
 if TYPE_CHECKING:
     from hyperleg_design.report.study.context import Context

@@ -16,7 +16,7 @@ from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.posture import default_angles, link_poses, lowest_point
 from hyperleg_design.robot.tree import build_tree
 from hyperleg_design.sweep.axis import Axis
-from hyperleg_design.sweep.space import Map, Sweep
+from hyperleg_design.sweep.definition import Map, Sweep
 
 MOST_POINTS = 1500
 """Designs of a page's explorer; of larger sweeps those of the fronts and maps and an even sample

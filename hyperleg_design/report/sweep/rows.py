@@ -9,10 +9,10 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.sweep import measures
 from hyperleg_design.sweep.axis import Axis
+from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.evaluate import Columns
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.run import SweepResult
-from hyperleg_design.sweep.space import Sweep
 
 
 def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:

@@ -12,10 +12,19 @@ import numpy as np
 from hyperleg_design.report.page import Details, Explorer, Page, Section, Table, render
 from hyperleg_design.report.sweep.explorer import explorer
 from hyperleg_design.report.sweep.page import sweep_content
-from hyperleg_design.report.text import table as text_table
+from hyperleg_design.report.sweep.trials_text import (
+    best_text,
+    design_cells,
+    design_heads,
+    policies_of,
+    policy_kind,
+    policy_text,
+    unsimulated_text,
+    with_interval,
+)
 from hyperleg_design.sweep import registry
-from hyperleg_design.sweep.space import Map, Sweep
-from hyperleg_design.sweep.trial_runs import REJECTED, TRIALS
+from hyperleg_design.sweep.definition import Map, Sweep
+from hyperleg_design.sweep.trial_runs import TRIALS
 from hyperleg_design.sweep.trial_table import (
     SHOWN,
     best,
@@ -162,54 +171,6 @@ def objectives_of(sweep: Sweep, designs: pd.DataFrame) -> tuple[str, ...]:
     return own or tuple(n for n in DEFAULT_OBJECTIVES if n in designs)
 
 
-def policies_of(trials: pd.DataFrame) -> list[dict[str, Any]]:
-    """List the policies that ran, whether they were trained for what they ran on, and on how many
-    designs.
-
-    Args:
-        trials: one row for each trial.
-
-    Returns:
-        `protocol`, `variant`, `trained`, `policies`, `designs`.
-    """
-    run = trials[trials["trial"] >= 0]
-    rows = []
-    keys = ["protocol", "variant", "trained"]
-    for (protocol, variant, trained), own in run.groupby(keys, sort=False):
-        rows.append(
-            {
-                "protocol": str(protocol),
-                "variant": str(variant),
-                "trained": str(trained),
-                "policies": sorted(own["policy"].unique().tolist()),
-                "designs": int(own["sample"].nunique()),
-            }
-        )
-    return rows
-
-
-def policy_text(trials: pd.DataFrame) -> str:
-    """Describe which policies ran on how many designs, and what their numbers mean.
-
-    Args:
-        trials: one row for each trial.
-
-    Returns:
-        The text.
-    """
-    parts = [
-        f"{row['protocol']}, {row['variant']}: {row['designs']} designs {row['trained']} "
-        f"({len(row['policies'])} {'policy' if len(row['policies']) == 1 else 'policies'})"
-        for row in policies_of(trials)
-    ]
-    return (
-        "; ".join(parts)
-        + ". A zero-shot policy was trained on another design than it walks here; one that is "
-        "trained for the design may do better on it. Measures are over the trials that did not "
-        "fall; intervals over policies and trials."
-    )
-
-
 def _policy_table(sweep: Sweep, designs: pd.DataFrame, protocols: list[str]) -> list[Any]:
     rows = []
     for protocol in protocols:
@@ -287,14 +248,14 @@ def _front_tables(sweep: Sweep, fronts: pd.DataFrame, objectives: tuple[str, ...
         return ["No design walks without falling more often than in one of 20 trials."]
     rows = [
         [
-            *_identity(sweep, row),
-            *(_with_interval(row, name) for name in objectives),
+            *design_cells(sweep, row),
+            *(with_interval(row, name) for name in objectives),
             bool(row["on_front"]),
             row["front_probability"],
         ]
         for _, row in fronts.head(_MOST_FRONT).iterrows()
     ]
-    heads = [*_identity_heads(sweep), *map(registry.label, objectives)]
+    heads = [*design_heads(sweep), *map(registry.label, objectives)]
     return [
         Table(
             [*heads, "on the front of the means", "probability of the front"],
@@ -313,87 +274,15 @@ def _best_tables(
     rows = [
         [
             registry.label(row["by"]),
-            *_identity(sweep, row),
-            *(_with_interval(row, name) for name in objectives),
-            _trained(row),
+            *design_cells(sweep, row),
+            *(with_interval(row, name) for name in objectives),
+            policy_kind(row),
             command,
         ]
         for (_, row), command in zip(chosen.iterrows(), commands, strict=True)
     ]
-    heads = ["best by", *_identity_heads(sweep), *map(registry.label, objectives)]
+    heads = ["best by", *design_heads(sweep), *map(registry.label, objectives)]
     return [Table([*heads, "policy is", "build this one"], rows)]
-
-
-def unsimulated_text(trials: pd.DataFrame) -> str:
-    """Count the designs that no trial could be run on, for a terminal.
-
-    Args:
-        trials: of `run_trials`.
-
-    Returns:
-        A line for each reason; empty where all designs were simulated.
-    """
-    refused = trials[trials["outcome"] == REJECTED].drop_duplicates(["sample", "variant"])
-    counts = refused["reason"].value_counts()
-    return "".join(f"{count} cannot be simulated: {reason}\n" for reason, count in counts.items())
-
-
-def best_text(
-    sweep: Sweep, chosen: pd.DataFrame, objectives: tuple[str, ...], commands: list[str]
-) -> str:
-    """Describe the best design by each objective, for a terminal.
-
-    Args:
-        sweep: the definition.
-        chosen: rows of the best designs.
-        objectives: names of the measures.
-        commands: that build the designs.
-
-    Returns:
-        The text.
-    """
-    if chosen.empty:
-        return "no design walks without falling"
-    firsts = chosen.drop_duplicates("by")
-    rows = [
-        [
-            row["by"],
-            *map(str, _identity(sweep, row)),
-            *(_with_interval(row, name) for name in objectives),
-            _trained(row),
-        ]
-        for _, row in firsts.iterrows()
-    ]
-    heads = ["best by", *_identity_heads(sweep), *objectives, "policy is"]
-    build = [f"build this one: {commands[int(i)]}" for i in firsts.index]
-    return "\n".join([text_table(heads, rows), *build])
-
-
-def _identity_heads(sweep: Sweep) -> list[str]:
-    return ["sample", "variant", *(axis.label for axis in sweep.axes)]
-
-
-def _identity(sweep: Sweep, row: Any) -> list[Any]:
-    values = [row[axis.name] for axis in sweep.axes]
-    return [
-        int(row["sample"]),
-        str(row["variant"]),
-        *(float(f"{v:.4g}") if isinstance(v, float) else str(v) for v in values),
-    ]
-
-
-def _trained(row: Any) -> str:
-    kinds = [row[c] for c in row.index if c.endswith(".policy") and isinstance(row[c], str)]
-    outside = [row[c] for c in row.index if c.endswith(".outside") and isinstance(row[c], str)]
-    kind = ", ".join(dict.fromkeys(kinds))
-    return f"{kind} (outside the trained range)" if any(outside) else kind
-
-
-def _with_interval(row: Any, name: str) -> str:
-    text = f"{row[name]:.4g}"
-    if f"{name}.low" in row and np.isfinite(row[f"{name}.low"]):
-        text += f" [{row[f'{name}.low']:.4g}, {row[f'{name}.high']:.4g}]"
-    return text
 
 
 def _plain(designs: pd.DataFrame, columns: list[str]) -> list[dict[str, Any]]:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import importlib.util
 import io
-import socket
 import threading
 import time
 from collections.abc import Mapping
@@ -15,15 +13,13 @@ import numpy as np
 
 from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.report.viewer import charts
+from hyperleg_design.report.viewer.masses import masses_text
+from hyperleg_design.report.viewer.needs import check_installed, check_port
 from hyperleg_design.report.viewer.scene import RobotView
 from hyperleg_design.report.viewer.sliders import HIGHEST, LOWEST, changed, parameters_of
-from hyperleg_design.robot import limb_masses
 from hyperleg_design.robot.dimensions import total_mass
-from hyperleg_design.robot.masses import mass_table
-from hyperleg_design.robot.names import SEGMENTS
 from hyperleg_design.robot.posture import default_angles, link_poses, lowest_point
 from hyperleg_design.robot.tree import build_tree
-from hyperleg_design.robot.tree_design import TreeDesign
 from hyperleg_design.simulation.layout import GRAVITY
 
 if TYPE_CHECKING:
@@ -40,46 +36,6 @@ _GAP = 0.9
 """Between two robots, over the taller one's height [-]."""
 _CELL, _SECTION = (215, 218, 224), (180, 185, 195)
 """Colours of the floor's lines in the light scheme."""
-
-
-def check_installed() -> None:
-    """Whether the packages of the extra `view` are there.
-
-    Raises:
-        InputError: one is missing.
-    """
-    missing = [name for name in ("viser", "plotly") if importlib.util.find_spec(name) is None]
-    if missing:
-        raise InputError(
-            "view", "", None, f"needs {' and '.join(missing)}: pip install 'hyperleg-design[view]'"
-        )
-
-
-def check_port(host: str, port: int) -> None:
-    """Check that a server can listen on a port.
-
-    Args:
-        host: address.
-        port: number of the port.
-
-    Raises:
-        InputError: the port is taken or not allowed, or the host is not this machine's.
-    """
-    try:
-        family, kind, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-        with socket.socket(family, kind) as probe:
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            probe.bind(address)
-    except socket.gaierror:
-        raise InputError("view", "--host", host, "is no address of this machine") from None
-    except OSError as error:
-        raise InputError(
-            "view",
-            "--port",
-            port,
-            f"cannot be listened on ({(error.strerror or str(error)).lower()}); choose another "
-            "with --port",
-        ) from None
 
 
 class Viewer:
@@ -379,32 +335,3 @@ def _height(design: RobotDesign) -> float:
         for link in tree.links
     )
     return max(top - lowest_point(tree, poses), 0.2) * 1.15
-
-
-def masses_text(designs: Mapping[str, RobotDesign]) -> str:
-    """Write the masses of some designs beside each other, as a Markdown table [kg].
-
-    Args:
-        designs: one robot each, by label.
-
-    Returns:
-        The table.
-    """
-    columns = {label: _masses(design) for label, design in designs.items()}
-    rows = list(dict.fromkeys(name for column in columns.values() for name in column))
-    head = ["mass [kg]", *columns]
-    lines = [head, ["---", *["---:"] * len(columns)]]
-    for name in rows:
-        cells = (column.get(name) for column in columns.values())
-        lines.append([name, *("" if cell is None else f"{cell:.3f}" for cell in cells)])
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def _masses(design: RobotDesign) -> dict[str, float]:
-    if isinstance(design, TreeDesign):
-        table = limb_masses.limb_masses(design)
-        links = {name.replace("_", " "): float(body.mass) for name, body in table.links.items()}
-        return links | {"one limb": float(table.limb), "**robot**": float(table.total)}
-    own: Any = mass_table(design)  # type: ignore[arg-type]
-    parts = {name: float(getattr(own, name)) for name in SEGMENTS}
-    return parts | {"one leg": float(own.leg), "**robot**": float(own.total)}

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
-from hyperleg_design.evaluation.result import Evaluation, trial_table
+from hyperleg_design.evaluation.result import Evaluation
+from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.robustness import CONDITIONS, robustness
 from hyperleg_design.evaluation.shipped import Shipped, check_different, shipped_policies
 from hyperleg_design.evaluation.versus_paper import VARIANTS

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design import provenance
-from hyperleg_design.evaluation.result import write_results
+from hyperleg_design.evaluation.result_tables import write_results
 from hyperleg_design.report import page as pages
 from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Page, Section

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.gap.playback.replay import LONGEST_STEP, Plant, whole_log
+from hyperleg_design.gap.playback.plant import Plant
+from hyperleg_design.gap.playback.replay import LONGEST_STEP
+from hyperleg_design.gap.playback.windows import whole_log
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.model.rig_spec import rig_spec
-from hyperleg_design.gap.playback.replay import whole_log
+from hyperleg_design.gap.playback.windows import whole_log
 from hyperleg_design.validation.baselines.population import held_targets
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model.rig_spec import SENSOR, rig_spec
-from hyperleg_design.gap.playback.replay import whole_log
+from hyperleg_design.gap.playback.windows import whole_log
 from hyperleg_design.validation.baselines.drive_set import KINDS, Fitted, check_logs
 from hyperleg_design.validation.baselines.population import held_targets
 from hyperleg_design.validation.baselines.rollout import STEP

@@ -18,7 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.plant_rig import SETTLING, RigPlant, Trace
+from hyperleg_design.validation.blind.plant import RigPlant, Trace
+from hyperleg_design.validation.blind.plant_rig import SETTLING
 
 STEP = 0.2e-3
 """Of the integrator [s]."""

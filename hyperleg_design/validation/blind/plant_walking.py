@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.validation.blind.chain import Chain
-from hyperleg_design.validation.blind.plant_rig import BRISTLE_DAMPING, RigPlant
+from hyperleg_design.validation.blind.plant import RigPlant
+from hyperleg_design.validation.blind.plant_rig import BRISTLE_DAMPING
 
 STEP = 0.25e-3
 """Of the integrator [s]."""

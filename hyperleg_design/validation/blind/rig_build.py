@@ -10,7 +10,7 @@ import numpy as np
 
 from hyperleg_design.validation.blind.chain import GRAVITY, Chain
 from hyperleg_design.validation.blind.nuisance import Nuisance, built
-from hyperleg_design.validation.blind.plant_rig import RigPlant
+from hyperleg_design.validation.blind.plant import RigPlant
 from hyperleg_design.validation.blind.wrong import Wrong
 
 BELT_DAMPING = 0.05

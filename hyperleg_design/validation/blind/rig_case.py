@@ -6,16 +6,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.validation.blind import excitation
+from hyperleg_design.validation.blind.case import Case
 from hyperleg_design.validation.blind.chain import Chain, chain
+from hyperleg_design.validation.blind.drawing import draw
 from hyperleg_design.validation.blind.nuisance import Nuisance, of_day, of_robot
 from hyperleg_design.validation.blind.plan import Plan
+from hyperleg_design.validation.blind.plant import Trace
 from hyperleg_design.validation.blind.plant_other import BELT_STIFFNESS, simulate_other
-from hyperleg_design.validation.blind.plant_rig import Trace, simulate
+from hyperleg_design.validation.blind.plant_rig import simulate
 from hyperleg_design.validation.blind.recorder import Recorder, record
 from hyperleg_design.validation.blind.residual import multiple, residual
 from hyperleg_design.validation.blind.rig_build import Reach, build_rig
@@ -36,39 +39,9 @@ CALMED, SMALLER = 6, 0.6
 """Attempts to record a rig that stays whole, each with effects so much smaller."""
 FEWEST_MULTIPLES = 0.8
 """Share of the planned multiple that a place must reach."""
-SIGNED = (
-    "torque_constant",
-    "transmission_ratio",
-    "encoder_offset",
-    "controller_gain",
-    "link_mass",
-    "sensor_drift",
-    "cross_coupling",
-)
-"""Effects whose size may be negative."""
 SOFTER = (0.7, 0.4)
 """Gains of a coupled leg on the second plant over its data sheet's: encoders on the rotors bear no
 more."""
-
-
-@dataclass(frozen=True, eq=False)
-class Case:
-    """A case ready to be written."""
-
-    plan: Plan
-    robot: str
-    """Name or file for the diagnosis."""
-    mjcf: str | None
-    """Content of that file."""
-    logs: tuple[Log, ...]
-    references: tuple[Log, ...]
-    wrongs: tuple[Wrong, ...]
-    multiples: tuple[float, ...]
-    """Reached, an effect each, on the case's own logs."""
-    parameters: tuple[dict[str, float], ...]
-    """In physical units, an effect each; see `truth.parameters`."""
-    also: tuple[tuple[str, ...], ...]
-    """Names that count as the place, an effect each."""
 
 
 def rig_case(plan: Plan) -> Case:
@@ -311,93 +284,3 @@ def reach_of(traces: Sequence[Trace]) -> Reach:
         np.max([np.percentile(np.abs(t.command), 99.5, axis=0) for t in traces], 0),
         np.max([np.abs(t.motor_velocity).max(0) for t in traces], 0),
     )
-
-
-def draw(robot: Chain, effect: str, rng: np.random.Generator, taken: Sequence[str] = ()) -> Wrong:
-    """An effect at a drawn place with drawn shape; its size is only a sign yet."""
-    from hyperleg_design.validation.blind.truth import KIND
-
-    kind = KIND[effect]
-    motors = robot.joints if robot.diagonal else robot.motors
-    names: Sequence[str] = {
-        "joint": robot.joints,
-        "motor": motors,
-        "link": tuple(link.name for link in robot.links),
-        "robot": ("robot",),
-        "battery": ("battery",),
-    }[kind]
-    free = [n for n in names if n not in taken] or list(names)
-    if effect == "payload":
-        tips = set(range(len(robot.links))) - {link.parent for link in robot.links}
-        free = [robot.links[i].name for i in sorted(tips)]
-    location = str(rng.choice(free))
-    shape: dict[str, float] = {}
-    if effect == "payload":
-        link = next(link for link in robot.links if link.name == location)
-        place = 1.5 * link.com + rng.normal(0, 0.01, 3)
-        shape = dict(zip("xyz", place.tolist(), strict=True))
-    elif effect == "link_com":
-        way = rng.standard_normal(3)
-        shape = dict(zip("xyz", (way / np.linalg.norm(way)).tolist(), strict=True))
-    elif effect == "stribeck_friction":
-        shape = {"speed": float(rng.uniform(0.05, 0.25))}
-    elif effect == "controller_gain":
-        shape = [
-            {"stiffness": 1.0, "damping": 0.0},
-            {"stiffness": 0.0, "damping": 1.0},
-            {"stiffness": 1.0, "damping": 1.0},
-        ][int(rng.integers(3))]
-    elif effect == "cogging":
-        matrix = np.abs(robot.joint_from_motor)
-        column = list(motors).index(location)
-        # Periods a turn of the rotor behind gears; of a servo's output, teeth.
-        order = (
-            float(rng.integers(6, 30))
-            if matrix[:, column].max() == 1
-            else float(rng.integers(1, 4))
-        )
-        shape = {"order": order, "phase": float(rng.uniform(-np.pi, np.pi))}
-    elif effect == "joint_spring":
-        at = list(robot.joints).index(location)
-        shape = {"rest": float(robot.rest[at] + rng.uniform(-0.2, 0.2))}
-    elif effect == "tilted_gravity":
-        shape = {"heading": float(rng.uniform(-np.pi, np.pi))}
-    elif effect == "periodic_push":
-        shape = {"frequency": float(rng.uniform(0.4, 1.5))}
-    elif effect == "friction_patch":
-        shape = {"shift": float(rng.uniform(-0.1, 0.1))}
-    elif effect == "cross_coupling":
-        others = [i for i, name in enumerate(robot.joints) if name != location] or [0]
-        shape = {"other": float(rng.choice(others))}
-    sign = float(rng.choice([-1.0, 1.0])) if effect in SIGNED else 1.0
-    return Wrong(effect, location, sign, shape)
-
-
-def describe(case: Case) -> dict[str, Any]:
-    """Truth of a case for the key."""
-    plan = case.plan
-    return {
-        "case": f"{plan.index:03d}",
-        "kind": plan.kind,
-        "plant": plan.plant,
-        "robot": plan.robot,
-        "references": bool(case.references),
-        "torque": plan.recorder.torque,
-        "wrongs": [
-            {
-                "effect": w.effect,
-                "listed": w.listed,
-                "location": w.location,
-                "also": list(also),
-                "size": w.size,
-                "unit": SIZES[w.effect].unit if w.effect in SIZES else "",
-                "shape": dict(w.shape),
-                "parameters": values,
-                "wanted": wanted,
-                "multiple": reached,
-            }
-            for w, also, values, wanted, reached in zip(
-                case.wrongs, case.also, case.parameters, plan.multiples, case.multiples, strict=True
-            )
-        ],
-    }

@@ -16,41 +16,26 @@ import hashlib
 import json
 import os
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from hyperleg_design.errors import InputError
-from hyperleg_design.validation.blind.trial import CASES, DIAGNOSES, FAILED, KEY, read_seal
+from hyperleg_design.validation.blind.score_rows import (
+    Row,
+    calibration_row,
+    coverage_row,
+    median_row,
+    share_row,
+)
+from hyperleg_design.validation.blind.trial import DIAGNOSES, FAILED, KEY, read_seal
 from hyperleg_design.validation.blind.view import Miss, View
 from hyperleg_design.writing import write_json
 
 SCORED = "scored.json"
 SIZABLE = 2.0
 """Multiple of the floor from which a single cause must be found."""
-BINS = 5
-"""Of equal width, of the stated probability."""
-RESAMPLES = 4000
-"""Of the bootstrap."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """One line of the target table."""
-
-    measure: str
-    value: float | None
-    """None where no case speaks of it."""
-    low: float | None
-    high: float | None
-    """95 % interval: Wilson's for shares, bootstrap else."""
-    cases: int
-    target: str
-    reached: bool | None
-    """None where no case speaks of it or no target is set."""
 
 
 @dataclass(frozen=True)
@@ -221,54 +206,56 @@ def compared(
         [v for v in views if v.kind == k] for k in ("null", "outside", "compound")
     )
     rows = [
-        _share(
+        share_row(
             "right effect, single cause at >= 2 x floor, first", [v.first() for v in sizable], 0.90
         ),
-        _share("... or in one set with the first", [v.first(lenient=True) for v in sizable], None),
-        _share("... among the first two", [v.top_two() for v in sizable], 0.97),
-        _share(
+        share_row(
+            "... or in one set with the first", [v.first(lenient=True) for v in sizable], None
+        ),
+        share_row("... among the first two", [v.top_two() for v in sizable], 0.97),
+        share_row(
             "... first, of those no smaller than what the diagnosis says its logs show",
             [v.first() for v in shown],
             None,
         ),
-        _share("... among the first two, of the same", [v.top_two() for v in shown], None),
-        _share("... first, of those smaller than that", [v.first() for v in hidden], None),
-        _share("right location, where the effect is right", [v.located() for v in found], 0.95),
-        _share("... of all single causes at >= 2 x floor", [v.located() for v in sizable], None),
-        _share("false alarm when nothing is wrong", [v.alarm for v in null], 0.05, most=True),
-        _share(
+        share_row("... among the first two, of the same", [v.top_two() for v in shown], None),
+        share_row("... first, of those smaller than that", [v.first() for v in hidden], None),
+        share_row("right location, where the effect is right", [v.located() for v in found], 0.95),
+        share_row("... of all single causes at >= 2 x floor", [v.located() for v in sizable], None),
+        share_row("false alarm when nothing is wrong", [v.alarm for v in null], 0.05, most=True),
+        share_row(
             "unknown on effects outside the catalogue, at >= 2 x floor",
             [v.verdict == "unknown" for v in outside if v.multiple >= SIZABLE],
             0.80,
         ),
-        _share("... of any size", [v.verdict == "unknown" for v in outside], None),
-        _share(
+        share_row("... of any size", [v.verdict == "unknown" for v in outside], None),
+        share_row(
             "confident wrong cause on effects outside the catalogue",
             [v.verdict == "explained" for v in outside],
             None,
             most=True,
         ),
-        _share(
+        share_row(
             "both found when two act, each at >= 2 x floor",
             [v.all_found() for v in both if v.least >= SIZABLE],
             0.70,
         ),
-        _share(
+        share_row(
             "... at least one of them", [v.any_found() for v in both if v.least >= SIZABLE], None
         ),
-        _share("... both, of any size", [v.all_found() for v in both], None),
-        _calibration(views),
-        _coverage(found),
-        _median(
+        share_row("... both, of any size", [v.all_found() for v in both], None),
+        calibration_row(views),
+        coverage_row(found),
+        median_row(
             "excess gap closed on held-out logs, named single cause, median",
             [v.closed for v in sizable if v.first()],
             0.80,
         ),
-        _median("seconds a diagnosis, median", [s for s in seconds if s is not None], None),
-        _share(
+        median_row("seconds a diagnosis, median", [s for s in seconds if s is not None], None),
+        share_row(
             "diagnoses that raised an error", [v.verdict == FAILED for v in views], None, most=True
         ),
-        _share(
+        share_row(
             "right effect, single cause below 2 x floor, first",
             [v.first() for v in single if v.multiple < SIZABLE],
             None,
@@ -294,89 +281,6 @@ def compared(
     )
 
 
-def wilson(hits: int, cases: int) -> tuple[float, float]:
-    """95 % interval of a share (Wilson, 1927)."""
-    z = 1.959964
-    share = hits / cases
-    middle = (share + z * z / (2 * cases)) / (1 + z * z / cases)
-    half = (
-        z / (1 + z * z / cases) * np.sqrt(share * (1 - share) / cases + z * z / (4 * cases * cases))
-    )
-    return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
-
-
-def calibration_error(probability: np.ndarray, right: np.ndarray) -> float:
-    """Expected nuisance parameter: mean distance of stated probability and share of right ones over
-    `BINS` bins, weighted by cases.
-    """
-    place = np.minimum((probability * BINS).astype(int), BINS - 1)
-    return float(
-        sum(
-            abs(probability[place == k].mean() - right[place == k].mean()) * (place == k).mean()
-            for k in range(BINS)
-            if (place == k).any()
-        )
-    )
-
-
-def _share(measure: str, hits: Sequence[bool], target: float | None, *, most: bool = False) -> Row:
-    aim = "-" if target is None else f"{'<=' if most else '>='} {target:.0%}"
-    if not hits:
-        return Row(measure, None, None, None, 0, aim, None)
-    value = sum(hits) / len(hits)
-    reached = None if target is None else (value <= target if most else value >= target)
-    return Row(measure, value, *wilson(sum(hits), len(hits)), len(hits), aim, reached)
-
-
-def _calibration(views: Sequence[View]) -> Row:
-    stated = [(v.probability, v.right()) for v in views if v.probability is not None]
-    measure, aim = "expected calibration error of the stated probability", "<= 0.05"
-    if not stated:
-        return Row(measure, None, None, None, 0, aim, None)
-    probability, right = (
-        np.array([p for p, _ in stated], float),
-        np.array([r for _, r in stated], float),
-    )
-    value = calibration_error(probability, right)
-    low, high = _bootstrap(
-        len(stated), lambda rows: calibration_error(probability[rows], right[rows])
-    )
-    return Row(measure, value, low, high, len(stated), aim, value <= 0.05)
-
-
-def _coverage(views: Sequence[View]) -> Row:
-    groups = [held for v in views if (held := v.intervals())]
-    measure, aim = "95 % parameter intervals that hold the truth", "90-98 %"
-    if not groups:
-        return Row(measure, None, None, None, 0, aim, None)
-    value = float(np.mean(np.concatenate(groups)))
-    low, high = _bootstrap(
-        len(groups), lambda rows: float(np.mean(np.concatenate([groups[i] for i in rows])))
-    )
-    return Row(measure, value, low, high, len(groups), aim, 0.90 <= value <= 0.98)
-
-
-def _median(measure: str, values: Sequence[float | None], target: float | None) -> Row:
-    known = np.array([v for v in values if v is not None], float)
-    aim = "-" if target is None else f">= {target:.0%}"
-    if not known.size:
-        return Row(measure, None, None, None, 0, aim, None)
-    value = float(np.median(known))
-    low, high = _bootstrap(known.size, lambda rows: float(np.median(known[rows])))
-    return Row(
-        measure, value, low, high, known.size, aim, None if target is None else value >= target
-    )
-
-
-def _bootstrap(count: int, statistic: Callable[[np.ndarray], float]) -> tuple[float, float]:
-    rng = np.random.default_rng(0)
-    values = [
-        statistic(rng.integers(count, size=count))
-        for _ in range(RESAMPLES if count < 200 else RESAMPLES // 4)
-    ]
-    return float(np.percentile(values, 2.5)), float(np.percentile(values, 97.5))
-
-
 def _read(path: Path, otherwise: dict[str, Any]) -> dict[str, Any]:
     if not path.is_file():
         return otherwise
@@ -386,16 +290,3 @@ def _read(path: Path, otherwise: dict[str, Any]) -> dict[str, Any]:
 
 def _shown(value: float | None) -> str:
     return "-" if value is None else f"{value:.3g}"
-
-
-__all__ = [
-    "CASES",
-    "Miss",
-    "Row",
-    "Score",
-    "calibration_error",
-    "compared",
-    "open_key",
-    "score",
-    "wilson",
-]

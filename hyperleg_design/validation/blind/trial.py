@@ -215,7 +215,8 @@ def _name(plan: Plan) -> str:
 
 def _make_one(plan: Plan, making: str) -> str:
     from hyperleg_design.gap.logs.log import write_log
-    from hyperleg_design.validation.blind.rig_case import describe, rig_case
+    from hyperleg_design.validation.blind.case import describe
+    from hyperleg_design.validation.blind.rig_case import rig_case
     from hyperleg_design.validation.blind.walking_case import walking_case
 
     case = walking_case(plan) if plan.plant == "walking" else rig_case(plan)

@@ -6,12 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.validation.blind.case import Case
 from hyperleg_design.validation.blind.chain import GRAVITY, Chain, chain
+from hyperleg_design.validation.blind.drawing import draw
 from hyperleg_design.validation.blind.nuisance import Nuisance, built, of_day, of_robot
 from hyperleg_design.validation.blind.plan import Plan
 from hyperleg_design.validation.blind.plant_walking import (
@@ -19,14 +20,14 @@ from hyperleg_design.validation.blind.plant_walking import (
     Stand,
     WalkingPlant,
     WalkingTrace,
-    pad_names,
     simulate_walking,
     walking_model,
 )
 from hyperleg_design.validation.blind.recorder import Recorder
-from hyperleg_design.validation.blind.residual import CUTOFF, EDGE, SLOW, SOFT, multiple
 from hyperleg_design.validation.blind.rig_build import build_rig, tilted
-from hyperleg_design.validation.blind.rig_case import Case, draw, size_at
+from hyperleg_design.validation.blind.rig_case import size_at
+from hyperleg_design.validation.blind.walking_record import walking_log
+from hyperleg_design.validation.blind.walking_residual import shown
 from hyperleg_design.validation.blind.wrong import SIZES, WALKING_ONLY, Size, Wrong
 
 if TYPE_CHECKING:
@@ -44,12 +45,6 @@ ATTEMPTS = 3
 MILDER, MOTIONS = 3, 4
 """Times that an effect which fells the robot is made milder; sets of motions tried, as some are
 near a fall without any."""
-FORCE_NOISE = 0.6
-"""Of a pad's load cell [N]."""
-ESTIMATE = (4e-4, 3e-4, 4e-3)
-"""Noise of the base's estimated position [m], orientation [rad] and velocity [m/s]."""
-INERTIAL = (2e-3, 0.04)
-"""Noise of gyro [rad/s] and accelerometer [m/s^2]."""
 GROUND_SIZES = {
     "imu_bias": Size("of 1 rad/s (gyro) or 10 m/s^2 (accelerometer)", 0.003, 0.12),
     "ground_friction": Size("1 - true friction / nominal", 0.5, 0.9),
@@ -269,7 +264,7 @@ class _Walker:
         return (
             None
             if trace.fell
-            else _record(
+            else walking_log(
                 plant, trace, self.chain, self.recorder, np.random.default_rng(seed), name, metadata
             )
         )
@@ -381,187 +376,3 @@ def _ground_parameters(wrong: Wrong) -> dict[str, float]:
     if wrong.effect == "ground_friction":
         return {"scale": 1.0 - wrong.size}
     return {}
-
-
-def _record(
-    plant: WalkingPlant,
-    trace: WalkingTrace,
-    robot: Chain,
-    recorder: Recorder,
-    rng: np.random.Generator,
-    name: str,
-    metadata: dict[str, Any],
-) -> Log:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.logs.metadata import Metadata
-
-    ticks = np.arange(len(trace.targets)) / recorder.rate
-    read = np.clip(ticks + np.abs(rng.normal(0, recorder.jitter, ticks.size)), 0, trace.time[-1])
-    keep = rng.random(ticks.size) >= recorder.dropped
-    keep[[0, -1]] = True
-    written = read + rng.normal(0, recorder.clock, ticks.size)
-    keep[1:] &= np.diff(np.maximum.accumulate(written)) > 1e-5
-    place = read / (trace.time[1] - trace.time[0])
-    below = np.minimum(place.astype(int), trace.time.size - 2)
-    signals: dict[str, np.ndarray] = {}
-
-    def put(kind: str, names: Sequence[str], values: np.ndarray, noise: Any) -> None:
-        share = (place - below)[:, None]
-        at = values[below] * (1 - share) + values[below + 1] * share
-        at = at + rng.standard_normal(at.shape) * noise
-        signals.update({f"{kind}/{n}": at[keep, k] for k, n in enumerate(names)})
-
-    put("position", robot.joints, trace.encoder, recorder.position_noise)
-    put("velocity", robot.joints, trace.speed, recorder.velocity_noise)
-    put("motor_torque_command", robot.motors, trace.command, 0.0)
-    put("motor_torque", robot.motors, trace.drive_torque, recorder.torque_noise * robot.peak_torque)
-    put("gyro", "xyz", trace.gyro, INERTIAL[0])
-    put("accelerometer", "xyz", trace.accelerometer, INERTIAL[1])
-    put("base_position", "xyz", trace.base[:, :3], ESTIMATE[0])
-    put("base_orientation", "wxyz", trace.base[:, 3:7], ESTIMATE[1] / 2)
-    put("base_velocity", "xyz", trace.base[:, 7:], ESTIMATE[2])
-    for k, pad in enumerate(pad_names(plant.model)):
-        put("contact_force", [f"{pad}_{a}" for a in "xyz"], trace.contact[:, k], FORCE_NOISE)
-    signals.update(
-        {f"position_target/{j}": trace.targets[keep, k] for k, j in enumerate(robot.joints)}
-    )
-    length = np.sqrt(sum(signals[f"base_orientation/{a}"] ** 2 for a in "wxyz"))
-    for a in "wxyz":
-        signals[f"base_orientation/{a}"] = signals[f"base_orientation/{a}"] / length
-    known: dict[str, Any] = {
-        "robot": robot.robot,
-        "base": "floating",
-        "gains": {
-            j: (float(k), float(d))
-            for j, k, d in zip(robot.joints, robot.stiffness, robot.damping, strict=True)
-        },
-    }
-    return Log(name, written[keep], signals, Metadata(**{**known, **metadata}))
-
-
-def shown(effect: str, with_effect: Sequence[Log], clean: Sequence[Log], robot: Chain) -> float:
-    """How many times over the floor an effect shows: in the residuals, or, of the ground, in where
-    the base stands and how pads are loaded.
-    """
-    if effect in ("ground_friction", "ground_compliance"):
-        levels = []
-        for kind, noise in (
-            ("base_position", 2 * ESTIMATE[0]),
-            ("base_orientation", 2 * ESTIMATE[1]),
-        ):
-            for a in "wxyz" if kind == "base_orientation" else "xyz":
-                gaps = [
-                    np.interp(c.time, w.time, w.column(f"{kind}/{a}")) - c.column(f"{kind}/{a}")
-                    for w, c in zip(with_effect, clean, strict=True)
-                ]
-                levels.append(np.sqrt(np.mean(np.concatenate(gaps) ** 2)) / noise / 3.0)
-        return float(max(levels))
-    ours, theirs = (
-        [walking_residual(w, robot) for w in with_effect],
-        [walking_residual(c, robot) for c in clean],
-    )
-    lengths = [min(len(a), len(b)) for a, b in zip(ours, theirs, strict=True)]
-    return multiple(
-        [a[:k] for a, k in zip(ours, lengths, strict=True)],
-        [b[:k] for b, k in zip(theirs, lengths, strict=True)],
-    )
-
-
-@cache
-def _nominal() -> tuple[Any, list[tuple[str, str, np.ndarray]]]:
-    """Pinocchio model with a free base, and the pads: name, link and place in the link `(3,)`."""
-    from hyperleg_design.robot.design import load_design
-    from hyperleg_design.robot.mjcf import mujoco_model
-    from hyperleg_design.robot.models import rigid_body_model
-
-    design = load_design("hyperleg")
-    model = mujoco_model(design)
-    pads = [
-        (p, model.body(int(model.geom(p).bodyid[0])).name, model.geom(p).pos.copy())
-        for p in pad_names(model)
-    ]
-    return rigid_body_model(design), pads
-
-
-def walking_residual(log: Log, robot: Chain) -> np.ndarray:
-    """What the nominal model leaves over: base, joints and drives `(t, 6 + n + m)` [N, Nm],
-    filtered; NaN where a joint may stick.
-    """
-    import pinocchio as pin
-    from scipy.signal import butter, sosfiltfilt
-
-    rigid, pads = _nominal()
-    step = float(np.median(np.diff(log.time)))
-    time = np.arange(log.time[0], log.time[-1], step)
-    sos = butter(2, min(CUTOFF * 2 * step, 0.8), output="sos")
-
-    def even(kind: str, names: Sequence[str]) -> np.ndarray:
-        return np.stack([np.interp(time, log.time, log.column(f"{kind}/{n}")) for n in names], -1)
-
-    def smooth(values: np.ndarray) -> np.ndarray:
-        return np.asarray(sosfiltfilt(sos, values, axis=0))
-
-    raw = even("position", robot.joints)
-    position, turning, force = (
-        smooth(raw),
-        smooth(even("gyro", "xyz")),
-        smooth(even("accelerometer", "xyz")),
-    )
-    velocity = smooth(np.gradient(position, step, axis=0))
-    acceleration, spin = (
-        smooth(np.gradient(velocity, step, axis=0)),
-        np.gradient(turning, step, axis=0),
-    )
-    quaternion = smooth(even("base_orientation", "wxyz"))
-    measured = even("motor_torque", robot.motors)
-    command = even("motor_torque_command", robot.motors)
-    loads = smooth(even("contact_force", [f"{p}_{a}" for p, *_ in pads for a in "xyz"])).reshape(
-        len(time), len(pads), 3
-    )
-    links = list(dict.fromkeys(link for _, link, _ in pads))
-    gravity = rigid.model.gravity.linear.copy()
-    needed = np.empty((len(time), 6 + len(robot.joints)))
-    try:
-        rigid.model.gravity.linear = np.zeros(
-            3
-        )  # the accelerometer's specific force has gravity in it
-        for k in range(len(time)):
-            w, x, y, z = quaternion[k] / np.linalg.norm(quaternion[k])
-            world = pin.Quaternion(w, x, y, z).toRotationMatrix()
-            q = np.concatenate([np.zeros(3), [0, 0, 0, 1], position[k]])
-            row = rigid.inverse_dynamics(
-                q,
-                np.concatenate([np.zeros(3), turning[k], velocity[k]]),
-                np.concatenate([force[k], spin[k], acceleration[k]]),
-            )
-            for link in links:
-                jacobian = rigid.frame_jacobian(q, link)
-                frame = rigid.data.oMf[rigid.model.getFrameId(link)].rotation
-                for number, (_, owner, place) in enumerate(pads):
-                    if owner == link:
-                        push = world.T @ loads[k, number]
-                        row = row - jacobian.T @ np.concatenate(
-                            [push, np.cross(frame @ place, push)]
-                        )
-            needed[k] = row
-    finally:
-        rigid.model.gravity.linear = gravity
-    slow = np.abs(velocity) < SLOW
-    joints = (
-        measured @ robot.joint_from_motor.T
-        - needed[:, 6:]
-        - robot.coulomb * np.tanh(velocity / SOFT)
-        - robot.viscous * velocity
-    )
-    asked = (
-        robot.stiffness * (even("position_target", robot.joints) - raw)
-        - robot.damping * even("velocity", robot.joints)
-    ) @ np.linalg.pinv(robot.joint_from_motor).T
-    rows = [
-        smooth(-needed[:, :6]),
-        np.where(slow, np.nan, smooth(joints)),
-        smooth(measured - asked),
-        smooth(command - asked)[:, :0],
-    ]
-    cut = round(EDGE / step)
-    return np.concatenate(rows, -1)[cut:-cut]

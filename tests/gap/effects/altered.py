@@ -6,7 +6,7 @@ import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.playback.replay import Plant
+from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.gap.signals.conditioning import condition
 
 TICK, SUBSTEPS = 0.005, 5

@@ -14,17 +14,6 @@ def test_load_is_the_torque_of_the_link_alone(pendulum):
     assert np.abs(belt.load(signals, 0) - needed)[away].max() < 0.02 * np.abs(needed).max()
 
 
-def test_stretch_is_compliance_times_load_and_play_is_bounded(pendulum):
-    signals = pendulum(Wrong())
-    compliance = np.array([0.0, 0.01, 0.02])
-    found = belt.stretch(signals, belt.load(signals, 0), 0, compliance, np.zeros(3))
-    np.testing.assert_allclose(found, compliance[:, None] * belt.load(signals, 0))
-    slack = belt.slack(signals, 0, np.array([0.0, 0.02]), np.zeros(2), np.ones(2))
-    assert np.abs(slack[0]).max() == 0
-    assert np.abs(slack[1]).max() == 0.01
-    assert np.mean(np.abs(slack[1]) > 0.0099) > 0.5
-
-
 def test_a_belt_that_stiffens_stretches_by_the_root_of_its_cubic(pendulum):
     signals = pendulum(Wrong())
     load, compliance, stiffening = (
@@ -72,30 +61,6 @@ def test_friction_before_a_belt_is_in_neither_its_load_nor_what_stretches_it(pen
         )  # all but what is too fast for belts
 
 
-def test_a_joint_left_behind_in_its_play_is_slowed_by_its_own_friction(pendulum):
-    slow = (15.0, 0.5)
-    subject = dataclasses.replace(pendulum(Wrong(), gains=slow).subject, coulomb=np.array([0.5]))
-    rubbing = condition(run(Wrong(coulomb=0.5, play=0.04, motor_side=True), gains=slow), subject)
-    gliding = pendulum(Wrong(play=0.04, motor_side=True), gains=slow)
-    width, on, off = np.full(1, 0.04), np.ones(1), np.zeros(1)
-
-    def left(signals, behind):
-        return misfit(
-            signals,
-            belt.trace(
-                signals, 0, belt.slack(signals, 0, width, on, on, behind), on, behind=behind
-            ),
-        )
-
-    assert left(rubbing, on) < 0.8 * left(rubbing, off)
-    assert left(gliding, off) < 0.5
-    np.testing.assert_allclose(
-        belt.slack(gliding, 0, width, on, on, on),
-        belt.slack(gliding, 0, width, on, on, off),
-        atol=1e-12,
-    )  # it has none
-
-
 def test_side_one_is_another_posture(pendulum):
     signals = pendulum(Wrong())
     moved = np.full((1, len(signals.time)), 0.02)
@@ -110,19 +75,6 @@ def test_side_one_is_another_posture(pendulum):
     )
     np.testing.assert_allclose(found, expected, atol=1e-6)
     assert np.abs(belt.trace(signals, 0, moved, np.zeros(1))["motion"]).max() < 1e-9
-
-
-def test_a_rotor_that_does_not_coast_lies_where_the_load_pushes_it(pendulum):
-    signals = pendulum(Wrong())
-    pushed, half = (
-        belt.slack(signals, 0, np.full(1, 0.02), np.zeros(1), np.full(1, c))[0] for c in (0.0, 0.5)
-    )
-    load = belt.load(signals, 0)
-    heavy = np.abs(load) > 1.5 * np.sqrt(np.mean(load**2))
-    assert heavy.any()
-    np.testing.assert_allclose(pushed[heavy], 0.01 * np.sign(load[heavy]), atol=0.002)
-    coasts = belt.slack(signals, 0, np.full(1, 0.02), np.zeros(1), np.ones(1))[0]
-    np.testing.assert_allclose(half, (pushed + coasts) / 2, atol=1e-12)
 
 
 def test_a_rotors_own_speed_tells_what_it_gives_its_belt(pendulum):

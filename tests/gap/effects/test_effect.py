@@ -155,7 +155,8 @@ def test_unknown_places_are_refused(name, signals):
 
 @pytest.mark.parametrize("name", FIXED)
 def test_nulls_change_no_simulation(name, pendulum):
-    from hyperleg_design.gap.playback.replay import replay, short_windows
+    from hyperleg_design.gap.playback.replay import replay
+    from hyperleg_design.gap.playback.windows import short_windows
 
     one = effect(name)
     signals = pendulum(Wrong(), duration=4.0, sees=())

@@ -9,14 +9,9 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.experiments import excite as module
 from hyperleg_design.gap.experiments import information as info
-from hyperleg_design.gap.experiments.excite import (
-    CLEAR,
-    apart,
-    design_experiment,
-    excite,
-    fixed_subject,
-    inseparable,
-)
+from hyperleg_design.gap.experiments.designed_experiment import CLEAR, inseparable
+from hyperleg_design.gap.experiments.excite import design_experiment, excite, fixed_subject
+from hyperleg_design.gap.experiments.pair import apart
 from hyperleg_design.gap.signals.loading import load_subject
 
 
@@ -139,6 +134,20 @@ def test_same_seed_gives_the_same_bytes(made, tmp_path):
         assert (tmp_path / name).read_bytes() == (made.out / name).read_bytes()
 
 
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [
+        ({"rate": 5.0}, "rate"),
+        ({"noise": 0.0}, "noise"),
+        ({"kinds": "xlsx"}, "format"),
+        ({"base": "floating"}, "fixed"),
+    ],
+)
+def test_bad_input_is_refused(made, tmp_path, options, match):
+    with pytest.raises(InputError, match=match):
+        excite(made.path, tmp_path, **options)
+
+
 def test_greedy_choice_on_a_made_up_case():
     # three effects of one parameter; motion b shows two of them in half the time, c the third, a
     # only what b shows
@@ -154,20 +163,6 @@ def test_greedy_choice_on_a_made_up_case():
 
     grams = {"a": shows(0), "b": shows(0, 1), "c": shows(2)}
     assert module.shortest_set(grams, {"a": 10.0, "b": 5.0, "c": 20.0}, blocks, ()) == ("b", "c")
-
-
-@pytest.mark.parametrize(
-    ("options", "match"),
-    [
-        ({"rate": 5.0}, "rate"),
-        ({"noise": 0.0}, "noise"),
-        ({"kinds": "xlsx"}, "format"),
-        ({"base": "floating"}, "fixed"),
-    ],
-)
-def test_bad_input_is_refused(made, tmp_path, options, match):
-    with pytest.raises(InputError, match=match):
-        excite(made.path, tmp_path, **options)
 
 
 def test_a_floating_robot_is_put_on_a_rig():

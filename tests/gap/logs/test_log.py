@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.logs import log as logs
-from hyperleg_design.gap.logs.log import Log, known_column, read_log, tidied, write_log
+from hyperleg_design.gap.logs.log import Log, read_log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
 
 
@@ -96,24 +95,6 @@ def test_vectors_feet_and_battery():
     assert log.vector("base_orientation").shape == (50, 4)
     assert log.has("battery_voltage")
     assert log.feet == ("left_foot",)
-
-
-@pytest.mark.parametrize(
-    "column",
-    [
-        "position",
-        "gyro/q",
-        "battery_voltage/x",
-        "contact_force/foot",
-        "speed/knee",
-        "t",
-        "position/",
-    ],
-)
-def test_unknown_columns(column):
-    assert not known_column(column)
-    with pytest.raises(InputError, match="no column of the log format"):
-        example(**{column: np.ones(50)})
 
 
 def test_arrays_cannot_be_changed():
@@ -231,34 +212,3 @@ def test_clock_of_a_file(tmp_path):
                 **{"t": [0.0, 0.0, 0.0, 0.0, 1.0], "position/knee": [0.0] * 5},
             )
         )
-
-
-def test_tidied_leaves_out_rows_without_time_and_infinities():
-    time, signals, remarks = tidied(
-        np.array([0, 1, np.nan, 2]), {"position/knee": np.array([1, np.inf, 3, 4])}, "run"
-    )
-    np.testing.assert_array_equal(time, [0, 1, 2])
-    np.testing.assert_array_equal(signals["position/knee"], [1, np.nan, 4])
-    assert len(remarks) == 2
-
-
-def test_recordings_too_long_for_memory_are_read_in_blocks(tmp_path, monkeypatch):
-    monkeypatch.setattr(logs, "BLOCK_ROWS", 100)
-    path = write_log(tmp_path / "run.parquet", example(5000))
-    monkeypatch.setattr(logs, "MAX_VALUES", 3 * 1050)
-    found = read_log(path)
-    assert len(found.time) == 1000
-    assert found.step == pytest.approx(0.005)
-    assert found.duration > 0.85 * 25
-    np.testing.assert_allclose(found.signals["position/knee"], np.sin(found.time))
-    assert any("1000 of its 5000 rows" in remark for remark in found.metadata.remarks)
-
-
-def test_long_recordings_of_one_row_group(tmp_path, monkeypatch):
-    monkeypatch.setattr(logs, "BLOCK_ROWS", 100)
-    time = np.arange(5050) * 0.01
-    path = write_table(tmp_path / "run.parquet", **{"t": time, "position/knee": time})
-    monkeypatch.setattr(logs, "MAX_VALUES", 2 * 1000)
-    found = read_log(path)
-    assert len(found.time) == 1000
-    np.testing.assert_array_equal(found.signals["position/knee"], found.time)

@@ -52,7 +52,7 @@ def test_inertial_parameters_move_there_and_back():
 
 
 def test_frames_are_where_mujoco_puts_them(robot_files):
-    from hyperleg_design.gap.model.rigid import link_poses
+    from hyperleg_design.gap.model.frames import link_poses
 
     subject = load_subject(robot_files["arm"])
     position = np.random.default_rng(1).uniform(-2, 2, (5, 6))

@@ -7,7 +7,8 @@ from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.model.supply import over_nominal
 from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
-from hyperleg_design.gap.playback.replay import replay, short_windows
+from hyperleg_design.gap.playback.replay import replay
+from hyperleg_design.gap.playback.windows import short_windows
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 

@@ -9,7 +9,7 @@ import pytest
 
 from hyperleg_design.gap.model.oracle import disagreements, mujoco_torques
 from hyperleg_design.gap.model.rigid import inverse_dynamics
-from hyperleg_design.gap.playback.replay import motor_tendons
+from hyperleg_design.gap.playback.plant import motor_tendons
 from hyperleg_design.gap.signals.loading import load_subject
 
 ARM = """<mujoco><compiler angle="radian"/><option gravity="0 0 -9.81"/><worldbody>

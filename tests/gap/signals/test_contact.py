@@ -3,7 +3,8 @@ import pytest
 import robots
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.playback.replay import replay, short_windows
+from hyperleg_design.gap.playback.replay import replay
+from hyperleg_design.gap.playback.windows import short_windows
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 

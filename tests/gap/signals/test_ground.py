@@ -11,7 +11,7 @@ import pytest
 
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.ground_friction import ChangedGround
-from hyperleg_design.gap.playback import show
+from hyperleg_design.gap.playback import show, standard_run
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.ground import (
     floor_geoms,
@@ -34,7 +34,7 @@ def biped():
 @pytest.fixture(scope="module")
 def standing(biped):
     """Signals of a run with alterations of the ground."""
-    time = np.arange(601) * show.TICK
+    time = np.arange(601) * standard_run.TICK
     target = show._stand_targets(biped, time)
     kept = {}
 
@@ -42,7 +42,9 @@ def standing(biped):
         key = tuple(sorted(changes.items()))
         if key not in kept:
             alterations = (ChangedGround(foot_bodies(biped, 0), **changes),) if changes else ()
-            kept[key] = condition(show._simulated(biped, target, time, alterations)[1], biped)
+            kept[key] = condition(
+                standard_run.simulated_log(biped, target, time, alterations)[1], biped
+            )
         return kept[key]
 
     return signals

@@ -11,7 +11,7 @@ import pytest
 from hyperleg_design.cli import main
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.recording import log_of_trial
-from hyperleg_design.report.viewer import viewer
+from hyperleg_design.report.viewer import needs, viewer
 from hyperleg_design.report.viewer.walk import RecordedWalk
 from hyperleg_design.robot.load import load_robot
 from tests.browser import Browser, executable
@@ -83,15 +83,15 @@ def test_a_browser_shows_the_page(page):
 def test_a_taken_port_is_told(page):
     port = int(page.url.rsplit(":", 1)[1])
     with pytest.raises(InputError, match="choose another"):
-        viewer.check_port("localhost", port)
+        needs.check_port("localhost", port)
     with pytest.raises(InputError, match="no address"):
-        viewer.check_port("nowhere.invalid", port)
+        needs.check_port("nowhere.invalid", port)
 
 
 def test_a_missing_package_is_told(monkeypatch):
     monkeypatch.setattr(viewer.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"hyperleg-design\[view\]"):
-        viewer.check_installed()
+        needs.check_installed()
 
 
 def test_the_command_builds_the_page_once(capsys):

@@ -1,6 +1,6 @@
 import numpy as np
 
-from hyperleg_design.gap.playback.replay import whole_log
+from hyperleg_design.gap.playback.windows import whole_log
 from hyperleg_design.validation.baselines.population import predicted, squared_error
 
 

@@ -1,6 +1,7 @@
 import numpy as np
 
-from hyperleg_design.gap.playback.replay import replay, whole_log
+from hyperleg_design.gap.playback.replay import replay
+from hyperleg_design.gap.playback.windows import whole_log
 from hyperleg_design.validation.baselines.population import predicted
 from hyperleg_design.validation.baselines.rollout import Rollout
 

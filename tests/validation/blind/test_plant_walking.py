@@ -15,12 +15,8 @@ from hyperleg_design.validation.blind.plant_walking import (
 from hyperleg_design.validation.blind.recorder import Recorder
 from hyperleg_design.validation.blind.residual import rms
 from hyperleg_design.validation.blind.rig_build import build_rig
-from hyperleg_design.validation.blind.walking_case import (
-    NOMINAL_GROUND,
-    Floor,
-    _Walker,
-    walking_residual,
-)
+from hyperleg_design.validation.blind.walking_case import NOMINAL_GROUND, Floor, _Walker
+from hyperleg_design.validation.blind.walking_residual import walking_residual
 from hyperleg_design.validation.blind.wrong import Wrong
 
 STILL = Stand(0.0, 0.0, 0.0, 0.0, np.ones(5))

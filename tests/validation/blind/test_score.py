@@ -1,10 +1,9 @@
 import json
 
-import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.validation.blind.score import calibration_error, compared, score, wilson
+from hyperleg_design.validation.blind.score import compared, score
 from hyperleg_design.validation.blind.trial import sealed
 from hyperleg_design.writing import write_bytes, write_json
 
@@ -191,19 +190,6 @@ def test_below_twice_the_floor_a_miss_does_not_count_against_the_target():
     found = compared([truth("single", small)], [said("none")], [1.0])
     assert found.row("right effect, single cause at >= 2 x floor, first").cases == 0
     assert found.row("right effect, single cause below 2 x floor, first").value == 0
-
-
-def test_calibration():
-    probability, right = (
-        np.array([0.9] * 10 + [0.5] * 10),
-        np.array([1] * 9 + [0] + [1] * 2 + [0] * 8),
-    )
-    assert calibration_error(probability, right) == pytest.approx(0.5 * 0 + 0.5 * 0.3)
-
-
-def test_wilson_interval():
-    assert wilson(0, 20) == pytest.approx((0.0, 0.1611), abs=1e-3)
-    assert wilson(18, 20) == pytest.approx((0.699, 0.972), abs=1e-3)
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
-from hyperleg_design.gap.logs import log as logs
+from hyperleg_design.gap.logs import blocks
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.source import FOLDER_FILE, beside, joint_names, made_log
 from hyperleg_design.gap.logs.readers.units import FACTORS
@@ -80,7 +80,7 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
     scale, remarks = _scale(info, said, found, table, path.name)
     remarks.append("time stamps are frame numbers over the frame rate, not measured")
     if read < rows:
-        remarks.append(logs.shortened(rows, read))
+        remarks.append(blocks.shortened(rows, read))
     lacking = [
         w
         for w, f in (
@@ -162,10 +162,10 @@ def _table(path: Path, features: list[str]) -> tuple[dict[str, np.ndarray], int,
         try:
             with pyarrow.parquet.ParquetFile(file) as source:
                 rows += source.metadata.num_rows
-                if held > logs.MAX_VALUES:
+                if held > blocks.MAX_VALUES:
                     continue
                 for batch in source.iter_batches(
-                    logs.BLOCK_ROWS, columns=columns, use_threads=False
+                    blocks.BLOCK_ROWS, columns=columns, use_threads=False
                 ):
                     for column in columns:
                         parts[column].append(

@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
-from hyperleg_design.gap.logs import log as logs
+from hyperleg_design.gap.logs import blocks
+from hyperleg_design.gap.logs import columns as log_columns
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers import mcap
 from hyperleg_design.gap.logs.readers.source import beside, made_log
@@ -154,7 +155,7 @@ def _streams(parts: list[Path], where: str) -> tuple[dict[tuple[str, str], _Stre
             stream.time.append(stamp if stamp > 0 else message.time)
             stream.rows.append(row)
             held += len(row)
-            if held > logs.MAX_VALUES:
+            if held > blocks.MAX_VALUES:
                 return streams, [
                     *remarks,
                     "too long to be held in memory: only its beginning was read",
@@ -206,7 +207,7 @@ def _decoded(message: Any) -> tuple[float, tuple[str, ...], np.ndarray]:
             ]
             return stamp, IMU_COLUMNS, np.concatenate(parts)
         case kind if kind == BATTERY:
-            return stamp, (logs.BATTERY,), np.array([float(message.voltage)])
+            return stamp, (log_columns.BATTERY,), np.array([float(message.voltage)])
     columns: list[str] = []
     rows: list[np.ndarray] = []
     for signal, values in (

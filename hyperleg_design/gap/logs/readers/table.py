@@ -15,8 +15,10 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
-from hyperleg_design.gap.logs import log as logs
-from hyperleg_design.gap.logs.log import Log, known_column
+from hyperleg_design.gap.logs import blocks as row_blocks
+from hyperleg_design.gap.logs.blocks import chosen_blocks, shortened
+from hyperleg_design.gap.logs.columns import known_column
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.source import beside, made_log
 from hyperleg_design.gap.logs.readers.units import factor, split_header
 
@@ -51,10 +53,10 @@ def read_csv(
     rows = _count(path)
     if rows < 1:
         raise InputError(path.name, "", None, "is an empty log: it has a header but no rows")
-    blocks = logs.chosen_blocks(rows, len(chosen))
+    blocks = chosen_blocks(rows, len(chosen))
     values = _read(path, separator, chosen, blocks)
     time = values.pop("t")
-    remarks = [] if blocks.all() else [logs.shortened(rows, len(time))]
+    remarks = [] if blocks.all() else [shortened(rows, len(time))]
     used = {place for place, _ in chosen.values()}
     others = [name for i, name in enumerate(header) if i not in used and name]
     if others:
@@ -129,7 +131,7 @@ def _read(
             header=None,
             skiprows=1,
             usecols=sorted(places),
-            chunksize=logs.BLOCK_ROWS,
+            chunksize=row_blocks.BLOCK_ROWS,
             encoding="utf-8-sig",
             decimal="," if separator == ";" and _decimal_comma(path) else ".",
             comment=None,
@@ -140,7 +142,8 @@ def _read(
                     continue
                 for column, (place, scale) in chosen.items():
                     parts[column].append(
-                        _numbers(chunk[place], column, path.name, number * logs.BLOCK_ROWS) * scale
+                        _numbers(chunk[place], column, path.name, number * row_blocks.BLOCK_ROWS)
+                        * scale
                     )
     except (ValueError, pd.errors.ParserError, OSError) as error:
         raise InputError(path.name, "", None, f"is no table ({in_short(error, 90)})") from None

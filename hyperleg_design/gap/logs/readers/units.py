@@ -6,7 +6,7 @@ import math
 import re
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.logs.log import unit
+from hyperleg_design.gap.logs.columns import unit
 
 FACTORS = {
     "": {"": 1.0, "-": 1.0, "1": 1.0},

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.logs import log as logs
+from hyperleg_design.gap.logs import blocks
 from hyperleg_design.gap.logs.readers import open_log
 
 
@@ -72,8 +72,8 @@ def test_clock_that_counts_from_the_epoch(tmp_path):
 
 
 def test_long_tables_are_read_in_blocks(tmp_path, monkeypatch):
-    monkeypatch.setattr(logs, "BLOCK_ROWS", 100)
-    monkeypatch.setattr(logs, "MAX_VALUES", 2 * 1000)
+    monkeypatch.setattr(blocks, "BLOCK_ROWS", 100)
+    monkeypatch.setattr(blocks, "MAX_VALUES", 2 * 1000)
     rows = "".join(f"{i * 0.01:.2f},{i}\n" for i in range(5050))
     (log,) = open_log(write(tmp_path / "run.csv", "t,position/knee\n" + rows))
     assert len(log.time) == 1000

@@ -1,0 +1,153 @@
+"""The play of belts: when motor and joint touch, fly apart and bounce."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from hyperleg_design.gap.effects.belt import BAND, CHOSEN, frictionless, load
+from hyperleg_design.gap.effects.series import band_limited
+from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.machine import rotor
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.signals.signals import Signals
+
+RESTITUTION = 0.3
+"""Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords
+under load hardly bounce. Joints, which hit a rotor that is held, do not."""
+CROSSING, CROSSING_BAND = 0.8, 0.15
+"""c, the load below which a rotor that does not coast is on its way across; band of its crossing,
+over the log's rate (assumed)."""
+LEAST_SHARE = 1e-3
+"""Of the largest inertia of a joint over a log, at least, where its posture is not known."""
+_INERTIAS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
+
+
+def slack(
+    signals: Signals,
+    motor: int,
+    play: np.ndarray,
+    side: np.ndarray,
+    coasting: np.ndarray,
+    behind: np.ndarray | None = None,
+) -> np.ndarray:
+    """Where a rotor is in its dead zone, from -play / 2 to play / 2, on its side of M `(k, t)`
+    [rad].
+
+    Args:
+        signals: a conditioned log.
+        motor: place of the motor.
+        play: whole width `(k,)` [rad].
+        side: on which the positions were logged `(k,)`.
+        coasting: from 0, carried over by the load, to 1, moving by itself `(k,)`; a joint, on side
+            1, always does.
+        behind: whether joints rub behind the belt, on side 1 `(k,)`; by default not.
+    """
+    found = np.zeros((len(play), len(signals.time)))
+    pushed = cache(lambda: _pushed(signals, motor))
+    kicks: dict[bool, list[float]] = {}
+    for row, width in enumerate(play):
+        if width <= 0:
+            continue
+        at_rotor = bool(side[row] >= CHOSEN)
+        free = 1.0 if at_rotor else float(coasting[row])
+        if free > 0:
+            if at_rotor not in kicks:
+                push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
+                kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
+            if at_rotor and behind is not None and behind[row] >= CHOSEN:
+                way = _rubbing(kicks[at_rotor], signals, motor, float(width) / 2)
+            else:
+                way = _bounced(
+                    kicks[at_rotor],
+                    signals.step,
+                    float(width) / 2,
+                    0.0 if at_rotor else RESTITUTION,
+                )
+            found[row] = free * np.array(way)
+        if free < 1:
+            found[row] += (1 - free) * float(width) / 2 * pushed()
+    return found
+
+
+def _pushed(signals: Signals, motor: int) -> np.ndarray:
+    """To which end of its dead zone the load pushes a rotor, from -1 to 1 `(t,)`."""
+    through = load(signals, motor)
+    usual = float(np.sqrt(np.nanmean(through**2)))
+    return band_limited(
+        np.tanh(through / max(CROSSING * usual, 1e-12)), signals.step, CROSSING_BAND / signals.step
+    )
+
+
+def _bounced(kicks: list[float], step: float, half: float, restitution: float) -> list[float]:
+    """Places of a body between two walls, from its changes of speed; plain numbers, as arrays of a
+    few are slower.
+    """
+    place, speed = half if kicks[0] > 0 else -half, 0.0
+    found = []
+    for change in kicks:
+        speed += change
+        place += step * speed
+        if place > half:
+            place = half
+            if speed > 0:
+                speed *= -restitution
+        elif place < -half:
+            place = -half
+            if speed < 0:
+                speed *= -restitution
+        found.append(place)
+    return found
+
+
+def _rubbing(kicks: list[float], signals: Signals, motor: int, half: float) -> list[float]:
+    """As `_bounced`, of a rotor beside joints that rub: friction slows them, and at most stops
+    them.
+    """
+    subject, step = signals.subject, signals.step
+    share = np.abs(subject.motor_from_joint[motor])
+    slowed = step / _inertia(signals, motor)
+    drops, keeps = (
+        (float(share @ subject.coulomb) * slowed).tolist(),
+        np.exp(-float(share**2 @ subject.viscous) * slowed).tolist(),
+    )
+    turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor]).tolist()
+    place, speed = half if kicks[0] > 0 else -half, 0.0
+    found = []
+    for change, turned_by, drop, keep in zip(kicks, turning, drops, keeps, strict=True):
+        own = (turned_by - speed - change) * keep
+        own = max(own - drop, 0.0) if own > 0 else min(own + drop, 0.0)
+        speed = turned_by - own
+        place += step * speed
+        if place > half or place < -half:
+            place, speed = (half, min(speed, 0.0)) if place > half else (-half, max(speed, 0.0))
+        found.append(place)
+    return found
+
+
+def _inertia(signals: Signals, motor: int) -> np.ndarray:
+    """Inertia of the joints that a motor moves, at the motor, all others held `(t,)` [kg m^2]."""
+    kept = _INERTIAS.setdefault(signals, {})
+    if motor not in kept:
+        share = signals.subject.motor_from_joint[motor]
+        (needed,) = rigid.accelerating(signals.subject, signals.position, [share], rotors=False)
+        kept[motor] = np.asarray(np.nan_to_num(needed) @ share)
+    return np.maximum(kept[motor], LEAST_SHARE * kept[motor].max())
+
+
+def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:
+    """Acceleration of a free rotor against its joints `(t,)` [rad/s^2]."""
+    inertia = rotor(signals.subject, motor)
+    torque = band_limited(signals.believed[:, motor], signals.step, BAND / signals.step)
+    return np.asarray(
+        torque / inertia - signals.acceleration @ signals.subject.joint_from_motor[:, motor]
+    )
+
+
+def _joint_alone(signals: Signals, motor: int) -> np.ndarray:
+    """Acceleration of a rotor against its free joints `(t,)` [rad/s^2]."""
+    return frictionless(signals, motor) / _inertia(signals, motor)

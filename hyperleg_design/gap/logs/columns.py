@@ -1,0 +1,72 @@
+"""Columns that a log may have: names of signals and their units."""
+
+from __future__ import annotations
+
+JOINT_SIGNALS = ("position_target", "position", "velocity", "joint_torque")
+MOTOR_SIGNALS = (
+    "motor_torque_command",
+    "motor_torque",
+    "motor_current",
+    "motor_velocity",
+    "motor_temperature",
+)
+VECTOR_SIGNALS = {
+    "gyro": ("x", "y", "z"),
+    "accelerometer": ("x", "y", "z"),
+    "base_position": ("x", "y", "z"),
+    "base_orientation": ("w", "x", "y", "z"),
+    "base_velocity": ("x", "y", "z"),
+}
+BATTERY = "battery_voltage"
+CONTACT = "contact_force"
+UNITS = {
+    "t": "s",
+    "position_target": "rad",
+    "position": "rad",
+    "velocity": "rad/s",
+    "joint_torque": "Nm",
+    "motor_torque_command": "Nm",
+    "motor_torque": "Nm",
+    "motor_current": "A",
+    "motor_velocity": "rad/s",
+    "motor_temperature": "degC",
+    BATTERY: "V",
+    "gyro": "rad/s",
+    "accelerometer": "m/s^2",
+    "base_position": "m",
+    "base_orientation": "",
+    "base_velocity": "m/s",
+    CONTACT: "N",
+}
+"""By signal."""
+
+
+def known_column(column: str) -> bool:
+    """Decide whether the log format has a column.
+
+    Args:
+        column: its full name.
+
+    Returns:
+        True if it has.
+    """
+    kind, slash, name = column.partition("/")
+    if kind in JOINT_SIGNALS or kind in MOTOR_SIGNALS:
+        return bool(name)
+    if kind in VECTOR_SIGNALS:
+        return name in VECTOR_SIGNALS[kind]
+    return (kind == CONTACT and len(name) > 2 and name[-2:] in ("_x", "_y", "_z")) or (
+        kind == BATTERY and not slash
+    )
+
+
+def unit(column: str) -> str:
+    """Look up the unit of a column.
+
+    Args:
+        column: its full name.
+
+    Returns:
+        The unit; empty without one.
+    """
+    return UNITS.get(column.partition("/")[0], "")

@@ -1,0 +1,83 @@
+"""Joints of a compiled robot file: the single ones, their friction, springs and ranges."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+def single_joints(model: Any) -> list[int]:
+    """List the joints that are hinges or slides.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Their indices.
+    """
+    return [int(joint) for joint in _single(model)[0]]
+
+
+def _single(model: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Joints that are hinges or slides, and their velocities."""
+    import mujoco
+
+    joints = np.flatnonzero(
+        (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE)
+        | (model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE)
+    )
+    return joints, np.asarray(model.jnt_dofadr)[joints]
+
+
+def friction(model: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Read the dry and viscous friction of the joints.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Dry [Nm] and viscous [Nms/rad], `(n,)` each.
+    """
+    _, dofs = _single(model)
+    return np.array(model.dof_frictionloss[dofs]), np.array(model.dof_damping[dofs])
+
+
+def springs(model: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Read the springs of the joints.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Stiffness [Nm/rad] and rest position [rad], `(n,)` each.
+    """
+    joints, _ = _single(model)
+    return np.array(model.jnt_stiffness[joints]), np.array(
+        model.qpos_spring[model.jnt_qposadr[joints]]
+    )
+
+
+def limits(model: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Read the ranges of motion.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Lower and upper ends [rad], `(n,)` each; infinite where unlimited.
+    """
+    joints, _ = _single(model)
+    limited = np.asarray(model.jnt_limited)[joints].astype(bool)
+    low, high = model.jnt_range[joints].T
+    return np.where(limited, low, -np.inf), np.where(limited, high, np.inf)
+
+
+def take_out_friction(model: Any) -> None:
+    """Remove joint friction and keep springs: replays put friction in themselves.
+
+    Args:
+        model: the compiled model, which is changed.
+    """
+    model.dof_frictionloss[:] = 0.0
+    model.dof_damping[:] = 0.0

@@ -1,0 +1,61 @@
+"""Bounds on measures that designs of a search must keep."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.sweep import registry
+
+_BOUND = re.compile(r"\s*([\w.]+)\s*(<=|>=)\s*(\S+)\s*")
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """A bound on a measure."""
+
+    name: str
+    """Full name of the measure."""
+    bound: float
+    at_most: bool
+    """Whether the measure must not be above the bound; else not below."""
+
+    def violation(self, value: float) -> float:
+        """Amount by which a value breaks the constraint; not positive where the constraint holds,
+        infinite where the value is unknown.
+        """
+        if not np.isfinite(value):
+            return float("inf")
+        return value - self.bound if self.at_most else self.bound - value
+
+
+def read_constraint(text: str, protocols: Sequence[str]) -> Constraint:
+    """A constraint from a text such as `walk.thermal_peak<=1`.
+
+    Raises:
+        InputError: no such form, measure, or number.
+    """
+    match = _BOUND.fullmatch(text)
+    try:
+        if match is None:
+            raise ValueError
+        bound = float(match[3])
+    except ValueError:
+        raise InputError(
+            "--constraint", "", text, "expects MEASURE<=NUMBER or MEASURE>=NUMBER"
+        ) from None
+    entry = registry.resolve(match[1], protocols, "--constraint")
+    return Constraint(entry.name, bound, match[2] == "<=")
+
+
+def usual_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
+    """Falls, heat and torque within bounds under each protocol (assumed)."""
+    return tuple(
+        Constraint(f"{protocol}.{name}", bound, True)
+        for protocol in protocols
+        for name, bound in (("fell", 0.05), ("thermal_peak", 1.0), ("limit_share", 0.05))
+    )

@@ -1,0 +1,95 @@
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.simulation.commands import commander
+from hyperleg_design.simulation.state import read_motion
+from hyperleg_design.simulation.waypoint_commands import (
+    SIGHT,
+    WaypointCommands,
+    clipped,
+    segment_distance,
+)
+
+T_TEST = ((9.14, 0.0), (9.14, 4.57), (9.14, -4.57), (9.14, 0.0), (0.0, 0.0))
+
+
+def at(places, yaw=0.0):
+    places = np.atleast_2d(places)
+    qpos = np.zeros((len(places), 21))
+    qpos[:, :2], qpos[:, 3], qpos[:, 6] = places, np.cos(yaw / 2), np.sin(yaw / 2)
+    return read_motion(qpos, np.zeros((len(places), 20)))
+
+
+def test_waypoints_are_drawn_within_range_and_bearing():
+    keeper, rng = (
+        commander(WaypointCommands(near=2, far=5, bearing=0.5), 2000),
+        np.random.default_rng(0),
+    )
+    keeper.reset(np.arange(2000), at(np.full((2000, 2), 3.0), yaw=1.0), rng)
+    goal = keeper.judge(at(np.full((2000, 2), 3.0), yaw=1.0))
+    assert goal.distance.min() > 2
+    assert goal.distance.max() < 5
+    assert np.abs(goal.heading_error).max() <= 0.5 + 1e-9
+    assert np.abs(goal.heading_error).max() > 0.48
+    np.testing.assert_allclose(goal.progress, 0)
+    assert np.all(np.linalg.norm(keeper.vector(goal)[:, :2], axis=1) <= SIGHT + 1e-9)
+
+
+def test_a_course_is_run_in_order_from_where_and_how_the_robot_stands():
+    start, yaw = np.array([1.0, -2.0]), 0.7
+    keeper, rng = (
+        commander(WaypointCommands(course_share=1.0, courses=(T_TEST,)), 1),
+        np.random.default_rng(0),
+    )
+    keeper.reset(np.array([0]), at(start, yaw), rng)
+    turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
+    places = [start + turn @ p for p in T_TEST]
+    for index, place in enumerate(places):
+        goal = keeper.judge(at(place - turn @ [0.6, 0.0], yaw))
+        assert not goal.arrived[0]
+        goal = keeper.judge(at(place - turn @ [0.4, 0.0], yaw))
+        assert goal.arrived[0]
+        assert goal.finished[0] == (index == 4)
+        keeper.advance(at(place, yaw), goal, 0.02, rng)
+        if index < 4:
+            np.testing.assert_allclose(keeper.target[0], places[index + 1])
+            np.testing.assert_allclose(keeper.last[0], place)
+            assert not goal.finished[0]
+            np.testing.assert_allclose(goal.distance, np.linalg.norm(places[index + 1] - place))
+    np.testing.assert_allclose(
+        np.linalg.norm(np.diff(np.array([[0, 0], *T_TEST]), axis=0), axis=1).sum(), 36.56
+    )
+
+
+def test_progress_is_counted_once():
+    keeper, rng = (
+        commander(WaypointCommands(course_share=1.0, courses=(((5.0, 0.0),),)), 1),
+        np.random.default_rng(0),
+    )
+    keeper.reset(np.array([0]), at([0.0, 0.0]), rng)
+    progress = [keeper.judge(at([x, 0.0])).progress[0] for x in (1.0, 0.5, 1.5, 1.5)]
+    np.testing.assert_allclose(progress, [1.0, 0.0, 0.5, 0.0])
+
+
+def test_unreachable_or_senseless_courses_are_refused():
+    with pytest.raises(InputError, match="arrival radius"):
+        WaypointCommands(courses=(((0.1, 0.0),),))
+    with pytest.raises(InputError, match="needs courses"):
+        WaypointCommands(course_share=0.5)
+    with pytest.raises(InputError, match="points"):
+        WaypointCommands(courses=(((np.nan, 0.0),),))
+
+
+def test_distance_from_a_segment():
+    points = np.array([[1.0, 1.0], [-3.0, 4.0], [5.0, 0.0], [2.0, -0.5]])
+    start, end = np.zeros((4, 2)), np.tile([4.0, 0.0], (4, 1))
+    np.testing.assert_allclose(segment_distance(points, start, end), [1.0, 5.0, 1.0, 0.5])
+    np.testing.assert_allclose(
+        segment_distance(points, start, start), np.linalg.norm(points, axis=1)
+    )
+
+
+def test_clipping_keeps_the_direction():
+    offset = np.array([[6.0, 8.0], [0.3, 0.4], [0.0, 0.0]])
+    np.testing.assert_allclose(clipped(offset), [[1.8, 2.4], [0.3, 0.4], [0.0, 0.0]])
