@@ -27,7 +27,7 @@ except ImportError:
     ) from None
 
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.simulation import actuation
+from hyperleg_design.simulation.drives import actuation
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.model import simulation_model

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import Design, load_design
-from hyperleg_design.robot.inertials import inertials
+from hyperleg_design.robot.mass.inertials import inertials
 from hyperleg_design.robot.motors import catalogue
 
 # the same examples every time, and no clock

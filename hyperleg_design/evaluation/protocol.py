@@ -16,8 +16,9 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.course import course_length
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameter_fields, parameters
-from hyperleg_design.robot.parameter_fields import number
+from hyperleg_design.robot.parameters import fields as parameter_fields
+from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.fields import number
 from hyperleg_design.simulation.settings import Checked, Randomisation, Start
 
 MOST_TRIALS = 4096

@@ -18,9 +18,9 @@ from hyperleg_design.evaluation.policy import (
     checked_action,
     policy_name,
 )
-from hyperleg_design.simulation import terminations
+from hyperleg_design.simulation.drives.told import TOLD
 from hyperleg_design.simulation.layout import GRAVITY
-from hyperleg_design.simulation.told import TOLD
+from hyperleg_design.simulation.terms import terminations
 
 if TYPE_CHECKING:
     import mujoco
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
-    from hyperleg_design.simulation.step import Divergence
+    from hyperleg_design.simulation.stepping.step import Divergence
     from hyperleg_design.simulation.tasks import Task
 
 ARRIVED, TIMED_OUT, FELL, LOST, DIVERGED = "arrived", "timed_out", "fell", "lost", "diverged"

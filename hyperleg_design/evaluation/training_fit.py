@@ -10,10 +10,10 @@ import numpy as np
 
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy
 from hyperleg_design.robot.dimensions import limb_mass, total_mass
-from hyperleg_design.robot.parameters import leaves
-from hyperleg_design.simulation.actuation import actuation_model
+from hyperleg_design.robot.parameters.values import leaves
 from hyperleg_design.simulation.design_observation import design_ranges
-from hyperleg_design.simulation.machine import rotor_inertia
+from hyperleg_design.simulation.drives.actuation import actuation_model
+from hyperleg_design.simulation.drives.machine import rotor_inertia
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

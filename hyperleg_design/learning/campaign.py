@@ -22,8 +22,8 @@ from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.learning.status import CHECKPOINT, POLICY, RUN, read_status
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.robot.parameter_fields import Rule
-from hyperleg_design.robot.parameters import checked, unknown
+from hyperleg_design.robot.parameters.fields import Rule
+from hyperleg_design.robot.parameters.values import checked, unknown
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.writing import MARKER, check_output_folder, write_text
 

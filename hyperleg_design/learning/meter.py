@@ -12,7 +12,7 @@ from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
     from hyperleg_design.simulation.environment import Environment
-    from hyperleg_design.simulation.step import Step
+    from hyperleg_design.simulation.stepping.step import Step
 
 MEMORY = 0.9
 """Weight of the past in the running means that steer the assist; assumed."""

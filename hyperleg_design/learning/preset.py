@@ -12,10 +12,11 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.final_reward import check_final_share
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameter_fields, parameters
-from hyperleg_design.robot.parameter_fields import flag, number, text
-from hyperleg_design.simulation.rewards import TERMS
+from hyperleg_design.robot.parameters import fields as parameter_fields
+from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.fields import flag, number, text
 from hyperleg_design.simulation.settings import Checked
+from hyperleg_design.simulation.terms.rewards import TERMS
 
 BEGINS = ("stage", "assist_gone")
 """When a ramp begins: with its stage, or with the first iteration without assist."""

@@ -8,7 +8,8 @@ import dataclasses
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.robot import parameter_fields, parameters
+from hyperleg_design.robot.parameters import fields as parameter_fields
+from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.simulation.tasks import _SECTIONS
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 

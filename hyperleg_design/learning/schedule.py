@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.simulation.assist import Assist
+from hyperleg_design.simulation.terms.assist import Assist
 
 if TYPE_CHECKING:
     from hyperleg_design.learning.preset import Preset, Ramp, Stage

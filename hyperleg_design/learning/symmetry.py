@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import torch
 from rsl_rl.extensions import Symmetry
 
-from hyperleg_design.simulation.mirror import MirrorMap
+from hyperleg_design.simulation.terms.mirror import MirrorMap
 
 if TYPE_CHECKING:
     from rsl_rl.models import MLPModel

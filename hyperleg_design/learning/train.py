@@ -62,7 +62,7 @@ from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.design_spread import DesignSpread, load_design_spread
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of
-from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
+from hyperleg_design.simulation.stepping.snapshot import put_snapshot, take_snapshot
 from hyperleg_design.simulation.tasks import Task, load_task
 from hyperleg_design.writing import MARKER, check_output_folder, write_json, write_text
 

@@ -14,9 +14,9 @@ import numpy as np
 from hyperleg_design.learning.meter import mean_speed
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.model import pad_loads
-from hyperleg_design.simulation.rewards import TOUCH
 from hyperleg_design.simulation.tasks import Reward, Task
-from hyperleg_design.simulation.terminations import COURSE_FINISHED
+from hyperleg_design.simulation.terms.rewards import TOUCH
+from hyperleg_design.simulation.terms.terminations import COURSE_FINISHED
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:

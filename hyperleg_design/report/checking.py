@@ -11,7 +11,7 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml
 from hyperleg_design.robot.check import check_file, finding_of
-from hyperleg_design.robot.finding import Finding
+from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.sweep.space import load_sweep
 
 

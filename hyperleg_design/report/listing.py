@@ -7,12 +7,12 @@ from typing import Any
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.text import table
-from hyperleg_design.robot import parameters
 from hyperleg_design.robot.ablation import DESCRIPTION
 from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.robot.dimensions import total_mass
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.motors import catalogue
+from hyperleg_design.robot.parameters import values as parameters
 
 KINDS = (
     "designs",

@@ -9,14 +9,14 @@ from pathlib import Path
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError, shown
 from hyperleg_design.reading import read_yaml
-from hyperleg_design.robot.check_mjcf import check_mjcf
-from hyperleg_design.robot.check_urdf import check_urdf
+from hyperleg_design.robot.checks.check_mjcf import check_mjcf
+from hyperleg_design.robot.checks.check_urdf import check_urdf
+from hyperleg_design.robot.checks.finding import Finding
+from hyperleg_design.robot.checks.urdf_xml import parse_xml
 from hyperleg_design.robot.design import Design
-from hyperleg_design.robot.finding import Finding
 from hyperleg_design.robot.linkage import LinkageModel
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.motors import Motor, catalogue, load_motor
-from hyperleg_design.robot.urdf_xml import parse_xml
 
 KINDS = ("design", "motor", "urdf", "mjcf")
 XML = (".urdf", ".xml", ".mjcf")

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameter_fields import Rule
-from hyperleg_design.robot.parameters import Origin
+from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.fields import Rule
+from hyperleg_design.robot.parameters.values import Origin
 
 if TYPE_CHECKING:
     from typing import Self

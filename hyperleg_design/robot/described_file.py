@@ -12,8 +12,8 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.reading import short_name
-from hyperleg_design.robot.check_urdf import check_urdf
-from hyperleg_design.robot.urdf_xml import parse_xml
+from hyperleg_design.robot.checks.check_urdf import check_urdf
+from hyperleg_design.robot.checks.urdf_xml import parse_xml
 
 MOST_RADIANS = 4 * math.pi + 1e-6
 """End of a range past which it is taken for degrees [rad]."""
@@ -216,7 +216,7 @@ def _urdf_joint(element: Any) -> FileJoint:
 
 
 def _rotation(turn: np.ndarray) -> np.ndarray:
-    from hyperleg_design.robot.tree_limb import turned
+    from hyperleg_design.robot.trees.tree_limb import turned
 
     return turned(np.rad2deg(turn))
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-from hyperleg_design.robot import limb_masses, masses, tree_limb
-from hyperleg_design.robot.consistency import leg_length
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot import masses
+from hyperleg_design.robot.checks.consistency import leg_length
+from hyperleg_design.robot.trees import limb_masses, tree_limb
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

@@ -23,9 +23,10 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import gear, transmission, tree_limb
+from hyperleg_design.robot import gear, transmission
 from hyperleg_design.robot.names import JOINTS
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees import tree_limb
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

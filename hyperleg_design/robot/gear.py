@@ -33,7 +33,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import motors, transmission
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

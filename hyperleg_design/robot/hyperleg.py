@@ -12,16 +12,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.model_sections import (
+from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, SIDES
+from hyperleg_design.robot.parameters.model_sections import (
     Contact,
     FrictionModel,
     GearModel,
     MassModel,
     StopModel,
 )
-from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, SIDES
-from hyperleg_design.robot.reference_sections import ReferenceBuild
-from hyperleg_design.robot.sections import (
+from hyperleg_design.robot.parameters.reference_sections import ReferenceBuild
+from hyperleg_design.robot.parameters.sections import (
     Actuators,
     Electrical,
     Foot,

@@ -23,12 +23,13 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameters, transmission
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
-from hyperleg_design.robot.finding import Finding
 from hyperleg_design.robot.models import leg_reflected_inertia
-from hyperleg_design.robot.tree_design import TreeDesign
-from hyperleg_design.robot.tree_load import tree_design_from_mapping
+from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.trees.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
 
 DUMMY_INERTIA = 1e-5
 """Moment of inertia up to which a link is a placeholder, as root links of URDFs often are, and gets

@@ -20,8 +20,8 @@ from hyperleg_design.robot.design import (
     load_design,
     parse_overrides,
 )
-from hyperleg_design.robot.tree_design import TreeDesign
-from hyperleg_design.robot.tree_load import FAMILY, tree_design_from_mapping
+from hyperleg_design.robot.trees.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_load import FAMILY, tree_design_from_mapping
 
 FAMILIES = ("hyperleg", FAMILY)
 """What `family:` may say; a file without it is of the first one."""

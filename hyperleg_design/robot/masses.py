@@ -17,7 +17,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import gear
-from hyperleg_design.robot.actuator import actuator_mass
+from hyperleg_design.robot.mass.actuator import actuator_mass
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SEGMENTS
 
 if TYPE_CHECKING:

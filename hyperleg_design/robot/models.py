@@ -18,8 +18,8 @@ from hyperleg_design.robot.dimensions import standing_height
 from hyperleg_design.robot.gear import rotor_inertia
 from hyperleg_design.robot.kinematic_tree import Tree
 from hyperleg_design.robot.tree import build_tree
-from hyperleg_design.robot.tree_design import TreeDesign
-from hyperleg_design.robot.tree_limb import turned
+from hyperleg_design.robot.trees.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_limb import turned
 
 if TYPE_CHECKING:
     import pinocchio

@@ -17,9 +17,9 @@ from typing import Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameters
-from hyperleg_design.robot.parameter_fields import Rule
-from hyperleg_design.robot.parameters import LABELS
+from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.fields import Rule
+from hyperleg_design.robot.parameters.values import LABELS
 
 CONFIDENCES = ("high", "medium", "low")
 RPM = 2 * math.pi / 60

@@ -15,9 +15,9 @@ import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import parameters
 from hyperleg_design.robot.motor import Constant, Motor, load_motor
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, MOTORS
+from hyperleg_design.robot.parameters import values as parameters
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

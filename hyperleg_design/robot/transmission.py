@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import limb_actuation, tree_limb
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, POSTURES
-from hyperleg_design.robot.sections import LinkageScale
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.parameters.sections import LinkageScale
+from hyperleg_design.robot.trees import limb_actuation, tree_limb
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

@@ -11,11 +11,11 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.friction import joint_friction
-from hyperleg_design.robot.inertials import LEG_LINKS, inertials
 from hyperleg_design.robot.kinematic_tree import Link, Shape, Tree, TreeJoint
+from hyperleg_design.robot.mass.inertials import LEG_LINKS, inertials
 from hyperleg_design.robot.names import JOINTS, SIDES
-from hyperleg_design.robot.tree_build import tree_of
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_build import tree_of
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

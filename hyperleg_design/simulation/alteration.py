@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.simulation.machine import Machine
+from hyperleg_design.simulation.drives.machine import Machine
 
 if TYPE_CHECKING:
     import mujoco

@@ -7,10 +7,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from hyperleg_design.robot.parameter_fields import number
+from hyperleg_design.robot.parameters.fields import number
 from hyperleg_design.simulation.settings import Checked
 from hyperleg_design.simulation.state import Goal, Motion
-from hyperleg_design.simulation.streams import Random, of_rows
+from hyperleg_design.simulation.stepping.streams import Random, of_rows
 from hyperleg_design.simulation.waypoint_commands import WaypointCommander, WaypointCommands
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import parameters
+from hyperleg_design.robot.parameters import values as parameters
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

@@ -15,7 +15,7 @@ import numpy as np
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameters
+from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
 
 if TYPE_CHECKING:

@@ -22,16 +22,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.simulation import mirror, observations
 from hyperleg_design.simulation.alteration import Alterations, made
-from hyperleg_design.simulation.assist import Assist
-from hyperleg_design.simulation.chunk import Chunk
 from hyperleg_design.simulation.layout import GRAVITY, layout_of, stacked
 from hyperleg_design.simulation.model import simulated_robots, simulation_model
-from hyperleg_design.simulation.standing import check_standing
-from hyperleg_design.simulation.step import Divergence, Step, joined, merged
-from hyperleg_design.simulation.streams import RowStreams
+from hyperleg_design.simulation.stepping.chunk import Chunk
+from hyperleg_design.simulation.stepping.standing import check_standing
+from hyperleg_design.simulation.stepping.step import Divergence, Step, joined, merged
+from hyperleg_design.simulation.stepping.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task, check_reward
+from hyperleg_design.simulation.terms import mirror, observations
+from hyperleg_design.simulation.terms.assist import Assist
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.robot.parameters import leaves
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.parameters.values import leaves
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.simulation.alteration import Alteration, damps_motors, edited
 from hyperleg_design.simulation.layout import Layout, layout_of
 from hyperleg_design.simulation.settings import Physics

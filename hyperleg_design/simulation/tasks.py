@@ -13,14 +13,13 @@ from typing import TYPE_CHECKING, Any
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot import parameter_fields, parameters
 from hyperleg_design.robot.mjcf import TIME_STEP
 from hyperleg_design.robot.names import SIDES
+from hyperleg_design.robot.parameters import fields as parameter_fields
+from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.simulation import human_gait
 from hyperleg_design.simulation.commands import VelocityCommands
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
-from hyperleg_design.simulation.observations import PARTS
-from hyperleg_design.simulation.rewards import TERMS
 from hyperleg_design.simulation.settings import (
     Clock,
     Control,
@@ -30,6 +29,8 @@ from hyperleg_design.simulation.settings import (
     Start,
     Thermal,
 )
+from hyperleg_design.simulation.terms.observations import PARTS
+from hyperleg_design.simulation.terms.rewards import TERMS
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:

@@ -25,9 +25,9 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.ablation import states
 from hyperleg_design.robot.names import LAYOUTS, SIDES
-from hyperleg_design.simulation.actuation import motor_from_joint
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
-from hyperleg_design.simulation.machine import Machine
+from hyperleg_design.simulation.drives.actuation import motor_from_joint
+from hyperleg_design.simulation.drives.machine import Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design

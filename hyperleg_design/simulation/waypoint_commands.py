@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot.parameter_fields import number
+from hyperleg_design.robot.parameters.fields import number
 from hyperleg_design.simulation.settings import Checked
 from hyperleg_design.simulation.state import Goal, Motion, to_world, to_yaw_frame
-from hyperleg_design.simulation.streams import Random, of_rows
+from hyperleg_design.simulation.stepping.streams import Random, of_rows
 
 SIGHT = 3.0
 """Length to which the observed offset of a waypoint is clipped [m]; assumed."""

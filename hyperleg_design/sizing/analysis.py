@@ -10,12 +10,12 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import ablation, transmission
-from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot.checks.consistency import leg_length
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, POSTURES
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.sizing import zonotope
 from hyperleg_design.sizing.envelope import motor_envelope
 from hyperleg_design.sizing.tree_analysis import analyze_tree

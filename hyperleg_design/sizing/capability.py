@@ -28,7 +28,7 @@ from hyperleg_design.robot.transmission import (
     motor_names,
     motor_velocity,
 )
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.sizing.contacts import TIP, contact_kinematics, contact_points, sole_pads
 from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
 from hyperleg_design.sizing.kinematics import (

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot.bodies import Inertial
-from hyperleg_design.robot.consistency import leg_length
-from hyperleg_design.robot.inertials import LEG_LINKS, inertials
+from hyperleg_design.robot.checks.consistency import leg_length
+from hyperleg_design.robot.mass.bodies import Inertial
+from hyperleg_design.robot.mass.inertials import LEG_LINKS, inertials
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.names import JOINTS
 

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
-from hyperleg_design.robot import limb_masses, transmission, tree_limb
+from hyperleg_design.robot import transmission
 from hyperleg_design.robot.dimensions import limb_mass, standing_height, total_mass
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import find_motor
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees import limb_masses, tree_limb
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.sizing import zonotope
 from hyperleg_design.sizing.capability import DIRECTIONS, largest_force
 from hyperleg_design.sizing.envelope import motor_envelope

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import parameter_fields, parameters
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.motors import catalogue, find_motor
+from hyperleg_design.robot.parameters import fields as parameter_fields
+from hyperleg_design.robot.parameters import values as parameters
 
 _KEYS = ("paths", "values", "low", "high", "steps", "log", "scale")
 _RANGE_KEYS = ("low", "high", "steps", "log")

@@ -11,10 +11,10 @@ from hyperleg_design.robot import (
     masses,
     transmission,
 )
-from hyperleg_design.robot.bodies import Inertial
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.inertials import inertials
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.mass.bodies import Inertial
+from hyperleg_design.robot.mass.inertials import inertials
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
 from hyperleg_design.sizing.inertia import LegInertia, leg_inertia
 from hyperleg_design.sweep import reference_loads

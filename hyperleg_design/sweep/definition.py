@@ -14,7 +14,7 @@ from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.design import Design
 from hyperleg_design.robot.motors import find_motor
-from hyperleg_design.robot.parameters import leaves
+from hyperleg_design.robot.parameters.values import leaves
 from hyperleg_design.sweep.axis import Axis
 
 AS_DESCRIBED = "as_described"

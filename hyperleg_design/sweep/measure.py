@@ -14,7 +14,7 @@ from hyperleg_design.robot import (
 )
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.load import FAMILIES
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.sweep.batch import Batch
 
 HYPERLEG, TREE = FAMILIES

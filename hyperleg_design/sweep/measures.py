@@ -12,19 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.robot import (
-    consistency,
-    dimensions,
-    limb_masses,
-    masses,
-    transmission,
-    tree_limb,
-)
+from hyperleg_design.robot import dimensions, masses, transmission
+from hyperleg_design.robot.checks import consistency
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.friction import joint_friction
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.names import JOINTS
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees import limb_masses, tree_limb
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.sizing import zonotope
 from hyperleg_design.sizing.envelope import MotorEnvelope
 from hyperleg_design.sweep.batch import Batch

@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.robot.bodies import Inertial
+from hyperleg_design.robot.mass.bodies import Inertial
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.robot.transmission import joint_names

@@ -14,7 +14,7 @@ from functools import cache
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures as trial_measures
-from hyperleg_design.robot import parameters
+from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.sweep import measures as sizing
 from hyperleg_design.sweep.measure import MEASURES, TREE
 

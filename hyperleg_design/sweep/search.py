@@ -26,7 +26,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import protocol_mapping
-from hyperleg_design.robot import parameters
+from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.constraint import Constraint, read_constraint, usual_constraints
 from hyperleg_design.sweep.definition import Sweep

@@ -109,7 +109,7 @@ def test_a_broken_file_stops_before_any_work(make_onnx, write):
 
 
 def test_alterations_change_what_is_measured_and_none_changes_no_bit(make_onnx):
-    from hyperleg_design.simulation.two_mass import Belt
+    from hyperleg_design.simulation.drives.two_mass import Belt
 
     files = [make_onnx("a.onnx", bias=0.1), make_onnx("b.onnx", bias=0.2)]
     brief = SHORT.changed(trials=2)

@@ -13,10 +13,10 @@ from hyperleg_design.evaluation.power import ledger, power_constants
 from hyperleg_design.evaluation.rollout import record
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.settings import Limits, Physics, Randomisation, Start
 from hyperleg_design.simulation.tasks import load_task
+from hyperleg_design.simulation.terms.assist import Assist
 from hyperleg_design.simulation.toe_swap import ANKLES, SHARE, Swap
 
 
@@ -94,9 +94,9 @@ def test_the_assist_is_taken_away(environment):
 
 
 def test_a_diverged_trial_is_reported_with_its_state(environment, monkeypatch):
-    from hyperleg_design.simulation import terminations
-    from hyperleg_design.simulation.chunk import Chunk
-    from hyperleg_design.simulation.step import Divergence
+    from hyperleg_design.simulation.stepping.chunk import Chunk
+    from hyperleg_design.simulation.stepping.step import Divergence
+    from hyperleg_design.simulation.terms import terminations
 
     plain = Chunk._find_diverged
 

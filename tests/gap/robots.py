@@ -202,7 +202,7 @@ def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
     import copy
 
     from hyperleg_design.gap.signals.loading import load_subject
-    from hyperleg_design.simulation.actuation import friction_damping
+    from hyperleg_design.simulation.drives.actuation import friction_damping
 
     subject = load_subject("hyperleg")
     model = copy.copy(subject.model)

@@ -5,9 +5,9 @@ import pytest
 from hyperleg_design.learning.preset import Preset, preset_from_mapping
 from hyperleg_design.learning.schedule import DECAY_EVERY, FAST_ENOUGH, LONG_ENOUGH, Schedule
 from hyperleg_design.robot.design import Design
-from hyperleg_design.simulation.assist import DECAY, OFF_BELOW
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task
+from hyperleg_design.simulation.terms.assist import DECAY, OFF_BELOW
 
 from .conftest import tiny_mapping
 

@@ -173,7 +173,7 @@ def test_a_truncated_checkpoint_is_named_and_a_full_disk_costs_nothing(
 
 
 def test_an_overlay_is_trained_with_written_down_and_compared(tiny: Preset, tmp_path: Path) -> None:
-    from hyperleg_design.simulation.two_mass import Belt
+    from hyperleg_design.simulation.drives.two_mass import Belt
 
     loose, overlay = (
         (Belt("left_hip_pitch", compliance=5.0, play=0.5),),

@@ -6,8 +6,8 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.listing import KINDS, listing, listing_text
-from hyperleg_design.robot import parameters
 from hyperleg_design.robot.design import Design
+from hyperleg_design.robot.parameters import values as parameters
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -15,10 +15,10 @@ import pinocchio as pin
 import pytest
 
 from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.robot import parameters
 from hyperleg_design.robot.build import build
 from hyperleg_design.robot.check import check_file
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.parameters import values as parameters
 
 
 def everything(folder: Path) -> dict[str, bytes]:

@@ -11,7 +11,7 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import description
 from hyperleg_design.robot.ablation import variants
-from hyperleg_design.robot.check_urdf import check_urdf
+from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.description import expanded, tree_mapping, tree_yaml, urdf
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.tree import build_tree

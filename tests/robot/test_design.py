@@ -7,11 +7,11 @@ import pytest
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import parameters
 from hyperleg_design.robot.build import design_yaml
 from hyperleg_design.robot.design import Design, load_design, parse_overrides
 from hyperleg_design.robot.masses import mass_table
-from hyperleg_design.robot.parameters import Origin
+from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.values import Origin
 
 
 def same(a: Design, b: Design) -> bool:

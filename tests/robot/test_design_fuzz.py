@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.robot.inertials import inertials
 from hyperleg_design.robot.linkage import LinkageModel
+from hyperleg_design.robot.mass.inertials import inertials
 from hyperleg_design.robot.transmission import max_joint_torque
 
 SOURCE = (resources.content_folder("descriptions") / "hyperleg.yaml").read_bytes()

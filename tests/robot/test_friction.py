@@ -10,7 +10,7 @@ from hyperleg_design.robot import friction, transmission
 from hyperleg_design.robot.design import Design, design_from_mapping, load_design
 from hyperleg_design.robot.friction import FRICTION_SPEED, joint_friction
 from hyperleg_design.robot.mjcf import mujoco_model
-from hyperleg_design.simulation.actuation import actuation_model
+from hyperleg_design.simulation.drives.actuation import actuation_model
 from hyperleg_design.simulation.settings import Physics
 from hyperleg_design.sizing import demand
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import gear, masses
 from hyperleg_design.robot.design import Design, load_design
-from hyperleg_design.robot.inertials import inertials
+from hyperleg_design.robot.mass.inertials import inertials
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.names import JOINTS

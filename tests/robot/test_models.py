@@ -13,7 +13,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.description import urdf
-from hyperleg_design.robot.mass_rows import mass_rows
+from hyperleg_design.robot.mass.mass_rows import mass_rows
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.mjcf import mjcf, mujoco_model
 from hyperleg_design.robot.models import leg_reflected_inertia, quaternion_matrix, rigid_body_model

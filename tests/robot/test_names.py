@@ -1,10 +1,10 @@
 from __future__ import annotations
 
 from hyperleg_design.robot import names
-from hyperleg_design.robot.inertials import LEG_LINKS
-from hyperleg_design.robot.parameter_fields import section_types
-from hyperleg_design.robot.reference_sections import Places
-from hyperleg_design.robot.sections import Actuators, Joints, Transmission
+from hyperleg_design.robot.mass.inertials import LEG_LINKS
+from hyperleg_design.robot.parameters.fields import section_types
+from hyperleg_design.robot.parameters.reference_sections import Places
+from hyperleg_design.robot.parameters.sections import Actuators, Joints, Transmission
 
 
 def test_names_are_those_of_the_sections():

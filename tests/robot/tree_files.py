@@ -5,8 +5,8 @@ from __future__ import annotations
 import copy
 from typing import Any
 
-from hyperleg_design.robot.tree_design import TreeDesign
-from hyperleg_design.robot.tree_load import tree_design_from_mapping
+from hyperleg_design.robot.trees.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
 
 SHIPPED = ("mini_cheetah", "parallel_ankle", "teaching_leg")
 """Robots in `descriptions/` that write their tree out."""

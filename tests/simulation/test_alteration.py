@@ -21,15 +21,15 @@ from hyperleg_design.simulation.alteration import (
     overrides,
     resistance,
 )
+from hyperleg_design.simulation.drives.machine import machine_of
+from hyperleg_design.simulation.drives.told import TOLD
+from hyperleg_design.simulation.drives.two_mass import Belt
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of
-from hyperleg_design.simulation.machine import machine_of
 from hyperleg_design.simulation.model import simulation_model
 from hyperleg_design.simulation.settings import Physics
-from hyperleg_design.simulation.snapshot import put_snapshot, take_snapshot
+from hyperleg_design.simulation.stepping.snapshot import put_snapshot, take_snapshot
 from hyperleg_design.simulation.tasks import load_task
-from hyperleg_design.simulation.told import TOLD
-from hyperleg_design.simulation.two_mass import Belt
 from hyperleg_design.sizing.envelope import clip_torque, motor_envelope
 
 

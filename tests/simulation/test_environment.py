@@ -3,11 +3,11 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.ablation import variants
-from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.environment import DIVERGENCES_KEPT
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.settings import Limits, Physics, Randomisation, Start
-from hyperleg_design.simulation.terminations import DIVERGED, ENDINGS, TIME_OUT
+from hyperleg_design.simulation.terms.assist import Assist
+from hyperleg_design.simulation.terms.terminations import DIVERGED, ENDINGS, TIME_OUT
 
 
 def actions_of(environment, steps, seed=0, spread=0.5):

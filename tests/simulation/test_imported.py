@@ -18,9 +18,9 @@ from hyperleg_design.robot.importing import import_robot
 from hyperleg_design.robot.transmission import joint_from_motor, reflected_inertia
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of
-from hyperleg_design.simulation.mirror import mirror_joints
 from hyperleg_design.simulation.model import simulation_model
 from hyperleg_design.simulation.tasks import load_task
+from hyperleg_design.simulation.terms.mirror import mirror_joints
 from hyperleg_design.sizing.other_robots import robots_folder
 
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.simulation.assist import Assist
 from hyperleg_design.simulation.rollout import rollout
+from hyperleg_design.simulation.terms.assist import Assist
 
 
 def swinging(observations):

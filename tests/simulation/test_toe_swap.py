@@ -10,9 +10,9 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.simulation.actuation import actuation_model
+from hyperleg_design.simulation.drives.actuation import actuation_model
+from hyperleg_design.simulation.drives.machine import machine_of
 from hyperleg_design.simulation.environment import Environment
-from hyperleg_design.simulation.machine import machine_of
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.simulation.toe_swap import SHARE, SWAPS, Swap
 

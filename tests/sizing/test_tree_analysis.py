@@ -12,7 +12,7 @@ from hyperleg_design.report.sizing.comparison import compare, compare_text
 from hyperleg_design.report.tree_text import tree_analysis_text
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.models import rigid_body_model
-from hyperleg_design.robot.tree_load import tree_design_from_mapping
+from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
 from hyperleg_design.sizing.analysis import analyze
 from hyperleg_design.sizing.capability import largest_force, posture
 from tests.robot.tree_files import SHIPPED, leg_file

@@ -13,7 +13,7 @@ from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.training_fit import training_fit
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.robot.parameters import leaves
+from hyperleg_design.robot.parameters.values import leaves
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.sweep import fine_tuning
 from hyperleg_design.sweep.fine_tuning import (

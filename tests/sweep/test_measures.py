@@ -4,13 +4,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import parameters, transmission
+from hyperleg_design.robot import transmission
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.motors import catalogue
 from hyperleg_design.robot.names import JOINTS, VARIANTS
+from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.sizing.envelope import MotorEnvelope, torque_limits
 from hyperleg_design.sizing.zonotope import support
 from hyperleg_design.sweep import measure, measures

@@ -3,7 +3,7 @@ import pytest
 
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.robot.inertials import inertials
+from hyperleg_design.robot.mass.inertials import inertials
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.robot.transmission import joint_names

@@ -8,7 +8,7 @@ import pytest
 
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.robot.parameters import leaves
+from hyperleg_design.robot.parameters.values import leaves
 from hyperleg_design.sweep.space import load_sweep, sweep_from_mapping
 from hyperleg_design.sweep.trial_table import (
     acting_limits,

@@ -20,7 +20,7 @@ from hyperleg_design.gap.effects.excitation import (
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.placing import SIDES, driven_motors
 from hyperleg_design.gap.model import machine
-from hyperleg_design.simulation.two_mass import STIFFEST, Belt
+from hyperleg_design.simulation.drives.two_mass import STIFFEST, Belt
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

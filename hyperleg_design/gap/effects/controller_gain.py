@@ -20,7 +20,7 @@ from hyperleg_design.gap.effects.placing import (
     limited,
 )
 from hyperleg_design.simulation.alteration import Alteration
-from hyperleg_design.simulation.machine import Machine
+from hyperleg_design.simulation.drives.machine import Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

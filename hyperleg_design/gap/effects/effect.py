@@ -185,6 +185,22 @@ class Effect(ABC):
         """Log prior odds for it at some values `(k,)`, over those at usual ones."""
         return 0.0
 
+    def size_odds(
+        self, values: np.ndarray, usual: np.ndarray, declared: float, beyond: int
+    ) -> float:
+        """State log prior odds for a size, over those of any other cause in its place.
+
+        Args:
+            values: of the parameters `(k,)`.
+            usual: their usual sizes `(k,)`.
+            declared: payload that the logs declare at the place [kg].
+            beyond: joints in a row that the link at the place carries.
+
+        Returns:
+            The log odds [nat]; none by default.
+        """
+        return 0.0
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Values from which a search for the best fit to a log is worth while `(s, parameters)`,
         inside the bounds.

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 SHARE = 0.1
 """Usual error over the link's own mass (assumed: cables, screws and glue that a drawing leaves
 out)."""
+LARGEST_ERROR, HEAVIER = 0.8, 5.0
+"""Error over a link's own mass from which it is rather something that hangs there; log odds against
+it for as much again [nat]."""
 
 
 class LinkMass(InertialEffect):
@@ -64,3 +67,19 @@ class LinkMass(InertialEffect):
         found = super().bounds(location, subject)
         found[0, 0] = max(found[0, 0], least_mass(subject, location))
         return found
+
+    def size_odds(
+        self, values: np.ndarray, usual: np.ndarray, declared: float, beyond: int
+    ) -> float:
+        """Against most of the link's own mass: rather something hangs there.
+
+        Args:
+            values: of the parameters `(1,)` [kg].
+            usual: their usual sizes `(1,)` [kg].
+            declared: payload that the logs declare at the place [kg].
+            beyond: joints in a row that the link carries.
+
+        Returns:
+            The log odds [nat].
+        """
+        return -HEAVIER * max(abs(float(values[0])) * SHARE / float(usual[0]) - LARGEST_ERROR, 0.0)

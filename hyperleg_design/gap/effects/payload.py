@@ -21,6 +21,11 @@ FAR, OUT_OF_REACH = 4.0, 3.0
 centre of mass (assumed)."""
 NEAR = 0.4
 """Share of the robot's length up to which none is far (assumed: batteries and tools are)."""
+NEGATIVE = 8.0
+"""Log odds against a load that weighs less than nothing, beyond what is declared [nat]."""
+INWARD, OUTERMOST = 3.0, 2.0
+"""Log odds against a load far from the ends of a robot, and for one on a link that carries none, or
+on a base (assumed: loads hang on hands and lie on backs) [nat]."""
 
 
 class Payload(InertialEffect):
@@ -114,6 +119,24 @@ class Payload(InertialEffect):
             near = max(near, OUT_OF_REACH * float(np.linalg.norm(own[1:4])) / float(own[0]))
         away = float(np.sqrt(values[1:4] @ values[1:4] + values[4]))
         return -FAR if near > 0 and away > near else 0.0
+
+    def size_odds(
+        self, values: np.ndarray, usual: np.ndarray, declared: float, beyond: int
+    ) -> float:
+        """Against a load that weighs less than nothing, and one far from the ends of the robot.
+
+        Args:
+            values: of the parameters `(k,)`.
+            usual: their usual sizes `(k,)`.
+            declared: payload that the logs declare at the place [kg].
+            beyond: joints in a row that the link carries.
+
+        Returns:
+            The log odds [nat].
+        """
+        return -(
+            NEGATIVE * (values[0] < -declared) + INWARD * (beyond > 1) - OUTERMOST * (beyond == 0)
+        )
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The mass and first moment that a linear fit to the log finds, and the usual mass where

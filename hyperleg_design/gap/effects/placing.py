@@ -27,7 +27,7 @@ from hyperleg_design.gap.signals.signals import Signals
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.simulation.machine import Machine
+    from hyperleg_design.simulation.drives.machine import Machine
 
 SIDES = ("encoders at the joints", "encoders at the rotors")
 """Choices of the parameter `side`: whose positions logs and controllers know."""

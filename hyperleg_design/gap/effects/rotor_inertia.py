@@ -13,7 +13,7 @@ from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.placing import at_motor, driven_motors, joint_inertia
 from hyperleg_design.simulation.alteration import Alteration
-from hyperleg_design.simulation.machine import Machine
+from hyperleg_design.simulation.drives.machine import Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

@@ -13,7 +13,7 @@ from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.placing import SIDES, driven_motors
 from hyperleg_design.gap.model import machine
-from hyperleg_design.simulation.two_mass import DAMPING_RATIO, Belt
+from hyperleg_design.simulation.drives.two_mass import DAMPING_RATIO, Belt
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

@@ -29,7 +29,7 @@ from hyperleg_design.gap.effects.placing import (
 from hyperleg_design.gap.model import friction
 from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live
-from hyperleg_design.simulation.machine import Machine
+from hyperleg_design.simulation.drives.machine import Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

@@ -26,7 +26,7 @@ from hyperleg_design.gap.effects.placing import (
 )
 from hyperleg_design.gap.signals.loading import FULL
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
-from hyperleg_design.simulation.machine import Machine
+from hyperleg_design.simulation.drives.machine import Machine
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

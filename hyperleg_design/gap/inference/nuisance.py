@@ -29,7 +29,7 @@ from hyperleg_design.gap.model import friction, pads
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.gap.signals.transmission import turned
-from hyperleg_design.simulation.actuation import friction_damping
+from hyperleg_design.simulation.drives.actuation import friction_damping
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

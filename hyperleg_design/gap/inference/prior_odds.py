@@ -15,14 +15,6 @@ if TYPE_CHECKING:
 
 PER_PARAMETER = 0.5
 """Log prior odds against each parameter, beside what the marginal likelihood takes for it."""
-LARGEST_ERROR, HEAVIER, OWN_MASS = 0.8, 5.0, 0.1
-"""Error over a link's own mass from which it is rather something that hangs there; log odds for as
-much again; the usual error."""
-NEGATIVE = 8.0
-"""Log prior odds against a load that weighs less than nothing, beyond what is declared."""
-INWARD, OUTERMOST = 3.0, 2.0
-"""Log prior odds against a load far from the ends of a robot, and for one on a link that carries
-none, or on a base (assumed: loads hang on hands and lie on backs)."""
 MISSING, HALF = 4.0, 0.5
 """Log odds against more than this share of what a model describes being missing (assumed: friction
 that nobody described is usual, and joints run in, but none runs freely, nor is a rotor without
@@ -38,14 +30,4 @@ def prior_odds(cause: Cause, values: np.ndarray) -> float:
         found += effect.unseen
     if effect.described and values[0] < HALF * cause.low[0] < 0:
         found -= MISSING
-    if cause.effect == "link_mass":
-        found -= HEAVIER * max(
-            abs(float(values[0])) * OWN_MASS / float(cause.usual[0]) - LARGEST_ERROR, 0.0
-        )
-    if cause.effect == "payload":
-        found -= (
-            NEGATIVE * (values[0] < -cause.declared)
-            + INWARD * (cause.beyond > 1)
-            - OUTERMOST * (cause.beyond == 0)
-        )
-    return found
+    return found + effect.size_odds(values, cause.usual, cause.declared, cause.beyond)

@@ -26,16 +26,16 @@ from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.robot.models import quaternion_matrix
 from hyperleg_design.robot.motors import find_motor
-from hyperleg_design.simulation.actuation import actuation_model
+from hyperleg_design.simulation.drives.actuation import actuation_model
+from hyperleg_design.simulation.drives.told import TOLD
 from hyperleg_design.simulation.layout import GRAVITY
-from hyperleg_design.simulation.told import TOLD
 from hyperleg_design.writing import output_folder, write_text
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
     from hyperleg_design.evaluation.rollout import Trial
     from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.simulation.actuation import ActuationModel
+    from hyperleg_design.simulation.drives.actuation import ActuationModel
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
     from hyperleg_design.simulation.rollout import Recording

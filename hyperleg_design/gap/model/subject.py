@@ -254,7 +254,7 @@ def index_of(name: str, names: Sequence[str], field: str, what: str) -> int:
 def _least_heat(subject: Subject) -> np.ndarray:
     from hyperleg_design.robot.motors import motor_arrays
     from hyperleg_design.robot.transmission import motor_names
-    from hyperleg_design.simulation.actuation import motor_from_joint
+    from hyperleg_design.simulation.drives.actuation import motor_from_joint
 
     assert subject.design is not None
     names = motor_names(subject.design)

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.simulation.actuation import applied
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
+from hyperleg_design.simulation.drives.actuation import applied
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject

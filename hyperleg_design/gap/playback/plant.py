@@ -10,9 +10,9 @@ import numpy as np
 
 from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.supply import followed
-from hyperleg_design.simulation import actuation
 from hyperleg_design.simulation.alteration import Alteration, damps_motors
-from hyperleg_design.simulation.chain import Chain, Driven
+from hyperleg_design.simulation.drives import actuation
+from hyperleg_design.simulation.drives.chain import Chain, Driven
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject

@@ -18,7 +18,7 @@ from hyperleg_design.robot.tree import SIGN, Tree, build_tree
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
-    from hyperleg_design.robot.tree_design import TreeDesign
+    from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 FRAME, DARK, PAD = "#c9cdd4", "#8b93a1", "#2b2d33"
 TOE = {"active": "#e07b39", "locked": "#9aa0aa"}
@@ -189,7 +189,7 @@ def _tree_motor_solids(
 ) -> Iterator[tuple[str, Solid]]:
     """Motors of a robot that writes its tree out as discs of their mass, each with its link."""
     from hyperleg_design.robot.motors import find_motor
-    from hyperleg_design.robot.tree_limb import copied
+    from hyperleg_design.robot.trees.tree_limb import copied
 
     colours = tuple(dict.fromkeys(MOTOR_COLOUR.values()))
     for copy, section in design.copy_sections.items():

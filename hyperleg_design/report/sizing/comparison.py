@@ -10,11 +10,11 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import paper
 from hyperleg_design.report.text import table
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.consistency import leg_length
+from hyperleg_design.robot.checks.consistency import leg_length
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.names import JOINTS
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

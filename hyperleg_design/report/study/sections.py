@@ -13,9 +13,10 @@ from hyperleg_design.report.page import Cell, Details, Heading, Section, Table
 from hyperleg_design.report.pictures import picture, scenes
 from hyperleg_design.report.sizing.comparison import Row, motor_rows, table_one
 from hyperleg_design.report.study.context import Made
-from hyperleg_design.robot import ablation, parameters
+from hyperleg_design.robot import ablation
 from hyperleg_design.robot.design import Design
 from hyperleg_design.robot.names import JOINTS
+from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.sizing.analysis import analyze
 from hyperleg_design.writing import write_json
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.robot import limb_masses
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.names import SEGMENTS
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees import limb_masses
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.robot.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign

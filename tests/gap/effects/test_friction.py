@@ -6,7 +6,7 @@ from pendulum import Wrong, steps
 
 from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.signals.filtering import sticking
-from hyperleg_design.simulation.machine import Machine
+from hyperleg_design.simulation.drives.machine import Machine
 
 
 def test_holds_of_a_sticking_pendulum_rest(pendulum):

@@ -12,9 +12,9 @@ from hyperleg_design.gap.model.subject_build import subject_of
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.simulation.chain import Chain
+from hyperleg_design.simulation.drives.chain import Chain
+from hyperleg_design.simulation.drives.machine import machine_of
 from hyperleg_design.simulation.environment import Environment
-from hyperleg_design.simulation.machine import machine_of
 from hyperleg_design.simulation.settings import Start
 from hyperleg_design.simulation.tasks import load_task
 

@@ -13,11 +13,11 @@ from hyperleg_design.gap.playback.overlay import Overlay
 from hyperleg_design.gap.results.finding import ERROR
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.models import quaternion_matrix, rigid_body_model
+from hyperleg_design.simulation.drives.told import TOLD
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.rollout import rollout
 from hyperleg_design.simulation.settings import Limits
 from hyperleg_design.simulation.tasks import load_task
-from hyperleg_design.simulation.told import TOLD
 
 
 def waving(seed=0, size=0.6):

@@ -8,7 +8,7 @@ from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.subject_build import subject_of
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.simulation.machine import machine_of as machine_of_design
+from hyperleg_design.simulation.drives.machine import machine_of as machine_of_design
 
 
 def test_a_design_has_one_machine_however_it_is_asked():

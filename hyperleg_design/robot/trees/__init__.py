@@ -1,0 +1,1 @@
+"""Designs that write their kinematic tree out: reading, checks, limbs, masses and actuation."""

@@ -1,0 +1,265 @@
+"""Whether a design that writes its tree out is a robot: one tree, motors for every joint, bodies
+that can be.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import motors
+from hyperleg_design.robot.friction import joint_friction
+from hyperleg_design.robot.gear import rotor_inertia
+from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.trees import limb_actuation, limb_masses
+from hyperleg_design.robot.trees.tree_design import TreeDesign
+
+LARGEST_CONDITION = 1e6
+"""Condition number of `joint_from_motor` from which it counts as singular."""
+
+
+def ordered(
+    joints: Mapping[str, tuple[str, str]], links: Iterable[str], root: str, where: str
+) -> list[str]:
+    """Order the joints with parents before children, depth first, and in the given order otherwise.
+
+    Args:
+        joints: parent and child link of each joint, by name.
+        links: names of all links.
+        root: the link that nothing carries.
+        where: file, for errors.
+
+    Returns:
+        Names of the joints.
+
+    Raises:
+        InputError: a link that is not there, is carried twice, or hangs on nothing; a loop.
+    """
+    links = list(links)
+    if root not in links:
+        raise InputError(where, "trunk.link", root, _unknown_link(root, links))
+    carried: dict[str, str] = {}
+    for name, (parent, child) in joints.items():
+        for end, link in (("parent", parent), ("child", child)):
+            if link not in links:
+                raise InputError(where, f"joints.{name}.{end}", link, _unknown_link(link, links))
+        if child in carried:
+            raise InputError(
+                where,
+                f"joints.{name}.child",
+                child,
+                f"is carried by the joint {carried[child]} already: a tree has no loops; leave one "
+                f"joint out, and describe a parallel linkage under rods",
+            )
+        if child == root:
+            raise InputError(
+                where,
+                f"joints.{name}.child",
+                child,
+                "is the root link (trunk.link), which nothing carries: a tree has no loops",
+            )
+        carried[child] = name
+    for link in links:
+        if link != root and link not in carried:
+            raise InputError(
+                where,
+                f"links.{link}",
+                None,
+                f"hangs on nothing: it is a second root beside {root}; add a joint that carries it",
+            )
+    order: list[str] = []
+
+    def visit(link: str) -> None:
+        for name, (parent, child) in joints.items():
+            if parent == link:
+                order.append(name)
+                visit(child)
+
+    visit(root)
+    for name, (parent, _) in joints.items():
+        if name not in order:
+            raise InputError(
+                where,
+                f"joints.{name}.parent",
+                parent,
+                f"leads back to itself instead of to the root link {root}: a tree has no loops",
+            )
+    return order
+
+
+def _unknown_link(name: str, links: list[str]) -> str:
+    return parameters.unknown(str(name), sorted(links)).replace("such field", "such link")
+
+
+def check_tree_design(design: TreeDesign) -> None:
+    """Check that a design that describes its own tree is a robot, and report the first misfit.
+
+    Args:
+        design: a robot or batch.
+
+    Raises:
+        InputError: names the field, its value and what would be right.
+    """
+    where = str(design.source or design.name)
+    _check_name(design, where)
+    _check_batch(design, where)
+    links = design.link_sections
+    ordered(
+        {name: (str(j.parent), str(j.child)) for name, j in design.all_joints.items()},
+        links,
+        str(design.trunk.link),
+        where,
+    )
+    for section, field in (
+        ("actuators", "housed_in"),
+        ("pads", "link"),
+        ("rods", "carrier"),
+        ("rods", "end"),
+    ):
+        for name, held in getattr(design, f"{section.removesuffix('s')}_sections").items():
+            link = str(getattr(held, field))
+            if link not in links:
+                remedy = _unknown_link(link, list(links))
+                raise InputError(where, f"{section}.{name}.{field}", link, remedy)
+    _check_joints(design, where)
+    _check_motors(design, where)
+    _check_bodies(design, where)
+    _check_actuation(design, where)
+    _check_printed(design, where)
+    joint_friction(design)  # an unknown law of friction or gears is an error here
+    rotor_inertia(design)
+
+
+def _refuse(where: str, field: str, good: Any, value: Any, remedy: str) -> None:
+    """Raise where something is not good, in any robot of a batch."""
+    good, value = np.asarray(good), np.asarray(value)
+    if np.all(good):
+        return
+    shown = value if good.ndim == 0 or value.shape[:1] != good.shape else value[np.argmin(good)]
+    raise InputError(where, field, shown.tolist(), remedy, bad=~good)
+
+
+def _check_name(design: TreeDesign, where: str) -> None:
+    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}", str(design.name)):
+        remedy = "expects a letter or digit, then letters, digits, dots, dashes or underscores"
+        raise InputError(where, "name", design.name, remedy)
+    names = [tree_copy for tree_copy in design.copies if tree_copy]
+    for copy in names:
+        if any(other != copy and other.startswith(f"{copy}_") for other in names):
+            remedy = "is the start of another limb's name; choose names that differ"
+            raise InputError(where, f"limbs.{copy}", None, remedy)
+
+
+def _check_batch(design: TreeDesign, where: str) -> None:
+    sizes = {path: size for path, size in design.batch_sizes().items() if size > 1}
+    if len(set(sizes.values())) > 1:
+        first, last = min(sizes, key=lambda p: sizes[p]), max(sizes, key=lambda p: sizes[p])
+        remedy = f"is the length of its batch, but that of {first} is {sizes[first]}"
+        raise InputError(where, last, sizes[last], f"{remedy}; make them equal")
+
+
+def _check_joints(design: TreeDesign, where: str) -> None:
+    if not design.joint_sections:
+        raise InputError(where, "joints", None, "has no joint that moves")
+    for name, joint in design.all_joints.items():
+        lower, upper, default = (
+            np.asarray(v, float) for v in (joint.lower_deg, joint.upper_deg, joint.default_deg)
+        )
+        place = f"joints.{name}"
+        _unit(where, f"{place}.axis", joint.axis)
+        if joint.type == "fixed":
+            continue
+        remedy = "must lie below upper_deg; the range is reversed or empty"
+        _refuse(where, f"{place}.lower_deg", lower < upper, lower, remedy)
+        remedy = "must lie within lower_deg .. upper_deg"
+        inside = (lower <= default) & (default <= upper)
+        _refuse(where, f"{place}.default_deg", inside, default, remedy)
+    for name, rod in design.rod_sections.items():
+        _unit(where, f"rods.{name}.axis", rod.axis)
+
+
+def _unit(where: str, field: str, axis: Any) -> None:
+    length = np.linalg.norm(np.asarray(axis, float), axis=-1)
+    remedy = "expects a vector of length 1"
+    _refuse(where, field, np.abs(length - 1) < 1e-4, axis, remedy)
+
+
+def _check_motors(design: TreeDesign, where: str) -> None:
+    for name, actuator in design.actuator_sections.items():
+        for motor in np.unique(actuator.motor):
+            motors.find_motor(str(motor), where, f"actuators.{name}.motor")
+        reference = design.reference_sections[name]
+        motors.find_motor(str(reference.motor), where, f"reference.{name}.motor")
+
+
+def _check_bodies(design: TreeDesign, where: str) -> None:
+    masses = limb_masses.limb_masses(design).links
+    for name, body in masses.items():
+        principal = np.linalg.eigvalsh(body.inertia)
+        scale = np.maximum(principal[..., 2], 1e-12)
+        real = (principal[..., 0] >= -1e-9 * scale) & (
+            principal[..., 2] <= (principal[..., 0] + principal[..., 1]) * (1 + 1e-6) + 1e-12
+        )
+        remedy = (
+            "are principal moments of inertia that no body has: none is negative, and the largest "
+            "is at most the sum of the other two; check gyration, inertia and the units"
+        )
+        _refuse(where, f"links.{name}", real, principal, remedy)
+    fixed = {j.child for j in design.all_joints.values() if j.type == "fixed"}
+    for name, joint in design.joint_sections.items():
+        own = [joint.child]
+        for link in own:
+            own += [
+                j.child for j in design.all_joints.values() if j.parent == link and j.child in fixed
+            ]
+        mass = sum((np.asarray(masses[link].mass) for link in own), start=np.zeros(()))
+        remedy = f"moves with the joint {name} and has no mass; give it some, or fix the joint"
+        _refuse(where, f"links.{joint.child}.mass", mass > 0, mass, remedy)
+
+
+def _check_actuation(design: TreeDesign, where: str) -> None:
+    joints, columns = list(design.joint_sections), list(design.actuator_sections)
+    matrix = limb_actuation.joint_from_motor(design)
+    for index, name in enumerate(joints):
+        if not np.any(matrix[..., index, :]):
+            raise InputError(
+                where,
+                f"joints.{name}",
+                None,
+                f"has no motor; let one of {parameters.some(columns)} drive it under transmission, "
+                f"or set its type to fixed",
+            )
+    if len(columns) < len(joints):
+        raise InputError(
+            where,
+            "actuators",
+            len(columns),
+            f"motors cannot hold {len(joints)} joints; give each joint a motor of its own or more",
+        )
+    condition = np.linalg.cond(matrix)
+    remedy = (
+        "is the condition number of joint_from_motor, as good as singular: some joints cannot be "
+        "driven apart; check transmission, rods and gears"
+    )
+    good = condition < LARGEST_CONDITION
+    _refuse(where, "transmission", good, np.where(np.isfinite(condition), condition, 1e99), remedy)
+
+
+def _check_printed(design: TreeDesign, where: str) -> None:
+    """Whether the declared masses add up to the published one, as long as nobody replaced any."""
+    printed = np.asarray(design.masses.expected_total, float)
+    root = str(design.trunk.link)
+    total = sum(
+        (
+            np.asarray(link.mass, float) * (1 if name == root else len(design.copies))
+            for name, link in design.link_sections.items()
+        ),
+        start=np.zeros(()),
+    )
+    remedy = f"the links add up to {float(np.max(total)):.6g} kg; correct one or the other"
+    good = (printed == 0) | (np.abs(total - printed) < 1e-6)
+    _refuse(where, "masses.expected_total", good, printed, remedy)

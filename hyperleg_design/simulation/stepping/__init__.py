@@ -1,0 +1,1 @@
+"""How many simulations are stepped together: parts, models, random numbers, snapshots."""

@@ -1,0 +1,570 @@
+"""Some of an environment's simulations, stepped together: physics, rewards, ends, resets and
+observations.
+
+Threads take turns in Python and run side by side in MuJoCo: left to the interpreter's own lock,
+which NumPy lets go of in every longer operation, they would hand it to and fro thousands of times a
+second. Everything in a chunk depends on its own simulations and its own random stream only, so a
+trajectory does not depend on how many threads work on the chunks.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.simulation import human_gait
+from hyperleg_design.simulation import model as models
+from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.simulation.commands import commander
+from hyperleg_design.simulation.drives.actuation import applied, smoothed_action
+from hyperleg_design.simulation.drives.drive import Drive
+from hyperleg_design.simulation.drives.thermal import ThermalState
+from hyperleg_design.simulation.drives.told import Told
+from hyperleg_design.simulation.layout import GRAVITY, Layout
+from hyperleg_design.simulation.model import PAD_SENSOR_SIZE
+from hyperleg_design.simulation.state import Goal, Motion, Sensed, State, read_motion
+from hyperleg_design.simulation.stepping.batch_models import give_models, vary_models
+from hyperleg_design.simulation.stepping.step import Divergence, Step
+from hyperleg_design.simulation.stepping.streams import RowStreams
+from hyperleg_design.simulation.tasks import Reward, Task
+from hyperleg_design.simulation.terms import terminations
+from hyperleg_design.simulation.terms.assist import Assist
+from hyperleg_design.simulation.terms.observations import observe
+from hyperleg_design.simulation.terms.rewards import TERMS, Robot
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from hyperleg_design.robot.described import RobotDesign
+
+FASTEST = 1e4
+"""Speed of a coordinate past which a simulation counts as diverged [m/s or rad/s]."""
+_ROTORS_BEFORE = 6
+_BROKEN = slice(1, 6)
+"""MuJoCo's warnings that mark a step as wrong: contacts or constraints left out, bad position,
+velocity, acceleration."""
+
+
+class Chunk:
+    """Simulations `first .. first + count` of an environment."""
+
+    def __init__(
+        self,
+        design: RobotDesign,
+        task: Task,
+        layout: Layout,
+        models: Sequence[mujoco.MjModel],
+        first: int,
+        count: int,
+        rng: RowStreams,
+        turn: threading.Lock,
+        threads: int,
+        alterations: Sequence[Alteration] = (),
+    ) -> None:
+        from mujoco import batch
+
+        self._turn = turn
+
+        self.task, self.layout, self.first, self.count, self.rng = task, layout, first, count, rng
+        model = models[0]
+        self.batch = batch.Batch(model, count, threads)
+        # A second batch finds how high to start: what is bound in the first is copied out after
+        # each of its steps.
+        self._starter = batch.Batch(model, count, 1)
+        if len(models) > 1:
+            give_models(self.batch, models)
+            give_models(self._starter, models)
+        vary_models(self.batch, task, rng)
+        verticals = [a.vertical for a in alterations if a.vertical is not None]
+        self._vertical = verticals[0] if verticals else None
+        """Direction against gravity where alterations make that another than the world's z."""
+        self.drive = Drive(
+            design, layout, task.physics, self.batch, task.randomisation, rng, alterations
+        )
+        self._rated, self._heat = (
+            self.drive.flat(self.drive.model.rated_torque),
+            self.drive.flat(self.drive.model.envelope.power_constant),
+        )
+        sensors = self.batch.bind("sensordata")
+        pads = PAD_SENSOR_SIZE * len(layout.pads)
+        self._sensors, self._stops = sensors[:, :pads], sensors[:, pads:]
+        self._push = self.batch.bind("xfrc_applied")
+        self._places, self._tried = self._starter.bind("geom_xpos"), self._starter.bind("qpos")
+        self.batch.reset(None, 0, 0)
+        self._standing = self.batch.state.copy()
+        self._pelvis = model.body(layout.base).id
+        self._pad_ids = [model.geom(pad).id for pad in layout.pads]
+        self._pad_radius = np.array([m.geom_size[self._pad_ids[0], 0] for m in models])
+        joints, motors, substeps = (
+            len(layout.joints),
+            len(layout.motors),
+            int(task.physics.substeps),
+        )
+        start = task.start
+        self._spread = np.r_[
+            [start.joint_position] * joints,
+            [start.joint_velocity] * joints,
+            [start.linear_velocity] * 2,
+            [start.tilt] * 2,
+            start.yaw,
+        ]
+        self.action, self.previous_action, self.smoothed = (
+            np.zeros((count, joints)) for _ in range(3)
+        )
+        self.motor_torque, self.motor_velocity = (
+            np.zeros((substeps, count, motors)),
+            np.zeros((substeps, count, motors)),
+        )
+        self.sensors = np.zeros((substeps, count, self._sensors.shape[-1]))
+        self.states = np.zeros((substeps, count, 13 + 2 * joints))
+        """MuJoCo's position and velocity before each substep, kept while `recording`."""
+        self.stops = np.zeros((substeps, count, joints))
+        """Size of the stops' torque at each joint in each substep [Nm], kept while `recording`."""
+        self.altered = None if self.drive.chain is None else np.zeros((substeps, 2, count, joints))
+        """Torque through the transmission and friction that alterations make of them, kept while
+        `recording`."""
+        self.told = None if self.drive.chain is None else Told(self.drive.chain, substeps)
+        self.target = np.zeros((count, joints))
+        """Joint angles that the controller was asked for in the last policy step [rad]."""
+        self.recording = False
+        self.rewarded = True
+        """Whether steps give rewards and the observations of all groups, or those of the policy
+        alone."""
+        self._running: np.ndarray | None = None
+        """Simulations whose physics is stepped, in ascending order; None for all."""
+        self.thermal = ThermalState(task.thermal, (count, motors))
+        self.commander = commander(task.commands, count)
+        self.rewards: dict[str, Reward] = dict(task.rewards)
+        self.limits = task.limits.of(layout.default_height)
+        self.assist: Assist | None = None
+        self.robot = Robot(layout, task.clock)
+        """Of this chunk's simulations."""
+        self.episode_step = np.zeros(count, int)
+        self._clock_start = np.zeros(count)
+        self.motion: Motion
+        self.goal: Goal | None = None
+
+    def reset(self) -> dict[str, np.ndarray]:
+        """Start all simulations of the chunk.
+
+        Returns:
+            Observations by group, `(n, size)` each.
+        """
+        everyone, self._running = np.arange(self.count), None
+        state = self._started(everyone)
+        self.motion, self.goal = state.motion, state.goal
+        return observe(self._groups, state, self.robot)
+
+    @property
+    def _groups(self) -> Mapping[str, Sequence[str]]:
+        """Parts of the groups of observations that are computed."""
+        groups = self.task.observations
+        return groups if self.rewarded else {"policy": groups["policy"]}
+
+    def freeze(self, ids: np.ndarray) -> None:
+        """Leave simulations as they are until the next reset.
+
+        Args:
+            ids: their indices within the chunk.
+        """
+        running = np.arange(self.count) if self._running is None else self._running
+        self._running = np.setdiff1d(running, ids)
+
+    def step(self, action: np.ndarray) -> Step:
+        """Advance all simulations of the chunk by one policy step.
+
+        Args:
+            action: finite numbers, `(n, J)`.
+
+        Returns:
+            Observations, rewards and endings.
+        """
+        task, duration = self.task, self.task.physics.policy_step
+        self.previous_action, self.action = (
+            self.action,
+            np.clip(action, -task.control.limit, task.control.limit),
+        )
+        self.smoothed = smoothed_action(self.smoothed, self.action, task.control.smoothing)
+        position_before, velocity_before = self.drive.qpos.copy(), self.drive.qvel.copy()
+        self._pushes(duration)
+        self._physics()
+        self.episode_step += 1
+        divergences = self._find_diverged(position_before, velocity_before)
+        self.motion = read_motion(self.drive.qpos, self.drive.qvel)
+        self.goal = self.commander.judge(self.motion)
+        ending = terminations.ending(
+            self.motion, self.goal, self.episode_step, self.limits, duration
+        )
+        diverged = [d.simulation - self.first for d in divergences]
+        if diverged:
+            ending[diverged] = terminations.DIVERGED
+        terminated = terminations.fell(ending)
+        state = self._state(
+            self.thermal.advance(self.motor_torque / self._rated, duration), terminated
+        )
+        reward_terms = (
+            self._rewards(state) * duration
+            if self.rewarded
+            else np.zeros((self.count, len(self.rewards)))
+        )
+        if diverged:
+            reward_terms[diverged] = 0.0
+        ended = np.flatnonzero(ending)
+        lengths = self.episode_step[ended]
+        self.commander.advance(self.motion, self.goal, duration, self.rng)
+        state.command = self.commander.vector(self.goal)
+        observations = observe(self._groups, state, self.robot)
+        final = {group: values[ended] for group, values in observations.items()}
+        if len(ended):
+            fresh = self._started(ended)
+            self.motion.put(ended, fresh.motion)
+            if self.goal is not None and fresh.goal is not None:
+                self.goal.put(ended, fresh.goal)
+            for group, values in observe(self._groups, fresh, self.robot.take(ended)).items():
+                observations[group][ended] = values
+        return Step(
+            observations=observations,
+            reward=np.einsum("nt->n", reward_terms),
+            terminated=terminated,
+            truncated=(ending != 0) & ~terminated,
+            ending=ending,
+            reward_terms=reward_terms,
+            ended=ended + self.first,
+            final_observations=final,
+            episode_steps=lengths,
+            divergences=divergences,
+        )
+
+    @property
+    def phase(self) -> np.ndarray:
+        """Phase of the gait clock, 0 to 1, `(n,)`."""
+        elapsed = self.episode_step * (self.task.physics.policy_step / self.task.clock.period)
+        return np.asarray((self._clock_start + elapsed) % 1.0)
+
+    def _physics(self) -> None:
+        joints = len(self.layout.joints)
+        self.target = self.layout.default + self.task.control.scale * self.smoothed
+        target = self.target.reshape(self.count, len(self.layout.limbs), -1)
+        assisted = self.assist is not None and self.assist.active
+        for substep in range(len(self.sensors)):
+            if self.recording:
+                self.states[substep, :, : 7 + joints], self.states[substep, :, 7 + joints :] = (
+                    self.drive.qpos,
+                    self.drive.qvel,
+                )
+            self.drive.apply(target, self.motor_torque[substep], self.motor_velocity[substep])
+            if self.told is not None and self.recording:
+                self._keep_altered(self.told, substep)
+            if assisted:
+                self._help()
+            self._advance()
+            self.sensors[substep] = self._sensors
+            if self.recording:
+                self.stops[substep] = self._stops
+        if assisted:
+            self._push[:, self._pelvis] = 0.0
+
+    def _keep_altered(self, told: Told, substep: int) -> None:
+        driven, altered = self.drive.driven, self.altered
+        assert driven is not None
+        assert altered is not None
+        matrix, velocity, kept = (
+            told.chain.machine.joint_from_motor,
+            self.drive.qvel[:, 6:],
+            altered[substep],
+        )
+        told.keep(substep, driven, self.drive.qpos[:, 7:], velocity, self.drive.qvel[:, 3:6])
+        kept[0], kept[1] = applied(matrix, driven.transmitted), 0.0
+        if driven.joint_damping is not None:
+            kept[1] = driven.joint_damping * velocity
+        if driven.motor_damping is not None:
+            kept[1] += applied(
+                matrix, driven.motor_damping * applied(np.swapaxes(matrix, -1, -2), velocity)
+            )
+
+    def _advance(self) -> None:
+        from mujoco.batch import SimulationError
+
+        failed: np.ndarray | None = None
+        self._turn.release()
+        try:
+            if self._running is None or len(self._running):
+                self.batch.step(self._running)
+        except SimulationError as error:
+            failed = error.ids
+        finally:
+            self._turn.acquire()
+        if failed is not None:
+            self.drive.qpos[failed] = (
+                np.nan
+            )  # found, reported and started anew after the policy step
+
+    def _help(self) -> None:
+        assert self.assist is not None
+        motion = read_motion(self.drive.qpos, self.drive.qvel)
+        direction, speed = self.commander.wanted(self.goal)
+        self._push[:, self._pelvis] = self.assist.wrench(motion, direction, speed)
+
+    def _pushes(self, duration: float) -> None:
+        settings = self.task.randomisation
+        if settings.push_speed:
+            hit = self.rng.uniform(size=self.count) < duration / settings.push_interval
+            change = self.rng.uniform(-settings.push_speed, settings.push_speed, (self.count, 2))
+            self.drive.qvel[hit, :2] += change[hit]
+
+    def _state(self, thermal_excess: np.ndarray, terminated: np.ndarray) -> State:
+        """State of all simulations after physics."""
+        torque, speed = self.motor_torque, self.motor_velocity
+        pad_load = models.pad_loads(self.sensors)
+        return State(
+            motion=self.motion,
+            action=self.action,
+            previous_action=self.previous_action,
+            command=self.commander.vector(self.goal),
+            motor_torque=torque,
+            motor_velocity=speed,
+            pad_load=pad_load,
+            foot_load=models.foot_loads(pad_load, self.layout.pads_of_foot),
+            pad_slip=models.pad_slip(self.sensors[-1]),
+            power=np.einsum("snk,snk->n", self._heat * torque + speed, torque) / len(torque),
+            thermal_excess=thermal_excess,
+            phase=self.phase,
+            terminated=terminated,
+            goal=self.goal,
+            sensed=self._sensed(self.motion),
+        )
+
+    def _sensed(self, motion: Motion, ids: np.ndarray | None = None) -> Sensed | None:
+        """What alterations make of a motion on its way to the policy; of some simulations' rows."""
+        chain = self.drive.chain
+        if chain is None:
+            return None
+        rows = slice(None) if ids is None else ids
+        given = (
+            motion.joint_position,
+            motion.joint_velocity,
+            motion.angular_velocity,
+            motion.gravity if self._vertical is None else -(self._vertical @ motion.rotation),
+        )
+        whole = [np.zeros((self.count, values.shape[-1])) for values in given]
+        for place, values in zip(whole, given, strict=True):
+            place[rows] = values
+        position, velocity = chain.measured(*whole[:2])
+        angular_velocity, force = chain.imu(whole[2], -GRAVITY * whole[3])
+        down = -force[rows]
+        return Sensed(
+            angular_velocity[rows],
+            down / np.linalg.norm(down, axis=-1, keepdims=True),
+            position[rows],
+            velocity[rows],
+        )
+
+    def _started(self, ids: np.ndarray) -> State:
+        """Start simulations and give the state of their rows; nothing has touched or moved yet."""
+        motion = self._start(ids)
+        goal = self.commander.reset(ids, motion, self.rng.of(ids))
+        count, substeps, joints = len(ids), len(self.sensors), len(self.layout.joints)
+        motors, pads = (
+            np.zeros((substeps, count, len(self.layout.motors))),
+            np.zeros((substeps, count, len(self.layout.pads))),
+        )
+        none = np.zeros(count)
+        return State(
+            motion=motion,
+            action=np.zeros((count, joints)),
+            previous_action=np.zeros((count, joints)),
+            command=self.commander.vector(goal, ids),
+            motor_torque=motors,
+            motor_velocity=motors,
+            pad_load=pads,
+            foot_load=models.foot_loads(pads, self.layout.pads_of_foot),
+            pad_slip=pads[-1],
+            power=none,
+            thermal_excess=none,
+            phase=self.phase[ids],
+            terminated=np.zeros(count, bool),
+            goal=goal,
+            sensed=self._sensed(motion, ids),
+        )
+
+    def _rewards(self, state: State) -> np.ndarray:
+        values = np.zeros((len(self.rewards), self.count))
+        for row, (name, reward) in enumerate(self.rewards.items()):
+            if reward.weight:
+                np.multiply(
+                    TERMS[name].function(state, self.robot, **reward.parameters),
+                    reward.weight,
+                    out=values[row],
+                )
+        return values.T
+
+    def _find_diverged(self, position: np.ndarray, velocity: np.ndarray) -> list[Divergence]:
+        """Simulations gone wrong in this step; they are put back to standing so that the others can
+        go on.
+        """
+        if self._sound():
+            return []
+        with np.errstate(invalid="ignore"):
+            moving = np.abs(self.drive.qvel).max(-1)
+        lost = ~np.isfinite(self.drive.qpos.sum(-1)) | ~(moving < FASTEST)
+        warned = self.batch.warning[:, _BROKEN, 1].any(-1)
+        ids = np.flatnonzero(lost | warned)
+        parts = []
+        for i in ids:
+            reason = self.batch.error(int(i)) or (
+                "speed or position without bounds" if lost[i] else "warning of MuJoCo"
+            )
+            parts.append(
+                Divergence(
+                    self.first + int(i),
+                    int(self.episode_step[i]),
+                    reason,
+                    position[i],
+                    velocity[i],
+                    self.action[i].copy(),
+                )
+            )
+        if len(ids):
+            self._start(ids)
+            for values in (
+                self.motor_torque,
+                self.motor_velocity,
+                self.sensors,
+                self.states,
+                self.stops,
+            ):
+                values[:, ids] = 0.0
+            if self.told is not None:
+                self.told.forget(ids)
+        return parts
+
+    def _sound(self) -> bool:
+        """Whether all simulations are well."""
+        speed, position = self.drive.qvel, self.drive.qpos
+        bounded = np.einsum("nj,nj->", speed, speed) < FASTEST**2  # false for what is not a number
+        return bool(
+            bounded
+            and np.isfinite(np.einsum("nj->", position))
+            and not self.batch.warning[:, _BROKEN, 1].any()
+        )
+
+    def _start(self, ids: np.ndarray) -> Motion:
+        """Put robots on the floor near their default posture; motion of these rows."""
+        layout, count, joints = self.layout.take(ids), len(ids), len(self.layout.joints)
+        drawn = self.rng.of(ids).uniform(-1.0, 1.0, (count, len(self._spread) + 1))
+        offset = drawn[:, :-1] * self._spread
+        self.batch.state[ids] = self._standing[ids]
+        self.batch.warning[ids] = 0
+        position, velocity = self.drive.qpos[ids], np.zeros((count, 6 + joints))
+        position[:, 7:] = np.minimum(
+            np.maximum(position[:, 7:] + offset[:, :joints], layout.lower), layout.upper
+        )
+        position[:, 3:7] = _quaternion(*offset[:, -3:].T)
+        velocity[:, 6:], velocity[:, :2] = (
+            offset[:, joints : 2 * joints],
+            offset[:, 2 * joints : 2 * joints + 2],
+        )
+        self._clock_start[ids] = 0.5 + 0.5 * drawn[:, -1]
+        smoothed = self._stride(ids, position, velocity, offset[:, -1])
+        self._tried[ids] = position
+        self._starter.forward(ids, 1)
+        radius = self._pad_radius[ids] if len(self._pad_radius) > 1 else self._pad_radius
+        position[:, 2] -= self._places[ids][:, self._pad_ids, 2].min(-1) - radius
+        self.drive.qpos[ids], self.drive.qvel[ids] = position, velocity
+        self.episode_step[ids] = 0
+        self.thermal.reset(ids)
+        self.drive.reset(ids, position[:, 7:], velocity[:, 6:])
+        for values in (self.action, self.previous_action):
+            values[ids] = 0.0
+        self.smoothed[ids] = smoothed
+        return read_motion(position, velocity)
+
+    def _stride(
+        self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray, yaw: np.ndarray
+    ) -> np.ndarray:
+        """Put some of the starting robots in mid-stride, in place, and their clock at that phase;
+        the smoothed actions that hold them there, `(n, J)`, zero for those that stand.
+        """
+        smoothed = np.zeros((len(ids), len(self.layout.joints)))
+        share = self.task.start.stride_share
+        if not share:
+            return smoothed
+        drawn = self.rng.of(ids).uniform(size=(len(ids), 3))
+        rows, layout = np.flatnonzero(drawn[:, 0] < share), self.layout.take(ids)
+        places, angle, rate, speed, phase = human_gait.stride(layout.joints, drawn[rows, 1:])
+        self._clock_start[ids[rows]] = phase
+        lower, upper, default = (
+            np.broadcast_to(limit, smoothed.shape)[np.ix_(rows, places)]
+            for limit in (layout.lower, layout.upper, layout.default)
+        )
+        angle = np.clip(angle, lower, upper)
+        position[np.ix_(rows, 7 + places)], velocity[np.ix_(rows, 6 + places)] = angle, rate
+        velocity[rows, 0], velocity[rows, 1] = speed * np.cos(yaw[rows]), speed * np.sin(yaw[rows])
+        smoothed[np.ix_(rows, places)] = (angle - default) / self.task.control.scale
+        return smoothed
+
+    def _stop_torque(self, position: np.ndarray) -> np.ndarray:
+        """Torque of the stops on the joints, toward the middle of the range of motion [Nm],
+        `(substeps, n, J)`.
+        """
+        middle = (self.layout.lower + self.layout.upper) / 2
+        return np.where(position < middle, self.stops, -self.stops)
+
+    def signals(self, *, friction: bool = True) -> Mapping[str, Any]:
+        """Collect what happened within the last policy step; see `Environment.signals`.
+
+        Args:
+            friction: also `joint_friction`, which must be computed anew.
+
+        Returns:
+            Arrays by name.
+        """
+        joints, substeps = len(self.layout.joints), len(self.sensors)
+        position, velocity = self.states[..., : 7 + joints], self.states[..., 7 + joints :]
+        legs = (substeps, self.count, len(self.layout.limbs), -1)
+        matrix = self.drive.model.joint_from_motor
+        torque = np.einsum("...jm,...m->...j", matrix, self.motor_torque.reshape(legs))
+        signals = {"driven_joint_torque": torque.reshape(substeps, self.count, -1)}
+        if self.altered is not None:
+            signals["driven_joint_torque"] = self.altered[:, 0].copy()
+        if friction:
+            resistance = self.drive.friction(
+                velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs)
+            ).reshape(substeps, self.count, -1)
+            signals["joint_friction"] = (
+                resistance if self.altered is None else resistance + self.altered[:, 1]
+            )
+        signals |= {
+            "base_position": position[..., :3],
+            "base_orientation": position[..., 3:7],
+            "base_velocity": velocity[..., :3],
+            "base_angular_velocity": velocity[..., 3:_ROTORS_BEFORE],
+            "joint_target": np.broadcast_to(self.target, (substeps, *self.target.shape)),
+            "joint_position": position[..., 7:],
+            "joint_velocity": velocity[..., _ROTORS_BEFORE:],
+            "stop_torque": self._stop_torque(position[..., 7:]),
+            "motor_torque": self.motor_torque,
+            "motor_velocity": self.motor_velocity,
+            "pad_force": models.pad_forces(self.sensors),
+            "pad_slip": models.pad_slip(self.sensors),
+        }
+        if self.told is not None:
+            signals |= self.told.signals
+        return {name: np.moveaxis(values, 0, 1) for name, values in signals.items()}
+
+
+def _quaternion(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> np.ndarray:
+    """Unit quaternions w x y z of yaw, then pitch, then roll, `(n, 4)`."""
+    (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a / 2), np.sin(a / 2)) for a in (roll, pitch, yaw))
+    return np.stack(
+        [
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        ],
+        -1,
+    )

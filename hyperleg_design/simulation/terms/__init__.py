@@ -1,0 +1,1 @@
+"""Parts of a task that are one small function each: observations, rewards, ends of episodes."""
