@@ -1,16 +1,16 @@
 """Trained policies as they are shipped: one folder a training, named `group-design-seed`, such as
-`walk-toe-0`.
+`walk_upright-toe-1`.
 
 | file | holds |
 |---|---|
-| `policy.onnx` | the last policy, weights in single precision, stored once (0.8 MB with three
-layers of 512, 256, 128) | | `critic.onnx` | its critic, for trainings that go on from it (older
+| `policy.onnx` | the last policy, weights in half precision (0.15 MB with three layers of 256,
+128, 64) | | `critic.onnx` | its critic, for trainings that go on from it (older
 ones have none) | | `late_*.onnx` | late policies before it, earliest first | | `run.json`
 | what was trained: task, design, preset (all resolved), seed, command, versions, commit | |
 `progress.jsonl` | the learning curve, at most `CURVE_ROWS` rows |
 
 A folder of finished trainings (`results/campaign`) has the same form and more files; `pack` keeps
-the five above.
+the five above and halves the precision of weights.
 """
 
 from __future__ import annotations
@@ -21,19 +21,23 @@ import json
 import math
 import re
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.writing import output_folder, write_text
+from hyperleg_design.evaluation.half_precision import halve_weights
+from hyperleg_design.writing import output_folder, write_bytes, write_text
 
 POLICIES = "policies"
 """Folder of the shipped policies in `sim/`."""
 POLICY, CRITIC, LATE = "policy.onnx", "critic.onnx", "late_*.onnx"
 RUN, PROGRESS = "run.json", "progress.jsonl"
+PREFERRED = {"walk": ("walk_upright", "walk"), "t_test": ("t_test_free", "t_test")}
+"""Groups whose policies stand for a kind of protocol, the best first; other groups of that name's
+beginning come after them."""
 CURVE_ROWS = 200
 """Rows of a packed learning curve."""
 CURVE = ("steps", "stage", "assist", "reward", "speed", "falls", "cost_of_transport")
@@ -117,7 +121,7 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
             "policies",
             "",
             str(folder),
-            "no such folder; expects one with a folder a training, such as walk-toe-0",
+            "no such folder; expects one with a folder a training, such as walk_upright-toe-1",
         )
     policies = []
     for training in place.iterdir():
@@ -159,33 +163,34 @@ def check_different(paths: Iterable[str | Path], where: str = "policies") -> Non
 
 
 def policies_for(
-    group: str, variant: str, seeds: int, folder: str | Path | None = None
+    kind: str, variant: str, seeds: int, folder: str | Path | None = None
 ) -> list[Shipped]:
-    """List the last policies of the first trainings of a task and toe layout.
+    """List the last policies of the first trainings for a kind of protocol and a toe layout.
 
     Args:
-        group: of the campaign, such as `walk`.
+        kind: of protocol, `walk` or `t_test`; a group's own name chooses that group.
         variant: ablation of the design.
         seeds: most trainings.
         folder: of trainings; the shipped ones by default.
 
     Returns:
-        One policy for each seed.
+        One policy for each seed, all of one group.
 
     Raises:
         InputError: there is none.
     """
     known = shipped_policies(folder, late=False)
-    fitting = [policy for policy in known if (policy.group, policy.design) == (group, variant)]
-    if not fitting:
-        have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"
-        raise InputError(
-            "policies",
-            "",
-            f"{group}-{variant}",
-            f"no policy was trained for this task and toe layout; there are {have}",
-        )
-    return fitting[:seeds]
+    groups = [p.group for p in known if p.design == variant and p.group.startswith(kind)]
+    best = PREFERRED.get(kind, (kind,))
+    for group in dict.fromkeys([*(name for name in best if name in groups), *groups]):
+        return [p for p in known if (p.group, p.design) == (group, variant)][:seeds]
+    have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"
+    raise InputError(
+        "policies",
+        "",
+        f"{kind}-{variant}",
+        f"no policy was trained for this task and toe layout; there are {have}",
+    )
 
 
 def find_policy(name: str | Path) -> Path:
@@ -218,7 +223,7 @@ def find_policy(name: str | Path) -> Path:
 
 
 def _briefly(policies: Sequence[Shipped]) -> str:
-    """Names of trainings, seeds together: `walk-toe-0..4`."""
+    """Names of trainings, seeds together: `walk_upright-toe-1..4`."""
     seeds: dict[str, list[int]] = {}
     for policy in policies:
         seeds.setdefault(f"{policy.group}-{policy.design}", []).append(policy.seed)
@@ -255,7 +260,7 @@ def learning_curve(training: str | Path, rows: int = CURVE_ROWS) -> list[dict[st
     return [_mean(lines[i : i + length]) for i in range(0, len(lines), length)]
 
 
-def pack(source: str | Path, target: str | Path) -> list[Packed]:
+def pack(source: str | Path, target: str | Path, starts: Collection[str] = ()) -> list[Packed]:
     """Copy all finished trainings of a folder in the form in which they are shipped; each is
     written whole or not at all.
 
@@ -264,6 +269,7 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
     Args:
         source: folder of trainings, such as `results/campaign`.
         target: such as `sim/policies`.
+        starts: groups of which the last policy alone is copied, because others only start from it.
 
     Returns:
         One a training of the source, by name.
@@ -278,18 +284,28 @@ def pack(source: str | Path, target: str | Path) -> list[Packed]:
     trainings = sorted(p for p in place.iterdir() if p.is_dir() and _NAME.fullmatch(p.name))
     if not trainings:
         raise InputError(
-            "pack", "from", str(source), "holds no training; expects folders such as walk-toe-0"
+            "pack",
+            "from",
+            str(source),
+            "holds no training; expects folders such as walk-toe-0",
         )
     packed = []
     for training in trainings:
         if not (training / POLICY).is_file():
             packed.append(Packed(training.name, 0, 0))
             continue
-        policies = [training / POLICY, *sorted(training.glob(LATE))]
-        files = [*policies, training / CRITIC, training / RUN]
+        policies, files = [training / POLICY], [training / POLICY, training / RUN]
+        if training.name.split("-")[0] not in starts:
+            policies += sorted(training.glob(LATE))
+            files += [*policies[1:], training / CRITIC]
         with output_folder(Path(target) / training.name) as folder:
             for file in files:
-                if file.is_file():
+                if file.is_file() and file.suffix == ".onnx":
+                    write_bytes(
+                        folder / file.name,
+                        halve_weights(file.read_bytes(), f"{training.name}/{file.name}"),
+                    )
+                elif file.is_file():
                     shutil.copyfile(file, folder / file.name)
             write_text(
                 folder / PROGRESS,

@@ -50,6 +50,8 @@ class Run:
     preset: str
     start: str = ""
     """Group whose policy of the same design and seed it starts from; empty: from scratch."""
+    compared: bool = True
+    """Whether its policies are evaluated; those that others only start from are not."""
 
     @property
     def name(self) -> str:
@@ -65,6 +67,11 @@ class Campaign:
     processes: int
     """Trainings at the same time, one thread each."""
     runs: tuple[Run, ...]
+
+    @property
+    def starts(self) -> frozenset[str]:
+        """Groups whose policies others only start from."""
+        return frozenset(run.group for run in self.runs if not run.compared)
 
 
 @dataclass(frozen=True)
@@ -109,11 +116,14 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
             raise InputError(where, f"groups.{g}", group, "expects a mapping")
         _check_keys(
             group,
-            ("name", "task", "designs", "seeds", "start", "preset"),
+            ("name", "task", "designs", "seeds", "start", "preset", "compared"),
             where,
             f"groups.{g}.",
-            ("start", "preset"),
+            ("start", "preset", "compared"),
         )
+        compared = group.get("compared", True)
+        if not isinstance(compared, bool):
+            raise InputError(where, f"groups.{g}.compared", compared, "expects true or false")
         if group["name"] in names:
             raise InputError(where, f"groups.{g}.name", group["name"], "stands twice")
         start = str(group.get("start") or "")
@@ -143,6 +153,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
                     seed,
                     preset,
                     start,
+                    compared,
                 )
                 runs.append((seed, g, d, run))
     # by seed first, so that whatever is done when time is out can be compared

@@ -12,6 +12,7 @@ import pytest
 
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation import shipped
+from hyperleg_design.evaluation.half_precision import halve_weights
 from hyperleg_design.evaluation.policy import load_policy
 
 
@@ -21,7 +22,7 @@ def campaign(tmp_path, make_onnx):
     content = make_onnx().read_bytes()
     place = tmp_path / "campaign"
     for name, late in (
-        ("walk-toe-0", ("late_000800.onnx", "late_000900.onnx")),
+        ("walk_upright-toe-0", ("late_000800.onnx", "late_000900.onnx")),
         ("t_test-toe_removed_matched-11", ()),
     ):
         folder = place / name
@@ -43,28 +44,30 @@ def campaign(tmp_path, make_onnx):
         (folder / "progress.jsonl").write_text(
             "".join(json.dumps(r) + "\n" for r in rows) + '{"iteration": 10'
         )
-    (place / "walk-toe-1").mkdir()
-    (place / "walk-toe-1" / "checkpoint.pt").write_bytes(b"x")
+    (place / "walk_upright-toe-1").mkdir()
+    (place / "walk_upright-toe-1" / "checkpoint.pt").write_bytes(b"x")
     (place / "notes").mkdir()
     return place
 
 
 def test_the_same_policy_twice_is_refused(campaign, tmp_path):
-    first = campaign / "walk-toe-0" / "policy.onnx"
+    first = campaign / "walk_upright-toe-0" / "policy.onnx"
     other = tmp_path / "other.onnx"
     other.write_bytes(first.read_bytes() + b"x")
     shipped.check_different([first, other])
-    with pytest.raises(InputError, match="same policy as walk-toe-0/policy"):
-        shipped.check_different([first, other, campaign / "walk-toe-0" / "late_000800.onnx"])
+    with pytest.raises(InputError, match="same policy as walk_upright-toe-0/policy"):
+        shipped.check_different(
+            [first, other, campaign / "walk_upright-toe-0" / "late_000800.onnx"]
+        )
 
 
 def test_policies_are_listed_by_group_design_seed_and_lateness(campaign):
     found = shipped.shipped_policies(campaign)
     assert [(p.group, p.design, p.seed, p.late, p.path.name) for p in found] == [
         ("t_test", "toe_removed_matched", 11, 0, "policy.onnx"),
-        ("walk", "toe", 0, 0, "policy.onnx"),
-        ("walk", "toe", 0, 1, "late_000900.onnx"),
-        ("walk", "toe", 0, 2, "late_000800.onnx"),
+        ("walk_upright", "toe", 0, 0, "policy.onnx"),
+        ("walk_upright", "toe", 0, 1, "late_000900.onnx"),
+        ("walk_upright", "toe", 0, 2, "late_000800.onnx"),
     ]
     assert found[0].training == "t_test-toe_removed_matched-11"
     assert found[1].name == load_policy(found[1].path).name
@@ -75,10 +78,10 @@ def test_a_packed_campaign_has_the_same_policies_and_little_else(campaign, tmp_p
     found = shipped.pack(campaign, tmp_path / "packed")
     assert [(p.training, p.policies) for p in found] == [
         ("t_test-toe_removed_matched-11", 1),
-        ("walk-toe-0", 3),
-        ("walk-toe-1", 0),
+        ("walk_upright-toe-0", 3),
+        ("walk_upright-toe-1", 0),
     ]
-    folder = tmp_path / "packed" / "walk-toe-0"
+    folder = tmp_path / "packed" / "walk_upright-toe-0"
     names = {p.name for p in folder.iterdir()}
     assert names == {
         ".hyperleg",
@@ -88,37 +91,46 @@ def test_a_packed_campaign_has_the_same_policies_and_little_else(campaign, tmp_p
         "run.json",
         "progress.jsonl",
     }
-    assert (folder / "policy.onnx").read_bytes() == (
-        campaign / "walk-toe-0" / "policy.onnx"
-    ).read_bytes()
+    assert (folder / "policy.onnx").read_bytes() == halve_weights(
+        (campaign / "walk_upright-toe-0" / "policy.onnx").read_bytes()
+    )
     assert found[1].size == sum(p.stat().st_size for p in folder.iterdir())
     before, after = (shipped.shipped_policies(p) for p in (campaign, tmp_path / "packed"))
     assert [(p.training, p.late) for p in before] == [(p.training, p.late) for p in after]
-    assert "walk-toe-1" in shipped.pack_text(found)
+    assert "walk_upright-toe-1" in shipped.pack_text(found)
     assert "2 of 3 trainings, 4 policies" in shipped.pack_text(found)
     assert shipped.pack(campaign, tmp_path / "packed") == found  # again, over itself
 
 
+def test_of_a_mere_start_the_last_policy_alone_is_packed(campaign, tmp_path):
+    found = shipped.pack(campaign, tmp_path / "packed", starts={"walk_upright"})
+    assert [(p.training, p.policies) for p in found][1] == ("walk_upright-toe-0", 1)
+    assert not list((tmp_path / "packed" / "walk_upright-toe-0").glob("late_*"))
+    assert (tmp_path / "packed" / "walk_upright-toe-0" / "run.json").exists()
+
+
 def test_a_learning_curve_is_thinned_by_means(campaign):
-    rows = shipped.learning_curve(campaign / "walk-toe-0")
+    rows = shipped.learning_curve(campaign / "walk_upright-toe-0")
     assert len(rows) == shipped.CURVE_ROWS
     assert rows[-1]["steps"] == 10_000
     assert rows[0]["reward"] == pytest.approx(3.0)  # of 1 .. 5
     assert np.mean([r["reward"] for r in rows]) == pytest.approx(500.5)
     assert set(rows[0]) == {"steps", "reward"}
-    assert shipped.learning_curve(campaign / "walk-toe-1") == []
+    assert shipped.learning_curve(campaign / "walk_upright-toe-1") == []
 
 
 def test_a_training_of_a_name_is_found(campaign, tmp_path, monkeypatch):
     monkeypatch.setattr(shipped, "shipped_folder", lambda: campaign)
-    assert shipped.find_policy("walk-toe-0") == campaign / "walk-toe-0" / "policy.onnx"
-    assert load_policy("walk-toe-0").seed == 3
+    assert (
+        shipped.find_policy("walk_upright-toe-0") == campaign / "walk_upright-toe-0" / "policy.onnx"
+    )
+    assert load_policy("walk_upright-toe-0").seed == 3
     with pytest.raises(
         InputError,
-        match=r"walk-toe-7.*did you mean walk-toe-0\? Shipped, with their seeds: "
-        r"t_test-toe_removed_matched-11, walk-toe-0$",
+        match=r"walk_upright-toe-7.*did you mean walk_upright-toe-0\? Shipped, with their seeds: "
+        r"t_test-toe_removed_matched-11, walk_upright-toe-0$",
     ):
-        shipped.find_policy("walk-toe-7")
+        shipped.find_policy("walk_upright-toe-7")
 
 
 def test_seeds_of_a_name_are_told_together():
@@ -140,8 +152,8 @@ def test_nothing_foreign_is_packed_or_overwritten(campaign, tmp_path):
     with pytest.raises(InputError, match="no such folder"):
         shipped.pack(tmp_path / "nothing", tmp_path / "packed")
     with pytest.raises(InputError, match="holds no training"):
-        shipped.pack(campaign / "walk-toe-0", tmp_path / "packed")
-    mine = tmp_path / "packed" / "walk-toe-0"
+        shipped.pack(campaign / "walk_upright-toe-0", tmp_path / "packed")
+    mine = tmp_path / "packed" / "walk_upright-toe-0"
     mine.mkdir(parents=True)
     (mine / "thesis.txt").write_text("mine")
     with pytest.raises(OutputError):
@@ -150,7 +162,9 @@ def test_nothing_foreign_is_packed_or_overwritten(campaign, tmp_path):
 
 
 def test_trainings_of_other_robots_say_so(campaign):
-    (one,) = [p for p in shipped.shipped_policies(campaign, late=False) if p.group == "walk"]
+    (one,) = [
+        p for p in shipped.shipped_policies(campaign, late=False) if p.group == "walk_upright"
+    ]
     assert one.family == "hyperleg"
     found = json.loads((one.path.parent / "run.json").read_text())
     (one.path.parent / "run.json").write_text(json.dumps({**found, "design": {"family": "tree"}}))

@@ -35,33 +35,31 @@ def nothing_shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "shipped_folder", lambda: tmp_path / "policies")
 
 
-def test_the_shipped_campaign_holds_what_the_study_compares() -> None:
-    runs = load_campaign().runs
-    designs = ("toe", "toe_locked", "toe_removed_matched", "toe_removed")
-    count = {
-        (group, design): sum((r.group, r.design) == (group, design) for r in runs)
-        for group in ("walk", "walk_paper", "t_test")
-        for design in designs
-    }
-    walk = {design: count["walk", design] for design in designs}
-    assert set(walk.values()) == {5}
-    assert {count["walk_paper", d] for d in ("toe", "toe_removed_matched")} == {3}
-    assert {count["t_test", d] for d in ("toe", "toe_removed_matched")} == {5}
-    assert len({r.name for r in runs}) == len(runs) == 36
-    assert len({r.preset for r in runs}) == 1  # equal budgets and stages
-    assert [r.seed for r in runs] == sorted(r.seed for r in runs)
+def test_the_shipped_campaign_has_the_seeds_that_its_plan_asks_for() -> None:
+    campaign, plan = load_campaign(), load_plan()
+    assert campaign.starts == {"walk_guided"}
+    for design in plan.designs:
+        seeds = {r.seed for r in campaign.runs if (r.group, r.design) == ("walk_upright", design)}
+        assert len(seeds) >= plan.seeds["walk"]
+    assert [r.seed for r in campaign.runs] == sorted(r.seed for r in campaign.runs)
+    assert len({r.name for r in campaign.runs}) == len(campaign.runs)
 
 
-def test_the_campaign_of_the_fair_study_has_the_seeds_that_its_plan_asks_for() -> None:
-    runs, plan = load_campaign("campaign_study").runs, load_plan()
-    for group in ("walk_free", "walk_upright"):
-        for design in plan.designs:
-            seeds = {r.seed for r in runs if (r.group, r.design) == (group, design)}
-            assert len(seeds) >= plan.seeds["walk"]
-    assert {(r.preset, r.start) for r in runs if r.task != "walk_guided"} == {
-        ("study", "walk_guided")
+@pytest.mark.parametrize("name", ["campaign", "campaign_rewards"])
+def test_what_is_compared_starts_alike(name: str) -> None:
+    """Equal budgets and stages for all that are compared."""
+    runs = load_campaign(name).runs
+    assert {(r.preset, r.start) for r in runs if r.compared} == {("study", "walk_guided")}
+    assert {(r.preset, r.start, r.task) for r in runs if not r.compared} == {
+        ("guided", "", "walk_guided")
     }
-    assert {(r.preset, r.start) for r in runs if r.task == "walk_guided"} == {("guided", "")}
+
+
+def test_the_rewards_are_switched_one_at_a_time() -> None:
+    runs = load_campaign("campaign_rewards").runs
+    for group in ("walk_clock", "walk_power", "walk_force"):
+        arms = {(r.design, r.seed) for r in runs if r.group == group}
+        assert arms == {(d, s) for d in ("toe", "toe_removed_matched") for s in range(3)}
 
 
 @pytest.mark.parametrize(
@@ -72,6 +70,7 @@ def test_the_campaign_of_the_fair_study_has_the_seeds_that_its_plan_asks_for() -
         ({"runs": 3}, "runs"),
         ({"processes": 0}, "processes"),
         ({"groups": []}, "groups"),
+        ({"groups": [{**DATA["groups"][0], "compared": "no"}]}, "groups.0.compared"),
         ({"groups": [{"name": "a", "task": "walk", "designs": ["toe"]}]}, "groups.0.seeds"),
         ({"groups": [{"name": "a", "task": "walk", "designs": ["toes"], "seeds": 1}]}, ""),
         ({"groups": [{"name": "a", "task": "swim", "designs": ["toe"], "seeds": 1}]}, ""),
