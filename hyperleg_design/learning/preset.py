@@ -22,6 +22,10 @@ BEGINS = ("stage", "assist_gone")
 """When a ramp begins: with its stage, or with the first iteration without assist."""
 
 
+OWN = ("name", "description", "tasks", "final_share")
+"""What a preset does not take from its base."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Algorithm(Checked):
     """Proximal policy optimisation; defaults as measured on this biped, not the paper's."""
@@ -225,7 +229,31 @@ def load_preset(name: str | Path) -> Preset:
         InputError: names file, field, value and remedy.
     """
     path = resources.find_sim("preset", name)
-    return preset_from_mapping(read_yaml(path), short_name(path))
+    return preset_from_mapping(_with_base(read_yaml(path), short_name(path)), short_name(path))
+
+
+def _with_base(
+    data: Mapping[str, Any], where: str, before: tuple[str, ...] = ()
+) -> Mapping[str, Any]:
+    """Fill what a preset leaves out with what its `base` states, but for name, tasks and the share
+    of the final reward.
+    """
+    base = data.get("base")
+    if base is None:
+        return data
+    if not isinstance(base, str) or base in before:
+        raise InputError(where, "base", base, "expects the name of a preset that has other bases")
+    path = resources.find_sim("preset", base)
+    below = _with_base(read_yaml(path), short_name(path), (*before, base))
+    merged = {key: value for key, value in below.items() if key not in OWN}
+    for key, value in data.items():
+        old = merged.get(key)
+        if isinstance(old, Mapping) and isinstance(value, Mapping):
+            merged[key] = {**old, **value}
+        else:
+            merged[key] = value
+    del merged["base"]
+    return merged
 
 
 def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
@@ -282,7 +310,16 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
         check_final_share(parts, least, where, f"tasks.{task}")
     for key in rest:
         if key not in sizes:
-            known = ["name", *sizes, "final_share", "algorithm", "network", "warm_start", "tasks"]
+            known = [
+                "name",
+                "base",
+                *sizes,
+                "final_share",
+                "algorithm",
+                "network",
+                "warm_start",
+                "tasks",
+            ]
             raise InputError(where, str(key), rest[key], parameters.unknown(str(key), known))
     values = {key: _whole(rest[key], where, key) for key in rest}
     try:

@@ -78,3 +78,32 @@ def test_a_task_without_stages_and_a_preset_that_does_not_exist() -> None:
         load_preset("laptop").stages("juggle")
     with pytest.raises(InputError, match="laptop"):
         load_preset("desktop")
+
+
+def test_a_preset_fills_itself_from_its_base(write) -> None:
+    path = write(
+        "mine.yaml",
+        "name: mine\nbase: designs\nrollout: 8\nalgorithm: {epochs: 7}\n"
+        "tasks: {walk: [{name: all, steps: 8192, assist: 0.0}]}\n",
+    )
+    mine, base, study = load_preset(path), load_preset("designs"), load_preset("study")
+    assert (mine.name, list(mine.tasks)) == ("mine", ["walk"])
+    assert (mine.rollout, mine.simulations) == (8, base.simulations)
+    assert (mine.algorithm.epochs, mine.algorithm.kl_target) == (7, base.algorithm.kl_target)
+    assert mine.algorithm.clip == study.algorithm.clip  # the base's base
+    assert mine.network.hidden == study.network.hidden
+    assert mine.warm_start.critic_iterations == base.warm_start.critic_iterations
+
+
+@pytest.mark.parametrize("base", ["mine.yaml", "[study]", "3"])
+def test_a_base_must_be_another_preset(write, base: str, monkeypatch, tmp_path) -> None:
+    monkeypatch.chdir(tmp_path)
+    write("mine.yaml", f"name: mine\nbase: {base}\ntasks: {{walk: [{{name: a, steps: 1}}]}}\n")
+    with pytest.raises(InputError, match=r"base.*expects the name of a preset"):
+        load_preset("mine.yaml")
+
+
+def test_a_base_that_does_not_exist_is_named(write) -> None:
+    path = write("mine.yaml", "name: mine\nbase: nothing\ntasks: {walk: [{name: a, steps: 1}]}\n")
+    with pytest.raises(InputError, match="nothing"):
+        load_preset(path)
