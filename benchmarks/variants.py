@@ -138,7 +138,7 @@ def main() -> None:
     parser.add_argument("--batch", type=int, default=BATCH, help="designs side by side")
     parser.add_argument("--export", type=Path, help="folder for models and states")
     chosen = parser.parse_args()
-    policy = load_policy("walk-toe-0")
+    policy = load_policy("walk_upright-toe-0")
     designs = designs_of(policy, chosen.designs)
     protocol = WalkProtocol(
         trials=chosen.trials,

@@ -12,6 +12,7 @@ import pytest
 import hyperleg_design
 from hyperleg_design import cli
 from hyperleg_design.cli.usage import option_names
+from hyperleg_design.evaluation.shipped import find_policy
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
@@ -207,8 +208,8 @@ def test_campaign_status_needs_no_torch_and_lists_every_training(capsys, tmp_pat
     code, out, _ = run(capsys, "campaign", "status", "--out", str(tmp_path / "none"))
     assert code == 0
     shipped = out.count(" shipped ")
-    assert out.count(" missing ") == 36 - shipped
-    assert f"{shipped} of 36 done" in out
+    assert out.count(" missing ") == 64 - shipped
+    assert f"{shipped} of 64 done" in out
 
 
 def test_training_without_torch_says_what_to_install(capsys, tmp_path: Path, monkeypatch):
@@ -227,10 +228,10 @@ def test_training_without_torch_says_what_to_install(capsys, tmp_path: Path, mon
 
 
 def test_a_campaign_is_packed_for_shipping(capsys, tmp_path: Path):
-    folder = tmp_path / "campaign" / "walk-toe-0"
+    folder = tmp_path / "campaign" / "walk_upright-toe-0"
     folder.mkdir(parents=True)
-    (folder / "policy.onnx").write_bytes(b"x" * 1000)
-    (tmp_path / "campaign" / "walk-toe-1").mkdir()
+    (folder / "policy.onnx").write_bytes(find_policy("walk_upright-toe-0").read_bytes())
+    (tmp_path / "campaign" / "walk_upright-toe-1").mkdir()
     code, out, _ = run(
         capsys,
         "campaign",
@@ -241,8 +242,8 @@ def test_a_campaign_is_packed_for_shipping(capsys, tmp_path: Path):
         str(tmp_path / "policies"),
     )
     assert code == 0
-    assert "1 of 2 trainings, 1 policies, 0.0 MB" in out
-    assert (tmp_path / "policies" / "walk-toe-0" / "policy.onnx").exists()
+    assert "1 of 2 trainings, 1 policies, 0.1 MB" in out
+    assert (tmp_path / "policies" / "walk_upright-toe-0" / "policy.onnx").exists()
     code, _, err = run(
         capsys, "campaign", "pack", "--from", str(tmp_path / "none"), "--to", str(tmp_path / "p")
     )
@@ -342,21 +343,21 @@ def test_campaign_speaks_json(capsys, tmp_path: Path):
     code, out, _ = run(capsys, "campaign", "status", "--out", str(tmp_path / "none"), "--json")
     assert code == 0
     found = json.loads(out)
-    assert len(found) == 36
+    assert len(found) == 64
     assert {row["state"] for row in found} <= {"missing", "shipped"}
 
 
 def test_missing_trainings_are_named(tmp_path: Path):
     from hyperleg_design.report.walks.evaluated import coverage, coverage_text
 
-    (tmp_path / "walk-toe-0").mkdir()
-    (tmp_path / "walk-toe-0" / "policy.onnx").write_bytes(b"x")
+    (tmp_path / "walk_upright-toe-0").mkdir()
+    (tmp_path / "walk_upright-toe-0" / "policy.onnx").write_bytes(b"x")
     found = coverage(tmp_path)
-    assert found["evaluated"] == ["walk-toe-0"]
-    assert len(found["missing"]) == 35
+    assert found["evaluated"] == ["walk_upright-toe-0"]
+    assert len(found["missing"]) == 31  # of four arms with eight seeds
     text = coverage_text(found)
-    assert text.startswith("1 trainings are evaluated; 35 of the campaign's are missing: ")
-    assert "walk toe (seed 1, 2, 3, 4)" in text
+    assert text.startswith("1 trainings are evaluated; 31 of the campaign's are missing: ")
+    assert "walk_upright toe (seed 1, 2, 3, 4, 5, 6, 7)" in text
 
 
 def test_gap_alone_shows_its_verbs(capsys):

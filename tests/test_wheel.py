@@ -73,4 +73,4 @@ def test_the_wheel_works_in_a_clean_environment(wheel, tmp_path: Path):
     assert any(name.endswith(".urdf") for name in built["files"])
     assert json.loads(run(hyperleg, "list", "policies", "--json"))["policies"] == {}
     with_checkout = run(hyperleg, "list", "policies", "--json", HYPERLEG_HOME=str(CHECKOUT))
-    assert "walk-toe-0" in json.loads(with_checkout)["policies"]
+    assert "walk_upright-toe-0" in json.loads(with_checkout)["policies"]

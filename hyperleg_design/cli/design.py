@@ -292,7 +292,9 @@ class Study(Printing):
         """Run the study and write its page."""
         from hyperleg_design.report.study.study import run_study
         from hyperleg_design.report.walks.evaluated import coverage, coverage_text
+        from hyperleg_design.writing import check_output_folder
 
+        check_output_folder(self.out)
         trainings = coverage(self.policies)
         if not self.json and (text := coverage_text(trainings)):
             print(text, flush=True)

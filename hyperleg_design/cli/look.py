@@ -93,7 +93,8 @@ class Video(Printing):
     """Write a walk as an MP4 or GIF file: one trial of a policy, or a recording."""
 
     source: Annotated[str, tyro.conf.Positional]
-    """ONNX file, name of a shipped training such as walk-toe-0, or a recording (.parquet)."""
+    """ONNX file, name of a shipped training such as walk_upright-toe-1, or a recording
+    (.parquet)."""
     out: Path
     """File to write, .mp4 or .gif."""
     design: str = ""

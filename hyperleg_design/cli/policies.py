@@ -124,7 +124,8 @@ class Campaign(Printing):
         )
 
         if self.action == "pack":
-            packed = pack(self.source, self.target)
+            require("onnx")
+            packed = pack(self.source, self.target, load_campaign(self.file).starts)
             if self.json:
                 emit(packed)
             else:
@@ -150,7 +151,7 @@ class Evaluate(Printing):
     """
 
     policies: Annotated[tuple[str, ...], tyro.conf.Positional]
-    """ONNX files, or names of shipped trainings such as walk-toe-0."""
+    """ONNX files, or names of shipped trainings such as walk_upright-toe-1."""
     protocol: str = ""
     """walk, t_test, or a YAML file; what suits the policy's task by default."""
     design: str = ""
@@ -308,7 +309,9 @@ class Paper(Printing):
         """Evaluate the policies and write the page."""
         from hyperleg_design.report.walks.evaluated import coverage, coverage_text
         from hyperleg_design.report.walks.paper_page import read_tables, run_paper, tables_text
+        from hyperleg_design.writing import check_output_folder
 
+        check_output_folder(self.out)
         trainings = coverage(self.policies)
         if not self.json and (text := coverage_text(trainings)):
             print(text, flush=True)

@@ -94,7 +94,7 @@ def load_policy(name: str | Path) -> OnnxPolicy:
     """Read a trained policy, with all that its file says of its training.
 
     Args:
-        name: an ONNX file, or the name of a shipped training, such as `walk-toe-0`.
+        name: an ONNX file, or the name of a shipped training, such as `walk_upright-toe-1`.
 
     Returns:
         A policy that maps observations to actions and knows its design and task.

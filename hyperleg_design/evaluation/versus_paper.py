@@ -10,6 +10,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import resampling, statistics
 from hyperleg_design.evaluation.paper import Printed
 from hyperleg_design.evaluation.result import by_checkpoint
+from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.statistics import (
     AGREES,
     DIFFERS,
@@ -55,7 +56,9 @@ def paper_rows(
     *,
     seed: int = 0,
 ) -> list[PaperRow]:
-    """Put measured numbers beside those that the paper prints.
+    """Put measured numbers beside those that the paper prints, which are of complete courses.
+
+    A trial that did not arrive gives no value: its power is that of a fall.
 
     Args:
         table: of trials, as `result.trial_table` gives it; rows of one protocol.
@@ -79,7 +82,10 @@ def paper_rows(
                 variant,
                 f"has no trials; there are {', '.join(sorted(set(table['variant'])))}",
             )
-        parts[variant] = part
+        measures = [item.measure for item in printed if item.measure in part]
+        parts[variant] = part.assign(
+            **{name: part[name].where(part["outcome"] == ARRIVED) for name in measures}
+        )
     return [
         _row(
             item,

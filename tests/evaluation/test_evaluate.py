@@ -141,7 +141,9 @@ def same(a, b):
             np.testing.assert_array_equal(one.continuous_use, other.continuous_use)
 
 
-@pytest.mark.parametrize(("policy", "task"), [("walk-toe-0", "walk"), ("t_test-toe-0", "t_test")])
+@pytest.mark.parametrize(
+    ("policy", "task"), [("walk_upright-toe-1", "walk"), ("t_test-toe-0", "t_test")]
+)
 def test_a_batch_of_designs_gives_the_numbers_of_each_alone(policy, task):
     policy = load_policy(policy)
     designs = policy.design.with_values(

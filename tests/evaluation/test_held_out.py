@@ -45,7 +45,7 @@ def test_policies_are_compared_on_the_same_designs() -> None:
         ranges=DesignRanges({"toe.mass": Range(0.1, 0.4)}), pool=4, held_out=2, held_out_seed=9
     )
     short = WalkProtocol(trials=2, distance=0.5, time_limit=1.0, steady=Steady(begin=0.1, end=0.5))
-    check = check_held_out(["walk-toe-0", "walk-toe-0"], spread, short, threads=1)
+    check = check_held_out(["walk_upright-toe-0", "walk_upright-toe-0"], spread, short, threads=1)
     assert set(check.rows["design"]) == {0, 1}
     assert set(check.rows["trained"]) == {"zero-shot"}
     assert set(check.rows["trials"]) == {2}

@@ -7,7 +7,7 @@ RANGES = {"toe.mass": {"low": 0.05, "high": 1.0}, "thigh.length": {"low": 0.3, "
 
 
 def test_a_policy_is_a_specialist_on_its_own_design_and_zero_shot_on_others():
-    policy = load_policy("walk-toe-0")
+    policy = load_policy("walk_upright-toe-0")
     assert training_fit(policy, policy.design).text() == "specialist"
     heavy = training_fit(policy, policy.design.with_values({"toe.mass": 0.5}))
     assert heavy.kind == "zero-shot"
@@ -17,7 +17,7 @@ def test_a_policy_is_a_specialist_on_its_own_design_and_zero_shot_on_others():
 
 
 def test_a_callable_says_nothing():
-    design = load_policy("walk-toe-0").design
+    design = load_policy("walk_upright-toe-0").design
     assert training_fit(standing(14), design).kind == "unknown"
 
 
@@ -31,7 +31,7 @@ def test_a_callable_says_nothing():
     ],
 )
 def test_a_conditioned_policy_is_one_inside_its_ranges_only(values, kind, outside):
-    policy = load_policy("walk-toe-0")
+    policy = load_policy("walk_upright-toe-0")
     policy.metadata = {**policy.metadata, "design_ranges": RANGES}
     found = training_fit(policy, policy.design.with_values(values))
     assert (found.kind, found.outside) == (kind, outside)

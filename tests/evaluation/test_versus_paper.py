@@ -24,6 +24,7 @@ def table(toe, ablation, seeds=5, spread=0.1):
             "policy": f"{variant}_{seed}",
             "seed": seed,
             "time": mean + spread * rng.normal(),
+            "outcome": "arrived",
         }
         for variant, mean in (("toe", toe), ("toe_removed_matched", ablation))
         for seed in range(seeds)
@@ -62,6 +63,15 @@ def test_what_was_not_measured_cannot_be_reproduced():
     (row,) = paper_rows(rows, [ITEM])
     assert (row.toe_verdict, row.change_verdict) == (NOT_REPRODUCED, NOT_REPRODUCED)
     assert "50 of 50 trials of toe gave no value" in row.why
+
+
+def test_what_a_fall_measures_does_not_count():
+    rows = table(10.0, 12.0)
+    fallen = (rows["variant"] == "toe") & (rows.index % 10 < 3)
+    rows.loc[fallen, ["time", "outcome"]] = [99.0, "fell"]
+    (row,) = paper_rows(rows, [ITEM])
+    assert row.toe.mean == pytest.approx(10.0, abs=0.1)
+    assert row.why == "15 of 50 trials of toe gave no value"
 
 
 def test_a_missing_variant_is_told():

@@ -172,7 +172,10 @@ def found(walks, course_run, tmp_path_factory):
         for d in DESIGNS
     }
     return Evaluated(
-        policies, evaluations, ["walk-toe-3", "walk-toe-4", "t_test-toe_removed_matched-0"], band
+        policies,
+        evaluations,
+        ["walk_upright-toe-3", "walk_upright-toe-4", "t_test-toe_removed_matched-0"],
+        band,
     )
 
 
@@ -184,9 +187,9 @@ def trainings(tmp_path_factory):
 
     place = tmp_path_factory.mktemp("trainings")
     for name, kind in (
-        ("walk-toe-0", "walk"),
-        ("walk-toe-1", "walk"),
-        ("walk-toe_removed_matched-0", "walk"),
+        ("walk_upright-toe-0", "walk"),
+        ("walk_upright-toe-1", "walk"),
+        ("walk_upright-toe_removed_matched-0", "walk"),
         ("t_test-toe-0", "goal"),
     ):
         design, task = load_design(name.split("-")[1]), load_task(kind)

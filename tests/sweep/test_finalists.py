@@ -102,7 +102,7 @@ def test_new_trials_decide(walked, tmp_path):
     assert len(final.finalists) == 2
     for finalist in final.finalists:
         design = search.sweep.base.with_values({"toe.mass": finalist.searched["toe.mass"]})
-        alone = evaluate("walk-toe-0", final_protocol(SHORT), design=design)
+        alone = evaluate("walk_upright-toe-0", final_protocol(SHORT), design=design)
         stood = alone.values("fell") == 0
         assert finalist.before["walk.power"] == alone.values("power")[stood].mean()
         assert finalist.before["walk.trials"] == 6
@@ -125,13 +125,13 @@ def test_fine_tuned_policies_decide(walked, tmp_path, monkeypatch):
     jobs: list[FineTuning] = []
     monkeypatch.setattr(finalists, "check_fine_tuning", lambda search: None)
     monkeypatch.setattr(finalists, "fine_tune", lambda found, **_: jobs.extend(found))
-    monkeypatch.setattr(FineTuning, "result", find_policy("walk-toe-2"))
+    monkeypatch.setattr(FineTuning, "result", find_policy("walk_upright-toe-2"))
     final = run_finalists(search, study, tmp_path, count=2, steps=500, progress=False)
     assert {job.steps for job in jobs} == {500}
     assert [job.folder.name for job in jobs] == [str(f.number) for f in final.finalists]
     for job, finalist in zip(jobs, final.finalists, strict=True):
         assert job.design["toe.mass"] == finalist.searched["toe.mass"]
-        alone = evaluate("walk-toe-2", final_protocol(SHORT), design=job.design)
+        alone = evaluate("walk_upright-toe-2", final_protocol(SHORT), design=job.design)
         stood = alone.values("fell") == 0
         assert finalist.after is not None
         assert finalist.after["walk.power"] == alone.values("power")[stood].mean()

@@ -32,12 +32,12 @@ from hyperleg_design.learning.schedule import Schedule
 from hyperleg_design.learning.train import train
 
 
-def job(folder, policy="walk-toe-0", steps=100):
+def job(folder, policy="walk_upright-toe-1", steps=100):
     design = load_design("toe", overrides={"toe.mass": 0.31})
     return FineTuning(find_policy(policy), design, steps, folder / "7")
 
 
-@pytest.mark.parametrize("name", ["walk-toe-0", "t_test-toe-0", "walk_paper-toe-1"])
+@pytest.mark.parametrize("name", ["walk_upright-toe-1", "t_test-toe-0", "walk_guided-toe-1"])
 def test_it_trains_under_the_settings_that_the_training_ended_with(name):
     """The only stage sets what the schedule of the whole training sets in its last iteration."""
     policy = load_policy(name)
@@ -82,7 +82,7 @@ def tiny():
 @pytest.fixture(scope="module")
 def policy(tmp_path_factory):
     """A policy after 64 steps."""
-    folder = tmp_path_factory.mktemp("trained") / "walk-toe-0"
+    folder = tmp_path_factory.mktemp("trained") / "walk_upright-toe-1"
     assert train("walk", "toe", 0, tiny(), folder)
     return folder / "policy.onnx"
 
@@ -143,7 +143,7 @@ out.write_text("policy")
             return subprocess.Popen(words, stderr=log)
 
     monkeypatch.setattr(fine_tuning, "_started", started)
-    jobs = [job(tmp_path, "t_test-toe-0"), job(tmp_path), job(tmp_path, "walk-toe-1")]
+    jobs = [job(tmp_path, "t_test-toe-0"), job(tmp_path), job(tmp_path, "walk_upright-toe-0")]
     with pytest.raises(InputError, match=r"7/t_test-toe-0-100.*the disk is full.*its log is"):
         fine_tune(jobs, workers=1, progress=False)
     assert [t.result.is_file() for t in jobs] == [False, True, True]
@@ -185,4 +185,4 @@ def test_what_cannot_be_a_start_is_one_clear_error(tmp_path, monkeypatch):
         check_trainable(conditioned)
     monkeypatch.setattr(fine_tuning, "NEEDS", ("torch", "no_such_module"))
     with pytest.raises(InputError, match=r"needs no_such_module.*learning"):
-        check_trainable(find_policy("walk-toe-0"))
+        check_trainable(find_policy("walk_upright-toe-1"))

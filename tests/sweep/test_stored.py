@@ -65,7 +65,7 @@ def test_the_same_trials_run_again_are_the_same(ran, committed):
     again = stored.rerun(committed, wanted, count=2)
     assert (again.designs, again.trials, again.same_outcomes) == (2, 4, 4)
     assert again.largest_difference < 1e-6
-    assert again.policy == "walk-toe-0"
+    assert again.policy == "walk_upright-toe-0"
 
 
 def test_a_trial_that_differs_is_seen(ran, committed):

@@ -235,7 +235,7 @@ def walk_of_policy(
     """Run one trial of a policy.
 
     Args:
-        policy: ONNX file, or name of a shipped training such as walk-toe-0.
+        policy: ONNX file, or name of a shipped training such as walk_upright-toe-1.
         design: robot to run it on; the policy's own by default.
         protocol: walk, t_test, or a YAML file; what suits the policy's task by default.
         seed: of the starting state; the protocol's by default.

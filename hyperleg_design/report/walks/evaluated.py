@@ -155,6 +155,8 @@ def evaluate_shipped(
 ) -> Evaluated:
     """Evaluate all policies of a folder of trainings, each under the protocol that suits its task.
 
+    Policies that the shipped campaign lists as mere starts of others are left out.
+
     Args:
         folder: of trainings; the shipped policies by default.
         walk: protocol of policies that walk at a speed; the shipped one by default.
@@ -170,9 +172,7 @@ def evaluate_shipped(
     Raises:
         InputError: no such folder, a policy that cannot be used, or the same policy twice.
     """
-    policies = [
-        evaluation for evaluation in shipped_policies(folder) if evaluation.family == "hyperleg"
-    ]
+    policies = _compared(folder)
     check_different(policy.path for policy in policies)
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
     kinds = [
@@ -252,7 +252,7 @@ def missing_trainings(policies: Sequence[Shipped]) -> list[str]:
         Names of the trainings.
     """
     there = {p.training for p in policies}
-    return [run.name for run in load_campaign().runs if run.name not in there]
+    return [run.name for run in load_campaign().runs if run.compared and run.name not in there]
 
 
 def missing_text(names: Sequence[str]) -> str:
@@ -283,7 +283,7 @@ def coverage(folder: str | Path | None = None) -> dict[str, list[str]]:
     Raises:
         InputError: no such folder.
     """
-    policies = [p for p in shipped_policies(folder, late=False) if p.family == "hyperleg"]
+    policies = _compared(folder, late=False)
     return {
         "evaluated": [policy.training for policy in policies],
         "missing": missing_trainings(policies),
@@ -306,6 +306,13 @@ def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:
         f"{len(evaluated)} trainings are evaluated; {len(missing)} of the campaign's are missing: "
         f"{missing_text(missing)}"
     )
+
+
+def _compared(folder: str | Path | None, *, late: bool = True) -> list[Shipped]:
+    """Policies of the HyperLeg in a folder that are more than starts of others."""
+    starts = load_campaign().starts
+    found = shipped_policies(folder, late=late)
+    return [p for p in found if p.family == "hyperleg" and p.group not in starts]
 
 
 def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:

@@ -41,9 +41,8 @@ _MARK = {DIFFERENT: "good", EQUIVALENT: "good"}
 def studies(evaluated: Evaluated, plan: AnalysisPlan) -> list[dict[str, str]]:
     """Find the groups of trainings that are analysed together, by protocol.
 
-    These are each group of walks that has both arms, with the T-test that belongs to it: the one
-    that was trained with a gait clock where the walk was, or without where it was not, or the first
-    one where there is none of that kind.
+    A group of walks that has both arms goes with the first group of T-tests that was trained as it
+    was, with a gait clock or without; other groups of T-tests stand alone.
 
     Args:
         evaluated: the policies with their trials.
@@ -57,8 +56,9 @@ def studies(evaluated: Evaluated, plan: AnalysisPlan) -> list[dict[str, str]]:
     chosen = []
     for group in (g for g in evaluated.groups(WALK) if both <= set(evaluated.designs(g))):
         alike = [g for g in runs if _clocked(evaluated, g) == _clocked(evaluated, group)]
-        chosen.append({WALK: group} | ({T_TEST: (alike or runs)[0]} if runs else {}))
-    return chosen or [{T_TEST: g} for g in runs[:1]]
+        chosen.append({WALK: group} | ({T_TEST: alike[0]} if alike else {}))
+    paired = {study.get(T_TEST) for study in chosen}
+    return chosen + [{T_TEST: group} for group in runs if group not in paired]
 
 
 def planned_rows(

@@ -21,7 +21,8 @@ def walked(folder, alterations=None, *, trials=1):
     return [
         read_log(path)
         for path in write_logs(
-            folder / "logs", [evaluate("walk-toe-0", short, threads=1, alterations=alterations)]
+            folder / "logs",
+            [evaluate("walk_upright-toe-1", short, threads=1, alterations=alterations)],
         )
     ]
 

@@ -53,7 +53,9 @@ def test_a_stiff_knee_costs_a_walk_energy():
             ("coulomb_friction", "right_knee"): {"torque": 3.0},
         },
     )
-    rows = {row.measure: row for row in added.walked("walk-toe-0", overlay, short, workers=1)}
+    rows = {
+        row.measure: row for row in added.walked("walk_upright-toe-1", overlay, short, workers=1)
+    }
     assert rows["power"].difference > 0
     assert np.isclose(rows["power"].difference, rows["power"].after - rows["power"].before)
     assert rows["power"].low < rows["power"].difference < rows["power"].high

@@ -27,6 +27,6 @@ def test_the_task_chooses_what_is_replayed(trainings):
     assert isinstance(
         replay.replay(trainings / "t_test-toe-0" / "policy.onnx").protocol, TTestProtocol
     )
-    found = replay.replay(trainings / "walk-toe-0" / "policy.onnx")
+    found = replay.replay(trainings / "walk_upright-toe-0" / "policy.onnx")
     assert isinstance(found.protocol, WalkProtocol)
     assert len(replay.motion_of(found, duration=0.5).focus) == 10

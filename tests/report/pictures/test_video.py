@@ -82,4 +82,4 @@ def test_a_recording_becomes_a_video(walks, tmp_path):
         pytest.skip(str(error))
     assert main(["video", str(tmp_path / "walk.parquet"), *arguments]) == 0
     assert out.read_bytes().startswith(b"GIF89a")
-    assert main(["video", "walk-toe-0", "--set", "toe.mass=1", "--out", str(out)]) == 2
+    assert main(["video", "walk_upright-toe-0", "--set", "toe.mass=1", "--out", str(out)]) == 2

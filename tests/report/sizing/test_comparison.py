@@ -54,7 +54,7 @@ def test_compare_keeps_two_designs_of_one_name_apart(design):
 def test_designs_are_walked_by_the_policies_of_their_toe_layout(monkeypatch):
     short = WalkProtocol(trials=2, distance=0.6, time_limit=0.8, steady=Steady(begin=0.3))
     monkeypatch.setattr("hyperleg_design.evaluation.evaluate.load_protocol", lambda name: short)
-    designs = [load_design("toe", overrides={"toe.mass": 0.6}), load_design("toe_removed")]
+    designs = [load_design("toe", overrides={"toe.mass": 0.6}), load_design("toe_locked")]
     found = comparison.compare_walks(designs, ["walk"], seeds=1, workers=1)["walk"]
     assert [set(entry) for entry in found] == [{"policy", *comparison.MEASURED["walk"]}] * 2
     assert "toe.mass" in found[0]["policy"]

@@ -26,7 +26,9 @@ def test_committed_walks_are_shown_and_a_sample_is_run_again(tmp_path):
     columns = {column["name"] for column in explorers[0].data["columns"]}
     assert {"reduction", "toe.mass", "walk.cost_of_transport", "walk.fell"} <= columns
     texts = " ".join(item for item in content if isinstance(item, str))
-    again = re.search(r"(\d+) trials of 3 designs with walk-toe-0. (\d+) ended as then", texts)
+    again = re.search(
+        r"(\d+) trials of 3 designs with walk_upright-toe-0. (\d+) ended as then", texts
+    )
     assert again
     assert again[1] == "30"
     assert int(again[2]) >= 24  # another processor may tip a few over

@@ -89,7 +89,7 @@ def test_a_taken_port_is_told(page):
 
 
 def test_a_missing_package_is_told(monkeypatch):
-    monkeypatch.setattr(viewer.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(needs.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"hyperleg-design\[view\]"):
         needs.check_installed()
 

@@ -68,6 +68,6 @@ def test_a_file_is_read_with_the_robot_that_it_names(walk, tmp_path):
 
 
 def test_a_policy_is_run_once(trainings):
-    walk = walk_of_policy(trainings / "walk-toe-0" / "policy.onnx")
+    walk = walk_of_policy(trainings / "walk_upright-toe-0" / "policy.onnx")
     assert "after" in walk.caption
     assert walk.duration > 0.1

@@ -26,10 +26,10 @@ def evaluated(trainings):
 
 def test_each_policy_has_the_protocol_of_its_task(evaluated):
     found, _ = evaluated
-    assert found.groups(WALK) == ["walk"]
+    assert found.groups(WALK) == ["walk_upright"]
     assert found.groups(T_TEST) == ["t_test"]
-    assert found.designs("walk") == ["toe", "toe_removed_matched"]
-    assert found.seeds("walk", "toe") == [0, 1]
+    assert found.designs("walk_upright") == ["toe", "toe_removed_matched"]
+    assert found.seeds("walk_upright", "toe") == [0, 1]
     assert [e.protocol.name for e in found.of("t_test", "toe")] == ["t_test"]
     assert all(set(e.outcomes) <= {"fell", "timed_out"} for e in found.evaluations)
 
@@ -41,11 +41,11 @@ def test_signals_are_kept_of_one_trial_of_each_design(evaluated):
     }
     assert kept == {
         "t_test-toe-0": 1,
-        "walk-toe-0": 1,
-        "walk-toe-1": 0,
-        "walk-toe_removed_matched-0": 1,
+        "walk_upright-toe-0": 1,
+        "walk_upright-toe-1": 0,
+        "walk_upright-toe_removed_matched-0": 1,
     }
-    assert found.shown("walk", "toe").design.variant == "toe"
+    assert found.shown("walk_upright", "toe").design.variant == "toe"
 
 
 def test_progress_counts_everything(evaluated):
@@ -59,12 +59,14 @@ def test_progress_counts_everything(evaluated):
 def test_the_band_changes_the_contact_and_nothing_else(evaluated):
     found, _ = evaluated
     stiff, own = (found.band["toe"][c][0] for c in (0.01, 0.02))
-    assert np.array_equal(own.values("distance"), found.of("walk", "toe")[0].values("distance"))
+    assert np.array_equal(
+        own.values("distance"), found.of("walk_upright", "toe")[0].values("distance")
+    )
     assert not np.array_equal(stiff.values("distance"), own.values("distance"))
 
 
 def test_rows_carry_design_and_seed_of_the_folder(evaluated):
-    table = evaluated[0].table("walk")
+    table = evaluated[0].table("walk_upright")
     assert table.groupby(["variant", "seed"]).size().to_dict() == {
         ("toe", 0): 2,
         ("toe", 1): 2,
@@ -74,13 +76,13 @@ def test_rows_carry_design_and_seed_of_the_folder(evaluated):
 
 def test_missing_trainings_are_those_of_the_campaign(evaluated):
     missing = evaluated[0].missing
-    assert "walk-toe-0" not in missing
+    assert "walk_upright-toe-0" not in missing
     assert {
-        "walk-toe-2",
-        "walk-toe_locked-0",
-        "t_test-toe_removed_matched-4",
-        "walk_paper-toe-0",
+        "walk_upright-toe-2",
+        "walk_upright-toe_locked-0",
+        "walk_upright-toe_removed_matched-7",
     } <= set(missing)
+    assert not any(name.startswith("walk_guided") for name in missing)  # others start from them
 
 
 def test_an_empty_folder_gives_nothing_and_a_wrong_one_is_told(tmp_path):

@@ -42,8 +42,10 @@ def test_policies_that_only_fall_give_a_page_that_says_so(page):
     ):
         assert word in html, word
     tables = paper_page.read_tables(page.parent)
-    assert list(tables) == ["Table III, walk"]
-    time = next(row for row in tables["Table III, walk"] if row["quantity"] == "time to goal")
+    assert list(tables) == ["Table III, walk_upright"]
+    time = next(
+        row for row in tables["Table III, walk_upright"] if row["quantity"] == "time to goal"
+    )
     assert time["toe"]["verdict"] == time["change"]["verdict"] == "cannot be reproduced"
     assert time["toe"]["missing"] == 4
     assert (page.parent / "evaluation" / "trials.parquet").exists()

@@ -70,7 +70,7 @@ def test_seeds_falls_and_missing_trainings_are_stated(parts):
     assert what[0].startswith("7 policies of 7 trainings")
     toe = next(row for row in what[1].rows if row[:2] == ["walk", "toe"])
     assert toe[2:6] == ["0, 1, 2", 3, 9, Cell(1, "bad")]
-    assert "walk toe (seed 3, 4)" in what[2]
+    assert "walk_upright toe (seed 3, 4)" in what[2]
     assert "t_test toe_removed_matched (seed 0)" in what[2]
     assert isinstance(what[3], Details)
     assert ["walk", "clock", "gait clock"] in what[3].content[0].rows

@@ -14,7 +14,8 @@ from hyperleg_design.report.walks.robustness_page import CURVES, FIGURE, TRIALS,
 
 def test_two_layouts_over_two_conditions(trainings, tmp_path):
     policies = [
-        trainings / name / "policy.onnx" for name in ("walk-toe-0", "walk-toe_removed_matched-0")
+        trainings / name / "policy.onnx"
+        for name in ("walk_upright-toe-0", "walk_upright-toe_removed_matched-0")
     ]
     points = run_robustness(
         policies,
