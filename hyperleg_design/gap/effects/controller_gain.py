@@ -38,6 +38,8 @@ class ControllerGain(Effect):
     """
 
     identifier: ClassVar[str] = "controller_gain"
+    scales: ClassVar[str] = "joint"
+    scales_measured: ClassVar[bool] = False
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint controller is stiffer or more damped than declared"
     parameters: ClassVar[tuple[Parameter, ...]] = (

@@ -80,6 +80,13 @@ class Effect(ABC):
     """Log prior odds for it where no log has its driver: a model of that fits much [nat]."""
     described: ClassVar[bool] = False
     """Whether a robot's model describes it, so that there may also be less of it than described."""
+    rough: ClassVar[Mapping[str, float]] = {}
+    """Standard deviation over the value, of parameters that follow from a trace at first order."""
+    scales: ClassVar[str] = ""
+    """`motor` or `joint` where it scales the torque that the residual of motion trusts, of the
+    motor or joint at which it sits; empty where it scales none."""
+    scales_measured: ClassVar[bool] = True
+    """Whether it scales torque that is measured, too, not only what a controller asks for."""
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {}
     """By name of an experiment of `gap/experiments/experiment.py`, effects that it tells apart from
     this one; that one of two effects says so is enough."""
@@ -232,6 +239,19 @@ class Effect(ABC):
         with its unit.
         """
         return {}
+
+    def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
+        """Compute how the factor on a trusted torque changes with the first parameter.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            motor: index of the motor that gives the torque.
+            joint: index of the joint that it moves most.
+
+        Returns:
+            The slope, `(t,)`, or `(1,)` where it is the same at all ticks.
+        """
+        return np.ones(1)
 
     @property
     def title(self) -> str:

@@ -31,6 +31,7 @@ class LoadDependentFriction(Effect):
     """
 
     identifier: ClassVar[str] = "load_dependent_friction"
+    scales: ClassVar[str] = "joint"
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -81,3 +82,17 @@ class LoadDependentFriction(Effect):
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`."""
         return JointFriction(location, share=np.asarray(values, float)[..., 0])
+
+    def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
+        """Compute how the factor falls where the joint moves as it is driven, and rises where not.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            motor: index of the motor that gives the torque.
+            joint: index of the joint that it moves most.
+
+        Returns:
+            The slope, `(t,)`.
+        """
+        load = applied(signals.subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
+        return -(np.sign(np.nan_to_num(load)) * sliding(signals)[:, joint])

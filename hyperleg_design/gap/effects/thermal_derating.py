@@ -47,6 +47,7 @@ class ThermalDerating(Effect):
     """
 
     identifier: ClassVar[str] = "thermal_derating"
+    scales: ClassVar[str] = "motor"
     kind: ClassVar[str] = "motor"
     rare: ClassVar[float] = -0.5
     """Assumed."""
@@ -109,6 +110,19 @@ class ThermalDerating(Effect):
             np.asarray(values, float)[..., 0],
             rated_torque(subject, subject.motors.index(location)),
         )
+
+    def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
+        """Compute how the factor on the torque falls with the temperature.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            motor: index of the motor that gives the torque.
+            joint: index of the joint that it moves most.
+
+        Returns:
+            The slope, `(t,)`.
+        """
+        return -np.nan_to_num(rise(signals, motor))
 
 
 def rise(signals: Signals, motor: int) -> np.ndarray:

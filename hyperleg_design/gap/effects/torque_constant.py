@@ -38,6 +38,7 @@ class TorqueConstant(Effect):
     """
 
     identifier: ClassVar[str] = "torque_constant"
+    scales: ClassVar[str] = "motor"
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = (
         "a motor gives more or less torque than its current and its data sheet say"

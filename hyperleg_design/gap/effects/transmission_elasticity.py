@@ -41,6 +41,8 @@ class TransmissionElasticity(Effect):
     """
 
     identifier: ClassVar[str] = "transmission_elasticity"
+    rough: ClassVar[Mapping[str, float]] = {"compliance": 0.15}
+    """How rotors move on belts that give was 10 to 25 % off in development."""
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a belt, cable or gear gives under load, so motor and joint move apart"
     parameters: ClassVar[tuple[Parameter, ...]] = (

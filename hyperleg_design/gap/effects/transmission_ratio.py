@@ -51,6 +51,7 @@ class TransmissionRatio(Effect):
     """
 
     identifier: ClassVar[str] = "transmission_ratio"
+    scales: ClassVar[str] = "motor"
     kind: ClassVar[str] = "motor"
     rare: ClassVar[float] = -0.5
     """Assumed: belts have the ratio of their teeth."""

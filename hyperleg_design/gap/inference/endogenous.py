@@ -21,15 +21,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import belt
+from hyperleg_design.gap.effects import EFFECTS, belt
 from hyperleg_design.gap.effects.placing import is_measured
-from hyperleg_design.gap.effects.thermal_derating import rise
 from hyperleg_design.gap.inference import noise_model
 from hyperleg_design.gap.model import machine
-from hyperleg_design.gap.signals.channels import applied
-from hyperleg_design.gap.signals.sliding import sliding
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.effects.effect import Effect
     from hyperleg_design.gap.inference.samples import Samples
     from hyperleg_design.gap.signals.signals import Signals
 
@@ -114,10 +112,11 @@ def factor(
     subject = samples.filtered_logs[0].signals.subject
     if effect == BELT and values is not None:
         return _shrinking(samples, subject.motors.index(location), usual, values)
-    if effect in ("torque_constant", "transmission_ratio", "thermal_derating"):
+    scaling = EFFECTS[effect]
+    if scaling.scales == "motor":
         motor = subject.motors.index(location)
         joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
-    elif effect in ("load_dependent_friction", "controller_gain"):
+    elif scaling.scales == "joint":
         joint = subject.joints.index(location)
         motor = int(np.argmax(np.abs(subject.joint_from_motor[joint])))
     else:
@@ -127,13 +126,13 @@ def factor(
     ]
     if not rows:
         return None
-    if effect == "controller_gain" and any(
+    if not scaling.scales_measured and any(
         is_measured(s.signals, motor) for s in samples.filtered_logs
     ):
         return None
     number = float(samples.share[samples.row == rows[0]].sum())
     slopes = (
-        np.concatenate([_slope(s.signals, effect, motor, joint) for s in samples.filtered_logs])
+        np.concatenate([_slope(s.signals, scaling, motor, joint) for s in samples.filtered_logs])
         * usual[0]
     )
     return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint), rows[0])
@@ -207,12 +206,6 @@ def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:
     return float(np.clip((over - FAINT) / (1 - FAINT), 0.0, 1.0))
 
 
-def _slope(signals: Signals, effect: str, motor: int, joint: int) -> np.ndarray:
+def _slope(signals: Signals, effect: Effect, motor: int, joint: int) -> np.ndarray:
     """Change of the factor with the parameter, at some ticks."""
-    every = max(len(signals.time) // TICKS, 1)
-    if effect == "thermal_derating":
-        return -np.nan_to_num(rise(signals, motor))[::every]
-    if effect == "load_dependent_friction":
-        load = applied(signals.subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
-        return -(np.sign(np.nan_to_num(load)) * sliding(signals)[:, joint])[::every]
-    return np.ones(1)
+    return effect.torque_slope(signals, motor, joint)[:: max(len(signals.time) // TICKS, 1)]

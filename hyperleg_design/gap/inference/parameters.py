@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 NORMAL = 1.96
 """Standard deviations of a normal distribution's 95 % interval."""
-ROUGH = {("backlash", "angle"): 0.15, ("transmission_elasticity", "compliance"): 0.15}
-"""Standard deviation, over the value, of sizes that follow from a trace at first order: how rotors
-move on belts that give (in development they were 10 to 25 % off)."""
 
 
 def intervals(
@@ -27,8 +24,9 @@ def intervals(
 ) -> dict[str, Value]:
     """Values `(k,)` of a cause with 95 % intervals from their standard deviations `(k,)`."""
     found = {}
-    for i, parameter in enumerate(EFFECTS[cause.effect].parameters):
-        rough = ROUGH.get((cause.effect, parameter.name), 0.0) * abs(values[i])
+    effect = EFFECTS[cause.effect]
+    for i, parameter in enumerate(effect.parameters):
+        rough = effect.rough.get(parameter.name, 0.0) * abs(values[i])
         reach = NORMAL * np.hypot(deviation[i], rough)
         found[parameter.name] = Value(
             float(values[i]),
