@@ -27,6 +27,12 @@ class Constraint:
     def violation(self, value: float) -> float:
         """Amount by which a value breaks the constraint; not positive where the constraint holds,
         infinite where the value is unknown.
+
+        Args:
+            value: of the measure.
+
+        Returns:
+            The amount, in the measure's unit.
         """
         if not np.isfinite(value):
             return float("inf")
@@ -35,6 +41,13 @@ class Constraint:
 
 def read_constraint(text: str, protocols: Sequence[str]) -> Constraint:
     """A constraint from a text such as `walk.thermal_peak<=1`.
+
+    Args:
+        text: measure, `<=` or `>=`, and a number.
+        protocols: that are evaluated.
+
+    Returns:
+        The constraint.
 
     Raises:
         InputError: no such form, measure, or number.
@@ -53,7 +66,14 @@ def read_constraint(text: str, protocols: Sequence[str]) -> Constraint:
 
 
 def usual_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
-    """Falls, heat and torque within bounds under each protocol (assumed)."""
+    """Falls, heat and torque within bounds under each protocol (assumed).
+
+    Args:
+        protocols: that are evaluated.
+
+    Returns:
+        The constraints.
+    """
     return tuple(
         Constraint(f"{protocol}.{name}", bound, True)
         for protocol in protocols

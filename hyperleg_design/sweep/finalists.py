@@ -92,6 +92,9 @@ class Final:
 def check_fine_tuning(search: Search) -> None:
     """Check, before hours of work, that the policies of a search can be fine-tuned.
 
+    Args:
+        search: whose policies are meant.
+
     Raises:
         InputError: no protocol is evaluated, the extra `learning` is missing, or a policy cannot be
             the start of a training.
@@ -203,6 +206,13 @@ def chosen_finalists(search: Search, study: optuna.Study, count: int) -> list[Ro
 def winners(search: Search, rows: Sequence[Row]) -> tuple[int, ...]:
     """Numbers of the designs that hold all constraints and that no other such design beats in every
     objective, the best by the first objective first.
+
+    Args:
+        search: states objectives and constraints.
+        rows: what was measured, one a design.
+
+    Returns:
+        The numbers.
     """
     feasible = [row for row in rows if holds_constraints(search, row)]
     if not feasible:
@@ -212,7 +222,14 @@ def winners(search: Search, rows: Sequence[Row]) -> tuple[int, ...]:
 
 
 def final_protocol(protocol: Protocol) -> Protocol:
-    """The protocol of a search with more trials and other starting states, for its finalists."""
+    """The protocol of a search with more trials and other starting states, for its finalists.
+
+    Args:
+        protocol: of the search.
+
+    Returns:
+        The changed protocol.
+    """
     return protocol.changed(
         trials=min(TRIALS_FACTOR * int(protocol.trials), MOST_TRIALS),
         seed=(int(protocol.seed) + SEED_SHIFT) % 2**31,
@@ -220,13 +237,29 @@ def final_protocol(protocol: Protocol) -> Protocol:
 
 
 def value_of(row: Mapping[str, Any], name: str) -> float:
-    """A measure of a row; NaN where it could not be measured."""
+    """A measure of a row; NaN where it could not be measured.
+
+    Args:
+        row: what was measured of a design.
+        name: of the measure.
+
+    Returns:
+        The value.
+    """
     value = row.get(name)
     return float("nan") if value is None else float(value)
 
 
 def holds_constraints(search: Search, row: Row) -> bool:
-    """Whether a design has all objectives and holds all constraints."""
+    """Whether a design has all objectives and holds all constraints.
+
+    Args:
+        search: states objectives and constraints.
+        row: what was measured of a design.
+
+    Returns:
+        True if so.
+    """
     measured = all(np.isfinite(value_of(row, name)) for name in search.objectives)
     return measured and all(c.violation(value_of(row, c.name)) <= 0 for c in search.constraints)
 

@@ -134,6 +134,14 @@ def _database(url: str) -> Iterator[None]:
 def open_study(search: Search, storage: str, name: str) -> optuna.Study:
     """The study of a search in a database, made where it is not there.
 
+    Args:
+        search: what is searched.
+        storage: address of the database.
+        name: of the study.
+
+    Returns:
+        The study.
+
     Raises:
         InputError: Optuna is not installed, or the database refuses or is corrupt.
         OutputError: the database holds another search under this name.
@@ -341,7 +349,14 @@ def _tell(
 
 
 def plain_values(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row as JSON takes it: plain values, None for numbers that are not finite."""
+    """A row as JSON takes it: plain values, None for numbers that are not finite.
+
+    Args:
+        row: what was measured of a design.
+
+    Returns:
+        The plain row.
+    """
     return {str(name): _plain(value) for name, value in row.items()}
 
 
@@ -353,6 +368,10 @@ def _plain(value: Any) -> Any:
 def found_designs(search: Search, study: optuna.Study) -> list[dict[str, Any]]:
     """The trials on the study's Pareto front that hold all constraints, by their first objective.
 
+    Args:
+        search: what was searched.
+        study: its trials.
+
     Returns:
         Their `row`s. They are candidates: their policies were trained on other designs unless the
         row's `PROTOCOL.policy` says specialist.
@@ -363,7 +382,14 @@ def found_designs(search: Search, study: optuna.Study) -> list[dict[str, Any]]:
 
 
 def trial_frame(study: optuna.Study) -> pd.DataFrame:
-    """All trials: number, state, reason of failure, and what was measured."""
+    """All trials: number, state, reason of failure, and what was measured.
+
+    Args:
+        study: the trials.
+
+    Returns:
+        One row a trial.
+    """
     import pandas as pd
 
     return pd.DataFrame(

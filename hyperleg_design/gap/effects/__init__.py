@@ -37,6 +37,12 @@ LOOK_ALIKES: tuple[tuple[str, str, str], ...] = tuple(
 def effect(identifier: str) -> Effect:
     """An effect of the catalogue.
 
+    Args:
+        identifier: of the effect.
+
+    Returns:
+        The effect.
+
     Raises:
         InputError: no such effect.
     """

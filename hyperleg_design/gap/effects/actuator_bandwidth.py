@@ -56,17 +56,42 @@ class ActuatorBandwidth(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         good = f"commands reach past {BANDWIDTH:.0f} Hz"
         lacking = f"commands hold nothing above {BANDWIDTH:.0f} Hz: looks like delay"
         return at_drives(self.identifier, motion, motion.command > BANDWIDTH, good, lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
             return {}
@@ -75,11 +100,28 @@ class ActuatorBandwidth(Effect):
         return before_measurement(signals, {motor: lagged(given, lag, signals.step) - given})
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         return LaggingTorque(location, np.asarray(values, float)[..., 0])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A few lags."""
+        """A few lags.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
+        """
         return np.array([[0.003], [0.01], [0.03]])
 
 

@@ -59,17 +59,42 @@ class Backlash(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         return by_speeds(self.identifier, log, motion) or at_joints(
             self.identifier, motion, motion.reversing, REVERSES, FEW
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         motor = signals.subject.motors.index(location)
         angle, side, coasting, behind = np.atleast_2d(np.asarray(values, float)).T
         moved = slack.slack(
@@ -80,6 +105,14 @@ class Backlash(Effect):
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`; its ends are as hard as simulations resolve, and damped to
         bounce as in the trace.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
         """
         motor = subject.motors.index(location)
         bounce = np.log(slack.RESTITUTION)
@@ -103,12 +136,25 @@ class Backlash(Effect):
     def fixed(self, values: np.ndarray) -> np.ndarray:
         """Where encoders sit and joints rub; encoders on the rotors, joints always move by
         themselves.
+
+        Args:
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            Whether each parameter stays `(parameters,)` of bool.
         """
         return np.array([False, True, values[1] >= belt.CHOSEN, True])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Small and large angles, with encoders on either side, or carried over; where ends are met
         depends on the angle.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
         """
         rotors = [[angle, 0.0, 1.0, 0.0] for angle in (0.003, 0.01, 0.03)]
         joints = [

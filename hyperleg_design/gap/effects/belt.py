@@ -66,7 +66,15 @@ _OWN: WeakKeyDictionary[Signals, dict[tuple[int, bool], np.ndarray]] = WeakKeyDi
 
 
 def load(signals: Signals, motor: int) -> np.ndarray:
-    """Torque that the joints need through one motor's belt, on its side of M `(t,)` [Nm]."""
+    """Torque that the joints need through one motor's belt, on its side of M `(t,)` [Nm].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The torque `(t,)` [Nm].
+    """
     kept = _LOADS.setdefault(signals, {})
     if motor not in kept:
         subject = signals.subject
@@ -80,7 +88,15 @@ def load(signals: Signals, motor: int) -> np.ndarray:
 
 
 def frictionless(signals: Signals, motor: int) -> np.ndarray:
-    """As `load`, without the nominal friction of the joints `(t,)` [Nm]."""
+    """As `load`, without the nominal friction of the joints `(t,)` [Nm].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The torque `(t,)` [Nm].
+    """
     return load(signals, motor) - band_limited(
         _friction(signals, motor), signals.step, BAND / signals.step
     )
@@ -99,6 +115,13 @@ def _friction(signals: Signals, motor: int) -> np.ndarray:
 def transmitted(signals: Signals, motor: int) -> np.ndarray:
     """Torque that a motor gives its belt, its own torque less what its rotor takes, where its speed
     is logged; else `load` `(t,)` [Nm].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The torque `(t,)` [Nm].
     """
     if (
         "transmission" not in signals.residual
@@ -115,8 +138,15 @@ def transmitted(signals: Signals, motor: int) -> np.ndarray:
 
 
 def given(signals: Signals, motor: int, *, rubs: bool = True) -> np.ndarray:
-    """Torque that a motor gives its belt, where positions are those of the rotors `(t,)` [Nm];
-    `rubs`, joints rub behind it, else before.
+    """Torque that a motor gives its belt, where positions are those of the rotors.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+        rubs: whether joints rub behind the belt, else before it.
+
+    Returns:
+        The torque `(t,)` [Nm].
     """
     kept = _OWN.setdefault(signals, {})
     if (motor, rubs) not in kept:
@@ -175,7 +205,15 @@ def _eased(straight: np.ndarray, bend: np.ndarray) -> np.ndarray:
 
 
 def moved_most(subject: Subject, motor: int) -> float:
-    """Angle of a motor over that of the joint that it moves most [-]."""
+    """Angle of a motor over that of the joint that it moves most [-].
+
+    Args:
+        subject: the robot.
+        motor: index of the motor.
+
+    Returns:
+        The ratio [-].
+    """
     return float(np.abs(subject.joint_from_motor[:, motor]).max())
 
 

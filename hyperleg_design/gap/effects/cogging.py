@@ -79,30 +79,72 @@ class Cogging(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         slow = motion.swinging & (motion.slow > SLOW)
         return at_joints(
             self.identifier, motion, slow, "slow motion over a range", "no slow motion over a range"
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         motor = signals.subject.motors.index(location)
         cosine, sine, order = np.atleast_2d(np.asarray(values, float)).T[..., None]
         angle = order * motor_position(signals, motor)
         return at_motor(signals, motor, cosine * np.cos(angle) + sine * np.sin(angle))
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         return CoggingTorque(location, values[..., 0], values[..., 1], values[..., 2])
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the motor is made for."""
+        """A share of the torque that the motor is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         motor = subject.motors.index(location)
         share = SHARE * motor_strength(subject, motor)
         return np.array(
@@ -110,14 +152,30 @@ class Cogging(Effect):
         )
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Amplitudes up to the torque that the motor is made for."""
+        """Amplitudes up to the torque that the motor is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
         found = super().bounds(location, subject)
         most = min(found[1, 0], motor_strength(subject, subject.motors.index(location)))
         found[0, :2], found[1, :2] = -most, most
         return found
 
     def steps(self, location: str, subject: Subject) -> np.ndarray:
-        """Those of the order turn the phase little over a radian of the joint."""
+        """Those of the order turn the phase little over a radian of the joint.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            The steps `(parameters,)`.
+        """
         found = super().steps(location, subject)
         found[2] = min(
             found[2],
@@ -128,7 +186,16 @@ class Cogging(Effect):
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """Amplitude, and the angle at which it resists most."""
+        """Amplitude, and the angle at which it resists most.
+
+        Args:
+            location: one of `locations`.
+            values: of the parameters `(parameters,)`.
+            subject: the robot.
+
+        Returns:
+            Quantities by name, each with its unit.
+        """
         cosine, sine, order = values
         return {
             "amplitude": (float(np.hypot(cosine, sine)), "Nm"),
@@ -138,6 +205,13 @@ class Cogging(Effect):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The orders that explain most of the residual of this log, each more than its neighbours,
         with their amplitudes.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
         """
         subject = signals.subject
         motor = subject.motors.index(location)

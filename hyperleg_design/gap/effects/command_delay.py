@@ -63,12 +63,27 @@ class CommandDelay(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """The robot, and where it has several motors, each of them."""
+        """The robot, and where it has several motors, each of them.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         motors = driven_motors(subject)
         return (ROBOT, *(motors if len(motors) > 1 else ()))
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         lacking = f"commands hold nothing above {COMMAND} Hz"
         return at_drives(
             self.identifier,
@@ -79,11 +94,29 @@ class CommandDelay(Effect):
         )
 
     def place(self, location: str, subject: Subject) -> str:
-        """The one that is meant; the only motor is the robot."""
+        """The one that is meant; the only motor is the robot.
+
+        Args:
+            location: name of the place, as people may write it.
+            subject: the robot.
+
+        Returns:
+            The location.
+        """
         return ROBOT if (location,) == driven_motors(subject) else super().place(location, subject)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         delay, late = np.atleast_2d(np.asarray(values, float)).T
         targets = late >= TARGETS
         moved = (
@@ -116,7 +149,16 @@ class CommandDelay(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         motors = driven_motors(subject) if location == ROBOT else (location,)
         joints = tuple(
             dict.fromkeys(
@@ -134,11 +176,26 @@ class CommandDelay(Effect):
         )
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Nothing is between commands and targets."""
+        """Nothing is between commands and targets.
+
+        Args:
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            Whether each parameter stays `(parameters,)` of bool.
+        """
         return np.array([False, True])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A few delays, of commands and, where they are known, of targets."""
+        """A few delays, of commands and, where they are known, of targets.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
+        """
         ways = (0.0, 1.0) if _told(signals, location) else (0.0,)
         return np.array([[delay, way] for way in ways for delay in (0.003, 0.01, 0.025)])
 
@@ -190,7 +247,14 @@ class _Past:
         self.begun = np.zeros(count)
 
     def told(self, values: np.ndarray) -> np.ndarray:
-        """Take in what is told now, and give what was told then `(n, places)`."""
+        """Take in what is told now, and give what was told then `(n, places)`.
+
+        Args:
+            values: told now, `(n, all places)`.
+
+        Returns:
+            What was told then, `(n, places)`.
+        """
         fresh = values[:, self.places]
         # Before the first one the same is taken to have been told all the time.
         self.values[self.begun == 0] = fresh[self.begun == 0][:, None]

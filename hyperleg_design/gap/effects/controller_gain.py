@@ -65,18 +65,43 @@ class ControllerGain(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints with known gains."""
+        """Joints with known gains.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         known = np.isfinite(subject.gains).all(1) & (subject.gains != 0).any(1) & ~subject.passive
         return tuple(name for name, here in zip(subject.joints, known, strict=True) if here)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         return at_drives(
             self.identifier, motion, motion.swinging, "targets, gains and motion", STILL
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         subject = signals.subject
         joint = subject.joints.index(location)
         if signals.target is None or not np.isfinite(signals.target[:, joint]).any():
@@ -113,12 +138,29 @@ class ControllerGain(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         return ScaledGains(location, values[..., 0], values[..., 1])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Softer and stiffer, with and without the damping."""
+        """Softer and stiffer, with and without the damping.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
+        """
         return np.array(
             [[0.8, 0.8], [1.25, 1.25], [0.8, 1.0], [1.25, 1.0], [1.0, 0.8], [1.0, 1.25]]
         )
@@ -134,7 +176,14 @@ class ScaledGains(Alteration):
     """`()` or `(n,)` each [-]."""
 
     def machine(self, machine: Machine) -> Machine:
-        """With the other gains."""
+        """With the other gains.
+
+        Args:
+            machine: the machine that the robot is to its drives.
+
+        Returns:
+            The changed machine.
+        """
         place = machine.joint(self.joint)
         machine = machine.changed("stiffness", place, lambda own: own * self.stiffness)
         return machine.changed("damping", place, lambda own: own * self.damping)

@@ -56,21 +56,54 @@ class CoulombFriction(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints."""
+        """Joints.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         return at_joints(self.identifier, motion, motion.reversing, REVERSES, FEW)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         joint = signals.subject.joints.index(location)
         return at_joint(signals, joint, np.atleast_2d(values)[:, :1] * sliding(signals)[:, joint])
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`; what is taken away never exceeds the model's, and has its
         width.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
         """
         joint = subject.joints.index(location)
         torque = np.maximum(np.asarray(values, float)[..., 0], -subject.coulomb[joint])
@@ -81,11 +114,27 @@ class CoulombFriction(Effect):
         )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the joint is made for."""
+        """A share of the torque that the joint is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         return np.array([SHARE * joint_strength(subject)[subject.joints.index(location)]])
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """No less than no friction at all."""
+        """No less than no friction at all.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
         joint = subject.joints.index(location)
         return np.array(
             [

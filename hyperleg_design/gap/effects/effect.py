@@ -101,6 +101,13 @@ class Effect(ABC):
     def place(self, location: str, subject: Subject) -> str:
         """The one of `locations` that is meant.
 
+        Args:
+            location: name of the place, as people may write it.
+            subject: the robot.
+
+        Returns:
+            The location.
+
         Raises:
             InputError: none.
         """
@@ -156,12 +163,27 @@ class Effect(ABC):
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """Usual distances from the nulls at a place of a robot `(parameters,)`: scale of priors and
         of finite differences.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
         """
         return np.array([p.typical for p in self.parameters])
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
         """Values `(parameters,)` at which it can be seen: `size` times the usual distance from the
         nulls, inside the bounds.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            size: over the usual distance from the nulls.
+
+        Returns:
+            Values `(parameters,)`.
         """
         values = self.nulls
         for place, (parameter, usual) in enumerate(
@@ -179,17 +201,39 @@ class Effect(ABC):
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Least and largest values that are possible at a place of a robot `(2, parameters)`; never
         wider than the parameters' own.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
         """
         return np.array([[p.low for p in self.parameters], [p.high for p in self.parameters]])
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
         """Which parameters stay as a search begins with them, as nothing lies between their choices
         `(k,)` of bool.
+
+        Args:
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            Whether each parameter stays `(parameters,)` of bool.
         """
         return np.zeros(len(self.parameters), bool)
 
     def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
-        """Log prior odds for it at some values `(k,)`, over those at usual ones."""
+        """Log prior odds for it at some values `(k,)`, over those at usual ones.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            The log odds [nat].
+        """
         return 0.0
 
     def size_odds(
@@ -211,6 +255,13 @@ class Effect(ABC):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Values from which a search for the best fit to a log is worth while `(s, parameters)`,
         inside the bounds.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
         """
         usual = self.usual(location, signals.subject)
         sized = np.array([not p.shape for p in self.parameters])
@@ -223,12 +274,26 @@ class Effect(ABC):
     def variants(self, signals: Signals, location: str) -> np.ndarray:
         """Of a linear effect, values of the parameters that only shape its trace, each worth a try
         `(v, parameters)`; the rest null.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(v, parameters)`.
         """
         return self.nulls[None]
 
     def steps(self, location: str, subject: Subject) -> np.ndarray:
         """Steps of finite differences, small enough for the trace to be about straight over them
         `(parameters,)`.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            The steps `(parameters,)`.
         """
         return 0.1 * self.usual(location, subject)
 
@@ -237,6 +302,14 @@ class Effect(ABC):
     ) -> dict[str, tuple[float, str]]:
         """What people would rather read: quantities that follow from values `(parameters,)`, each
         with its unit.
+
+        Args:
+            location: one of `locations`.
+            values: of the parameters `(parameters,)`.
+            subject: the robot.
+
+        Returns:
+            Quantities by name, each with its unit.
         """
         return {}
 

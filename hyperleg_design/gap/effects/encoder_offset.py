@@ -60,15 +60,40 @@ class EncoderOffset(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints."""
+        """Joints.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         joint = signals.subject.joints.index(location)
         offset = np.atleast_2d(np.asarray(values, float))[:, 0]
         turns = signals.subject.tree.hinge[joint]
@@ -85,7 +110,16 @@ class EncoderOffset(Effect):
         return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         return ShiftedEncoder(location, np.asarray(values, float)[..., 0])
 
 

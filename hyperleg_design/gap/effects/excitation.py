@@ -100,6 +100,16 @@ def at_drives(
 ) -> Excitation:
     """Of what needs command and measurement of the same motor to be told apart from mechanics;
     arguments as of `at_joints`.
+
+    Args:
+        effect: its identifier.
+        motion: facts of the log.
+        passed: joints that move as the effect needs it `(n,)` of bool.
+        good: what is there, where one passes.
+        lacking: what is lacking, where none does.
+
+    Returns:
+        Whether the log can show it, where, and why or why not.
     """
     if not motion.asked.any():
         return Excitation(
@@ -117,7 +127,16 @@ def at_drives(
 
 
 def by_speeds(effect: str, log: Log, motion: Motion) -> Excitation | None:
-    """Of what sits between motors and joints, where a log has the speeds of both; else none."""
+    """Of what sits between motors and joints, where a log has the speeds of both; else none.
+
+    Args:
+        effect: its identifier.
+        log: as it was read.
+        motion: facts of it.
+
+    Returns:
+        What the log can show, or None where it has not both speeds.
+    """
     motors = tuple(m for m in log.motors if log.has("motor_velocity", m))
     if motors and (motion.reversals > 0).any():
         return Excitation(effect, True, motors, "speeds of motors and joints")

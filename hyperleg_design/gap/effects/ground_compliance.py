@@ -56,22 +56,56 @@ class GroundCompliance(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Feet."""
+        """Feet.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return subject.feet if subject.floating else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         feet = tuple(f for f in log.feet if log.has("contact_force", f"{f}_z"))
         why = "vertical contact forces" if feet else "no contact forces"
         return Excitation(self.identifier, bool(feet), feet, why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         scale, damping = np.atleast_2d(np.asarray(values, float)).T
         return ground_trace(signals, location, np.ones_like(scale), scale, damping)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         bodies = ground.foot_bodies(subject, subject.feet.index(location))
         return ChangedGround(bodies, compliance=values[..., 0], damping=values[..., 1])

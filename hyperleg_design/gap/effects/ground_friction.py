@@ -51,11 +51,26 @@ class GroundFriction(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Feet."""
+        """Feet.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return subject.feet if subject.floating else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         feet = tuple(
             f for f in log.feet if any(log.has("contact_force", f"{f}_{axis}") for axis in "xy")
         )
@@ -63,20 +78,47 @@ class GroundFriction(Effect):
         return Excitation(self.identifier, bool(feet), feet, why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         scale = np.atleast_2d(np.asarray(values, float))[:, 0]
         return ground_trace(signals, location, scale, np.ones_like(scale), np.ones_like(scale))
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
         """As slippery as ice, because a ground that holds better than needed does nothing, and feet
         creep before they slide.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            size: over the usual distance from the nulls.
+
+        Returns:
+            Values `(parameters,)`.
         """
         return np.maximum(
             self.nulls - ICE * size * self.usual(location, subject), self.parameters[0].low
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         return ChangedGround(
             ground.foot_bodies(subject, subject.feet.index(location)),
             friction=np.asarray(values, float)[..., 0],
@@ -92,6 +134,16 @@ def ground_trace(
 ) -> dict[str, np.ndarray]:
     """What a changed ground under one foot leaves in the ground residual; scales `(k,)` as of
     `ground.Footing.ground`.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        location: name of the foot.
+        friction: scale of the friction `(k,)`.
+        compliance: scale of the compliance `(k,)`.
+        damping: scale of the damping `(k,)`.
+
+    Returns:
+        The trace by name of the residual `(k, t, rows)` [N].
     """
     feet = ground.footings(signals)
     if not feet:
@@ -117,7 +169,12 @@ class ChangedGround(Alteration):
     damping: Any = 1.0
 
     def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
-        """Give the bodies' shapes the pair's settings, scaled, and precedence over the floor's."""
+        """Give the bodies' shapes the pair's settings, scaled, and precedence over the floor's.
+
+        Args:
+            model: the compiled model, which is changed.
+            simulation: index of the simulation, of values that have one row each.
+        """
         friction, compliance, damping = (
             float(v if np.ndim(v) == 0 else v[simulation])
             for v in (np.asarray(x, float) for x in (self.friction, self.compliance, self.damping))

@@ -53,17 +53,42 @@ class ImuBias(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """The sensor, on a floating base."""
+        """The sensor, on a floating base.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return (IMU,) if subject.floating else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         known = tuple(k for k in ("gyro", "accelerometer") if log.has(k, "x"))
         why = "inertial data" if known else "no gyroscope and no accelerometer"
         return Excitation(self.identifier, bool(known), known, why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         subject, base = signals.subject, signals.base
         values = np.atleast_2d(np.asarray(values, float))
         if base is None:
@@ -97,7 +122,16 @@ class ImuBias(Effect):
         return {"motion": rows} | ({"base": np.stack(base_rows)} if base_rows else {})
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         turned = subject.imu_rotation.T
         return BiasedImu(values[..., :3] @ turned, values[..., 3:] @ turned)

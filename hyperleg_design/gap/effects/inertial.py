@@ -46,18 +46,40 @@ class InertialEffect(Effect):
     kind: ClassVar[str] = "link"
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Moving links, one of those that move as one body."""
+        """Moving links, one of those that move as one body.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         tree = subject.tree
         carriers = tree.link_joint.tolist()
         return tuple(name for i, name in enumerate(tree.links) if carriers[i] not in carriers[:i])
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def place(self, location: str, subject: Subject) -> str:
         """The link that is meant; any moving link will do, or a joint, for the link that it
         carries.
+
+        Args:
+            location: name of the place, as people may write it.
+            subject: the robot.
+
+        Returns:
+            The location.
         """
         tree = subject.tree
         return (
@@ -73,7 +95,17 @@ class InertialEffect(Effect):
         """
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         tree = signals.subject.tree
         link = tree.link(location)
         added = self.added(tree.link_inertial[link], np.atleast_2d(np.asarray(values, float)))
@@ -90,7 +122,16 @@ class InertialEffect(Effect):
         return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         tree = subject.tree
         link = tree.link(location)
         values = np.asarray(values, float)
@@ -113,7 +154,12 @@ class AddedInertia(Alteration):
     """In the body's frame, `(10,)` or `(n, 10)`."""
 
     def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
-        """Change the body's mass, centre of mass and inertia."""
+        """Change the body's mass, centre of mass and inertia.
+
+        Args:
+            model: the compiled model, which is changed.
+            simulation: index of the simulation, of values that have one row each.
+        """
         import mujoco
 
         added = self.added if self.added.ndim == 1 else self.added[simulation]
@@ -144,6 +190,14 @@ class AddedInertia(Alteration):
 def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
     """Some of the first four inertial parameters that a linear fit to a log adds to a link; None
     where it shows none of them.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        link: name of the link.
+        part: which of the first four are wanted.
+
+    Returns:
+        The parameters, or None.
     """
     residual = signals.residual["motion"]
     known = np.isfinite(residual) & signals.valid[:, None]
@@ -162,13 +216,29 @@ def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
 
 
 def least_mass(subject: Subject, link: str) -> float:
-    """Lowest that a link's mass may be changed by [kg]: what is left must be something."""
+    """Lowest that a link's mass may be changed by [kg]: what is left must be something.
+
+    Args:
+        subject: the robot.
+        link: name of the link.
+
+    Returns:
+        The change [kg], not above zero.
+    """
     tree = subject.tree
     return -LARGEST_LOSS * float(tree.link_inertial[tree.link(link), 0])
 
 
 def carried_mass(subject: Subject, link: str) -> float:
-    """Mass of a link and of all that it carries [kg]."""
+    """Mass of a link and of all that it carries [kg].
+
+    Args:
+        subject: the robot.
+        link: name of the link.
+
+    Returns:
+        The mass [kg].
+    """
     tree = subject.tree
     joint = int(tree.link_joint[tree.link(link)])
     return float(

@@ -61,15 +61,40 @@ class JointSpring(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints."""
+        """Joints.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         joint = signals.subject.joints.index(location)
         stiffness, preload = np.atleast_2d(np.asarray(values, float)).T[..., None]
         return at_joint(
@@ -79,7 +104,16 @@ class JointSpring(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         return Spring(
             location,
@@ -89,12 +123,27 @@ class JointSpring(Effect):
         )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the joint is made for."""
+        """A share of the torque that the joint is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         return np.full(2, SHARE * joint_strength(subject)[subject.joints.index(location)])
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Less stiff than the model's springs by no more than these; preload up to the torque that
         the joint is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
         """
         joint = subject.joints.index(location)
         strength = joint_strength(subject)[joint]
@@ -109,13 +158,30 @@ class JointSpring(Effect):
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """Angle at which it rests."""
+        """Angle at which it rests.
+
+        Args:
+            location: one of `locations`.
+            values: of the parameters `(parameters,)`.
+            subject: the robot.
+
+        Returns:
+            Quantities by name, each with its unit.
+        """
         stiffness, preload = values
         default = float(subject.default[subject.joints.index(location)])
         return {"rest": (default - float(preload) / float(stiffness), "rad")} if stiffness else {}
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A spring, and a bare preload either way."""
+        """A spring, and a bare preload either way.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
+        """
         usual = self.usual(location, signals.subject)
         return np.array([[usual[0], 0.0], [0.0, usual[1]], [0.0, -usual[1]]])
 

@@ -43,7 +43,14 @@ class LinkCom(InertialEffect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Moving links that have a mass."""
+        """Moving links that have a mass.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return tuple(
             name
             for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
@@ -51,7 +58,15 @@ class LinkCom(InertialEffect):
         )
 
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Of the moved link less the link, see `InertialEffect.added`."""
+        """Of the moved link less the link, see `InertialEffect.added`.
+
+        Args:
+            own: inertial parameters of the link `(10,)`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            What is added to the inertial parameters `(k, 10)`.
+        """
         mass, com, inertia = mass_properties(own)
         return np.stack(
             [
@@ -64,6 +79,13 @@ class LinkCom(InertialEffect):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The shift that a linear fit of the first moment to the log finds, and the usual one along
         each axis.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
         """
         tree, usual = signals.subject.tree, self.usual(location, signals.subject)
         low, high = self.bounds(location, signals.subject)

@@ -46,7 +46,14 @@ class LinkMass(InertialEffect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Moving links that have a mass."""
+        """Moving links that have a mass.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return tuple(
             name
             for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
@@ -54,16 +61,40 @@ class LinkMass(InertialEffect):
         )
 
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """A share of all of the link's parameters, see `InertialEffect.added`."""
+        """A share of all of the link's parameters, see `InertialEffect.added`.
+
+        Args:
+            own: inertial parameters of the link `(10,)`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            What is added to the inertial parameters `(k, 10)`.
+        """
         return values[:, :1] / own[0] * own if own[0] > 0 else np.zeros((len(values), 10))
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the link's own mass."""
+        """A share of the link's own mass.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         tree = subject.tree
         return np.array([max(SHARE * tree.link_inertial[tree.link(location), 0], 1e-3)])
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Some of the link is left."""
+        """Some of the link is left.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
         found = super().bounds(location, subject)
         found[0, 0] = max(found[0, 0], least_mass(subject, location))
         return found

@@ -52,7 +52,14 @@ class LoadDependentFriction(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints that some motor moves."""
+        """Joints that some motor moves.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return tuple(
             name
             for name, row in zip(subject.joints, subject.joint_from_motor, strict=True)
@@ -60,13 +67,31 @@ class LoadDependentFriction(Effect):
         )
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         loaded = motion.reversing & motion.swinging
         lacking = "no joint reverses under different loads"
         return at_joints(self.identifier, motion, loaded, "reverses under different loads", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         subject = signals.subject
         joint = subject.joints.index(location)
         load = (
@@ -80,7 +105,16 @@ class LoadDependentFriction(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         return JointFriction(location, share=np.asarray(values, float)[..., 0])
 
     def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:

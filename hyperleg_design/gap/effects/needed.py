@@ -58,6 +58,12 @@ def needed(
 def as_logged(signals: Signals) -> dict[str, np.ndarray]:
     """What the logged motion needs by `needed`, without rotors; kept, as each location compares
     with it.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+
+    Returns:
+        What `needed` returns, of the logged motion.
     """
     if signals not in _LOGGED:
         _LOGGED[signals] = needed(signals, signals.position, rotors=False)

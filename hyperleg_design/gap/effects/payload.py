@@ -74,7 +74,15 @@ class Payload(InertialEffect):
     )
 
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Of the body, see `InertialEffect.added`."""
+        """Of the body, see `InertialEffect.added`.
+
+        Args:
+            own: inertial parameters of the link `(10,)`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            What is added to the inertial parameters `(k, 10)`.
+        """
         mass, (x, y, z, own_inertia) = values[:, 0], values[:, 1:].T
         inertia = (
             y * y + z * z + own_inertia,
@@ -87,7 +95,15 @@ class Payload(InertialEffect):
         return mass[:, None] * np.stack([np.ones_like(x), x, y, z, *inertia], -1)
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the mass that moves with the link."""
+        """A share of the mass that moves with the link.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         found = super().usual(location, subject)
         found[0] = max(SHARE * carried_mass(subject, location), 0.01)
         return found
@@ -95,6 +111,14 @@ class Payload(InertialEffect):
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
         """At half as far again from the link's origin as its own centre of mass; a load at a
         joint's axis is hardly felt.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            size: over the usual distance from the nulls.
+
+        Returns:
+            Values `(parameters,)`.
         """
         found = super().example(location, subject, size)
         own = subject.tree.link_inertial[subject.tree.link(location)]
@@ -104,7 +128,15 @@ class Payload(InertialEffect):
         return found
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Some of the link is left."""
+        """Some of the link is left.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
         found = super().bounds(location, subject)
         found[0, 0] = max(found[0, 0], least_mass(subject, location))
         return found
@@ -112,6 +144,14 @@ class Payload(InertialEffect):
     def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
         """Against a load out of the link's reach: what bends a motion like a pole with a weight is
         rather no load.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            The log odds [nat].
         """
         own = subject.tree.link_inertial[subject.tree.link(location)]
         near = NEAR * subject.tree.length
@@ -141,6 +181,13 @@ class Payload(InertialEffect):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The mass and first moment that a linear fit to the log finds, and the usual mass where
         `example` has it.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
         """
         low, high = self.bounds(location, signals.subject)
         shown = self.example(location, signals.subject)

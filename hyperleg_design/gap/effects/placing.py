@@ -42,7 +42,14 @@ _MACHINES: WeakKeyDictionary[Subject, Machine] = WeakKeyDictionary()
 
 
 def driven_motors(subject: Subject) -> tuple[str, ...]:
-    """Motors that exist: those of passive joints do not."""
+    """Motors that exist: those of passive joints do not.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        Their names.
+    """
     if subject.one_to_one:
         return tuple(
             name
@@ -53,12 +60,29 @@ def driven_motors(subject: Subject) -> tuple[str, ...]:
 
 
 def moved_joints(subject: Subject, motor: int) -> tuple[str, ...]:
-    """Joints that follow a motor."""
+    """Joints that follow a motor.
+
+    Args:
+        subject: the robot.
+        motor: index of the motor.
+
+    Returns:
+        Their names.
+    """
     return tuple(subject.joints[j] for j in np.flatnonzero(subject.motor_from_joint[motor]))
 
 
 def at_joint(signals: Signals, joint: int, torque: np.ndarray) -> dict[str, np.ndarray]:
-    """Trace of a torque that a joint takes from its drive, beyond the model `(k, t)` [Nm]."""
+    """Trace of a torque that a joint takes from its drive, beyond the model `(k, t)` [Nm].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        joint: index of the joint.
+        torque: `(k, t)` [Nm].
+
+    Returns:
+        The trace by name of the residual.
+    """
     rows = _rows(torque, len(signals.subject.joints))
     rows[:, joint] = torque
     return {"motion": rows.swapaxes(1, 2)}
@@ -67,6 +91,14 @@ def at_joint(signals: Signals, joint: int, torque: np.ndarray) -> dict[str, np.n
 def at_motor(signals: Signals, motor: int, torque: np.ndarray) -> dict[str, np.ndarray]:
     """Trace of a torque that is lost between a motor's measured torque and the joints, on the
     motor's side `(k, t)` [Nm].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+        torque: on the motor's side `(k, t)` [Nm].
+
+    Returns:
+        The trace by name of the residual.
     """
     rows = _rows(torque, len(signals.subject.joints))
     _add(rows, signals, motor, torque)
@@ -78,6 +110,13 @@ def before_measurement(
 ) -> dict[str, np.ndarray]:
     """Trace of changes of what drives give, by place of the motor `(k, t)` [Nm]; the rule of this
     module.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        changes: of the torque, by index of the motor `(k, t)` [Nm].
+
+    Returns:
+        The trace by name of the residual.
     """
     rows: dict[str, np.ndarray] = {}
     for motor, change in changes.items():
@@ -94,23 +133,55 @@ def before_measurement(
 
 
 def is_measured(signals: Signals, motor: int) -> bool:
-    """Whether the residual of motion trusts a measurement of this motor."""
+    """Whether the residual of motion trusts a measurement of this motor.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        True if so.
+    """
     return signals.measured is not None and bool(np.isfinite(signals.measured[:, motor]).any())
 
 
 def is_commanded(signals: Signals, motor: int) -> bool:
-    """Whether it is known what the controller asks of this motor."""
+    """Whether it is known what the controller asks of this motor.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        True if so.
+    """
     return signals.command is not None and bool(np.isfinite(signals.command[:, motor]).any())
 
 
 def commanded(signals: Signals, motor: int) -> np.ndarray:
-    """What the controller asks of a motor, before limits `(t,)` [Nm]."""
+    """What the controller asks of a motor, before limits `(t,)` [Nm].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The torque `(t,)` [Nm].
+    """
     assert signals.command is not None
     return signals.command[:, motor]
 
 
 def is_logged(signals: Signals, motor: int) -> bool:
-    """Whether a log tells what the controller asks of this motor."""
+    """Whether a log tells what the controller asks of this motor.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        True if so.
+    """
     subject, log = signals.subject, signals.log
     return any(
         log.has("motor_torque_command", name)
@@ -123,6 +194,13 @@ def given(signals: Signals, motor: int) -> np.ndarray:
 
     One that gains and targets alone tell, from smoothed motion: noise of the sensors is in the
     residual already, and no effect scales it.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The torque `(t,)` [Nm].
     """
     believed = signals.believed[:, motor]
     if signals.target is None or is_measured(signals, motor) or is_logged(signals, motor):
@@ -137,12 +215,28 @@ def given(signals: Signals, motor: int) -> np.ndarray:
 
 
 def motor_position(signals: Signals, motor: int) -> np.ndarray:
-    """M^T q of one motor `(t,)` [rad]."""
+    """M^T q of one motor `(t,)` [rad].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The angle `(t,)` [rad].
+    """
     return np.asarray(signals.position @ signals.subject.joint_from_motor[:, motor])
 
 
 def motor_velocity(signals: Signals, motor: int) -> np.ndarray:
-    """M^T q_dot of one motor `(t,)` [rad/s]."""
+    """M^T q_dot of one motor `(t,)` [rad/s].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The speed `(t,)` [rad/s].
+    """
     return np.asarray(signals.velocity @ signals.subject.joint_from_motor[:, motor])
 
 
@@ -187,7 +281,14 @@ def limited(
 
 
 def machine(subject: Subject) -> Machine:
-    """Drives of a subject, kept while it lives."""
+    """Drives of a subject, kept while it lives.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The machine.
+    """
     if subject not in _MACHINES:
         _MACHINES[subject] = machine_of(subject)
     return _MACHINES[subject]
@@ -196,6 +297,12 @@ def machine(subject: Subject) -> Machine:
 def joint_strength(subject: Subject) -> np.ndarray:
     """Torque for which each joint is made `(n,)` [Nm]: what its motors can give, else gravity's
     largest and its inertia's share.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The torques `(n,)` [Nm].
     """
     if subject not in _STRENGTH:
         limit = np.where(np.isfinite(subject.torque_limit), subject.torque_limit, 0.0)
@@ -211,6 +318,13 @@ def joint_strength(subject: Subject) -> np.ndarray:
 def motor_strength(subject: Subject, motor: int) -> float:
     """Torque for which a motor is made [Nm]: its limit, else its share of what its joints are made
     for.
+
+    Args:
+        subject: the robot.
+        motor: index of the motor.
+
+    Returns:
+        The torque [Nm].
     """
     if np.isfinite(subject.torque_limit[motor]):
         return float(subject.torque_limit[motor])
@@ -224,7 +338,14 @@ def motor_strength(subject: Subject, motor: int) -> float:
 
 
 def joint_inertia(subject: Subject) -> np.ndarray:
-    """Inertia at each joint alone at the posture of rest, rotors left out `(n,)` [kg m^2]."""
+    """Inertia at each joint alone at the posture of rest, rotors left out `(n,)` [kg m^2].
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The inertias `(n,)` [kg m^2].
+    """
     from hyperleg_design.gap.model import rigid
 
     still = np.zeros((len(subject.joints), len(subject.joints)))

@@ -59,29 +59,71 @@ class RotorInertia(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         moved = motion.reversing & (motion.content > CONTENT)
         return at_joints(
             self.identifier, motion, moved, "motion accelerates", "hardly any acceleration"
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         motor = signals.subject.motors.index(location)
         acceleration = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
         return at_motor(signals, motor, np.atleast_2d(values)[:, :1] * acceleration)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; what is taken away never exceeds the model's."""
+        """See `Effect.alteration`; what is taken away never exceeds the model's.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         own = subject.rotor_inertia[subject.motors.index(location)]
         return AddedRotor(location, np.maximum(np.asarray(values, float)[..., 0], -own))
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the rotor's own inertia, or of its joints' as the motor feels it."""
+        """A share of the rotor's own inertia, or of its joints' as the motor feels it.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         motor = subject.motors.index(location)
         own = float(subject.rotor_inertia[motor])
         column = subject.joint_from_motor[:, motor]
@@ -91,7 +133,15 @@ class RotorInertia(Effect):
         )
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """No less than no rotor at all."""
+        """No less than no rotor at all.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
         found = super().bounds(location, subject)
         found[0] = -subject.rotor_inertia[subject.motors.index(location)]
         return found
@@ -106,7 +156,14 @@ class AddedRotor(Alteration):
     """`()` or `(n,)` [kg m^2]."""
 
     def machine(self, machine: Machine) -> Machine:
-        """With the heavier rotor."""
+        """With the heavier rotor.
+
+        Args:
+            machine: the machine that the robot is to its drives.
+
+        Returns:
+            The changed machine.
+        """
         return machine.changed(
             "rotor_inertia", machine.motor(self.motor), lambda own: own + self.inertia
         )

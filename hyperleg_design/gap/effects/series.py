@@ -68,6 +68,14 @@ def lagged(values: np.ndarray, time_constant: np.ndarray, step: float) -> np.nda
 def band_limited(values: np.ndarray, step: float, cutoff: float) -> np.ndarray:
     """Signal `(t,)` without what lies above a frequency [Hz], no delay; unknown ticks are
     bridged.
+
+    Args:
+        values: `(t,)`, NaN where unknown.
+        step: between ticks [s].
+        cutoff: the frequency [Hz].
+
+    Returns:
+        The filtered signal `(t,)`.
     """
     from scipy.signal import butter, sosfiltfilt
 
@@ -86,6 +94,13 @@ def band_limited(values: np.ndarray, step: float, cutoff: float) -> np.ndarray:
 def second_derivative(values: np.ndarray, step: float) -> np.ndarray:
     """Central second difference along the last axis `(..., t)`; its ends repeat their
     neighbours.
+
+    Args:
+        values: `(..., t)`.
+        step: between ticks [s].
+
+    Returns:
+        The derivative `(..., t)`.
     """
     out = np.empty_like(values)
     out[..., 1:-1] = (values[..., 2:] - 2 * values[..., 1:-1] + values[..., :-2]) / step**2
@@ -94,5 +109,13 @@ def second_derivative(values: np.ndarray, step: float) -> np.ndarray:
 
 
 def first_derivative(values: np.ndarray, step: float) -> np.ndarray:
-    """Central difference along the last axis `(..., t)`."""
+    """Central difference along the last axis `(..., t)`.
+
+    Args:
+        values: `(..., t)`.
+        step: between ticks [s].
+
+    Returns:
+        The derivative `(..., t)`.
+    """
     return np.asarray(np.gradient(values, step, axis=-1))

@@ -64,31 +64,73 @@ class StribeckFriction(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints."""
+        """Joints.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         slow = motion.reversing & (motion.slow > SLOW)
         lacking = "no slow motion: breakaway is passed in a few ticks"
         return at_joints(self.identifier, motion, slow, "slow and fast motion", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         joint = signals.subject.joints.index(location)
         torque, speed = np.atleast_2d(np.asarray(values, float)).T[..., None]
         fall = np.exp(-((signals.velocity[:, joint] / np.maximum(speed, 1e-6)) ** 2))
         return at_joint(signals, joint, torque * fall * sliding(signals)[:, joint])
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         return JointFriction(
             location, breakaway=values[..., 0], speed=np.maximum(values[..., 1], 1e-6)
         )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the joint is made for."""
+        """A share of the torque that the joint is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         return np.array(
             [
                 SHARE * joint_strength(subject)[subject.joints.index(location)],
@@ -97,16 +139,40 @@ class StribeckFriction(Effect):
         )
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Excess no larger than the torque that the joint is made for."""
+        """Excess no larger than the torque that the joint is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
         found = super().bounds(location, subject)
         found[1, 0] = min(found[1, 0], joint_strength(subject)[subject.joints.index(location)])
         return found
 
     def steps(self, location: str, subject: Subject) -> np.ndarray:
-        """Small against the least Stribeck speed."""
+        """Small against the least Stribeck speed.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            The steps `(parameters,)`.
+        """
         return np.array([0.1 * self.usual(location, subject)[0], 0.1 * self.parameters[1].low])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The usual excess at several Stribeck speeds."""
+        """The usual excess at several Stribeck speeds.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
+        """
         usual = self.usual(location, signals.subject)[0]
         return np.array([[usual, speed] for speed in (0.03, 0.1, 0.3)])

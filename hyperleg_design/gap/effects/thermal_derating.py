@@ -73,11 +73,26 @@ class ThermalDerating(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         known = {m: log.column(f"motor_temperature/{m}") for m in log.motors}
         rise = {
             m: float(np.nanmax(values) - np.nanmin(values))
@@ -96,7 +111,17 @@ class ThermalDerating(Effect):
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         motor = signals.subject.motors.index(location)
         torque = given(signals, motor)
         return at_motor(
@@ -104,7 +129,16 @@ class ThermalDerating(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         return DeratedMotor(
             location,
             np.asarray(values, float)[..., 0],
@@ -126,7 +160,15 @@ class ThermalDerating(Effect):
 
 
 def rise(signals: Signals, motor: int) -> np.ndarray:
-    """Temperature of a motor above 25 degC `(t,)` [K], logged or modelled."""
+    """Temperature of a motor above 25 degC `(t,)` [K], logged or modelled.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The rise `(t,)` [K].
+    """
     if signals.temperature is not None and np.isfinite(signals.temperature[:, motor]).any():
         return signals.temperature[:, motor] - COLD
     from scipy.signal import lfilter
@@ -140,7 +182,15 @@ def rise(signals: Signals, motor: int) -> np.ndarray:
 
 
 def rated_torque(subject: Subject, motor: int) -> float:
-    """Continuous torque of a motor [Nm]."""
+    """Continuous torque of a motor [Nm].
+
+    Args:
+        subject: the robot.
+        motor: index of the motor.
+
+    Returns:
+        The torque [Nm].
+    """
     known = float(machine(subject).rated_torque[motor])
     return known if np.isfinite(known) else RATED_SHARE * motor_strength(subject, motor)
 

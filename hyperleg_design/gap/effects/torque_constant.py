@@ -68,11 +68,26 @@ class TorqueConstant(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         motors = tuple(
             m for m in log.motors if log.has("motor_current", m) or log.has("motor_torque", m)
         )
@@ -84,7 +99,17 @@ class TorqueConstant(Effect):
         return Excitation(self.identifier, moved, motors if moved else (), why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         motor = signals.subject.motors.index(location)
         scale, reading = np.atleast_2d(np.asarray(values, float)).T[..., None]
         lost = (1.0 - scale) * given(signals, motor)
@@ -94,13 +119,29 @@ class TorqueConstant(Effect):
         return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         return ScaledTorque(location, values[..., 0], values[..., 1])
 
     def variants(self, signals: Signals, location: str) -> np.ndarray:
         """Another motor; and a wrong reading, where the log tells both what was asked for and what
         was given.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(v, parameters)`.
         """
         both = _told_twice(signals, signals.subject.motors.index(location))
         return np.array([[1.0, 0.0], [1.0, 1.0]] if both else [[1.0, 0.0]])

@@ -62,11 +62,26 @@ class TorqueSaturation(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         return at_drives(
             self.identifier,
             motion,
@@ -76,7 +91,17 @@ class TorqueSaturation(Effect):
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
             return {}
@@ -88,19 +113,53 @@ class TorqueSaturation(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         return LowerLimit(location, _limit(np.asarray(values, float)[..., 0]))
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A limit of 60 % of the torque that the motor is made for."""
+        """A limit of 60 % of the torque that the motor is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         return np.array([1 / (0.6 * motor_strength(subject, subject.motors.index(location)))])
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """A limit that slow motion reaches, the lower the larger."""
+        """A limit that slow motion reaches, the lower the larger.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            size: over the usual distance from the nulls.
+
+        Returns:
+            Values `(parameters,)`.
+        """
         return np.array([size / (0.1 * motor_strength(subject, subject.motors.index(location)))])
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """A drive that gives next to nothing is no limited one."""
+        """A drive that gives next to nothing is no limited one.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
         low, high = super().bounds(location, subject)
         return np.array(
             [
@@ -114,6 +173,13 @@ class TorqueSaturation(Effect):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The torque that the motion hardly ever needs more than, and torques that the command of
         this log exceeds ever more often.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
         """
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
@@ -130,7 +196,16 @@ class TorqueSaturation(Effect):
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """The limit."""
+        """The limit.
+
+        Args:
+            location: one of `locations`.
+            values: of the parameters `(parameters,)`.
+            subject: the robot.
+
+        Returns:
+            Quantities by name, each with its unit.
+        """
         return {"limit": (float(_limit(values[0])), "Nm")}
 
 

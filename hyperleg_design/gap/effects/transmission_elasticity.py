@@ -88,11 +88,26 @@ class TransmissionElasticity(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         good = f"motion reaches past {TELLING:.0f} Hz"
         lacking = f"motion holds nothing above {TELLING:.0f} Hz: looks like delay"
         return by_speeds(self.identifier, log, motion) or at_joints(
@@ -100,7 +115,17 @@ class TransmissionElasticity(Effect):
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         motor = signals.subject.motors.index(location)
         compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(
             np.asarray(values, float)
@@ -122,7 +147,16 @@ class TransmissionElasticity(Effect):
         return belt.trace(signals, motor, moved, side, seen, behind)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         compliance, ratio = values[..., 0], values[..., 1]
         inertia = machine.rotor(subject, subject.motors.index(location))
@@ -133,13 +167,29 @@ class TransmissionElasticity(Effect):
         )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """Compliance at which the rotor rings at the usual frequency."""
+        """Compliance at which the rotor rings at the usual frequency.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(parameters,)`.
+        """
         found = super().usual(location, subject)
         found[0] = self._compliance(RESONANCE, location, subject)
         return found
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """No softer than a rotor that rings at half a hertz."""
+        """No softer than a rotor that rings at half a hertz.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
         found = super().bounds(location, subject)
         found[1, 0] = min(found[1, 0], self._compliance(SLOWEST, location, subject))
         return found
@@ -147,6 +197,12 @@ class TransmissionElasticity(Effect):
     def fixed(self, values: np.ndarray) -> np.ndarray:
         """Where joints rub; of a belt that stiffens, or with joints that rub behind it, where
         encoders sit; else it is straight.
+
+        Args:
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            Whether each parameter stays `(parameters,)` of bool.
         """
         behind, stiffens = values[3] >= belt.CHOSEN, values[4] > 0
         return np.array([False, False, behind or stiffens, True, not (behind or stiffens)])
@@ -154,6 +210,13 @@ class TransmissionElasticity(Effect):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Several resonances, with encoders on either side, and with joints that rub behind a belt,
         which may stiffen.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
         """
         stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
         plain = [[c, DAMPING_RATIO, side, 0.0, 0.0] for side in (0.0, 1.0) for c in stiff]
@@ -167,7 +230,16 @@ class TransmissionElasticity(Effect):
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """Stiffness on the motor's side, and the frequency of the rotor on its belt."""
+        """Stiffness on the motor's side, and the frequency of the rotor on its belt.
+
+        Args:
+            location: one of `locations`.
+            values: of the parameters `(parameters,)`.
+            subject: the robot.
+
+        Returns:
+            Quantities by name, each with its unit.
+        """
         stiffness = 1 / values[0] if values[0] > 0 else np.inf
         inertia = machine.rotor(subject, subject.motors.index(location))
         return {

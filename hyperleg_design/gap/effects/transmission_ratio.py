@@ -77,11 +77,26 @@ class TransmissionRatio(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors."""
+        """Motors.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         if (shown := by_speeds(self.identifier, log, motion)) is not None:
             return shown
         passed = motion.torque & motion.swinging
@@ -93,7 +108,17 @@ class TransmissionRatio(Effect):
         return Excitation(self.identifier, bool(passed.any()), tuple(motion.joints[passed]), why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         subject = signals.subject
         motor = subject.motors.index(location)
         scale, side = np.atleast_2d(np.asarray(values, float)).T[..., None]
@@ -114,12 +139,29 @@ class TransmissionRatio(Effect):
         return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; the controller keeps computing with the model's."""
+        """See `Effect.alteration`; the controller keeps computing with the model's.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         return ScaledRatio(location, values[..., 0], values[..., 1])
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Longer and shorter, with encoders on either side."""
+        """Longer and shorter, with encoders on either side.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
+        """
         return np.array([[1.05, 0.0], [0.95, 0.0], [1.05, 1.0], [0.95, 1.0]])
 
 
@@ -179,7 +221,14 @@ class ScaledRatio(Alteration):
     """`()` or `(n,)` each [-]."""
 
     def machine(self, machine: Machine) -> Machine:
-        """With the other M."""
+        """With the other M.
+
+        Args:
+            machine: the machine that the robot is to its drives.
+
+        Returns:
+            The changed machine.
+        """
         scale = np.asarray(self.scale, float)[..., None]
         old = np.asarray(machine.joint_from_motor)
         place = machine.motor(self.motor)

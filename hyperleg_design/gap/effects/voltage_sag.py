@@ -108,11 +108,26 @@ class VoltageSag(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """The battery."""
+        """The battery.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the places; empty where it can sit nowhere on this robot.
+        """
         return (BATTERY,) if driven_motors(subject) else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`."""
+        """See `Effect.excited`.
+
+        Args:
+            log: as it was read.
+            motion: facts of it.
+
+        Returns:
+            Whether the log can show it, where, and why or why not.
+        """
         values = log.column("battery_voltage")
         if not np.isfinite(values).any():
             return Excitation(self.identifier, False, (), "no battery voltage")
@@ -132,11 +147,29 @@ class VoltageSag(Effect):
         )
 
     def place(self, location: str, subject: Subject) -> str:
-        """The battery, also as the robot."""
+        """The battery, also as the robot.
+
+        Args:
+            location: name of the place, as people may write it.
+            subject: the robot.
+
+        Returns:
+            The location.
+        """
         return super().place(BATTERY if location == "robot" else location, subject)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`."""
+        """See `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
+            leaves alone are missing.
+        """
         subject = signals.subject
         limits, torque, speed = np.atleast_2d(np.asarray(values, float)).T[..., None]
         lost = missing(signals)
@@ -164,7 +197,16 @@ class VoltageSag(Effect):
         return before_measurement(signals, changes)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`."""
+        """See `Effect.alteration`.
+
+        Args:
+            location: one of `locations`.
+            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
+            subject: the robot.
+
+        Returns:
+            What adds it to a simulation.
+        """
         values = np.asarray(values, float)
         strength = np.array(
             [motor_strength(subject, motor) for motor in range(len(subject.motors))]
@@ -182,6 +224,13 @@ class VoltageSag(Effect):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Limits alone, torques alone; of motors whose line nobody knows, also the line on which
         they give less than they are told.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+
+        Returns:
+            Values `(s, parameters)`, inside the bounds.
         """
         if np.isfinite(signals.subject.stall_torque).all():
             return np.array([[1.0, 0.0, 10.0], [3.0, 0.0, 10.0], [0.0, 1.0, 10.0]])
@@ -229,7 +278,14 @@ def _lines(signals: Signals) -> list[list[float]]:
 
 
 def missing(signals: Signals) -> np.ndarray:
-    """1 - V / V_nominal `(t,)`, logged or modelled."""
+    """1 - V / V_nominal `(t,)`, logged or modelled.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+
+    Returns:
+        The missing share `(t,)` [-].
+    """
     subject = signals.subject
     if signals.voltage is not None:
         nominal = machine(subject).voltage
@@ -249,18 +305,42 @@ def modelled(
 ) -> np.ndarray:
     """Share of the voltage that is missing at torques and speeds of the motors `(..., m)`,
     `(...,)`.
+
+    Args:
+        torque: of the motors `(..., m)` [Nm].
+        speed: of the motors `(..., m)` [rad/s].
+        drives: the machine that the robot is to its drives.
+        reference: power at which `SAG` is missing [W].
+
+    Returns:
+        The missing share `(...,)` [-].
     """
     power = np.maximum((torque * speed + drives.power_constant * torque**2).sum(-1), 0.0)
     return np.asarray(SAG * (AT_REST + (1 - AT_REST) * np.minimum(power / reference, 1.0)))
 
 
 def ratio(subject: Subject, motor: int) -> float:
-    """Speed of a motor over that of the joint that it moves most [-]."""
+    """Speed of a motor over that of the joint that it moves most [-].
+
+    Args:
+        subject: the robot.
+        motor: index of the motor.
+
+    Returns:
+        The ratio [-].
+    """
     return float(np.abs(subject.joint_from_motor[:, motor]).max())
 
 
 def reference_power(subject: Subject) -> float:
-    """Power at which `SAG` is missing [W]."""
+    """Power at which `SAG` is missing [W].
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The power [W].
+    """
     return float(REFERENCE_SPEED * joint_strength(subject).sum())
 
 

@@ -15,7 +15,15 @@ if TYPE_CHECKING:
 
 
 def search_text(search: Search, study: optuna.Study) -> str:
-    """The front as a table, with what failed."""
+    """The front as a table, with what failed.
+
+    Args:
+        search: what was searched.
+        study: its trials.
+
+    Returns:
+        The text.
+    """
     states = Counter(trial.state.name.lower() for trial in study.trials)
     lines = [", ".join(f"{count} {state}" for state, count in states.items())]
     reasons = Counter(t.user_attrs[REASON] for t in study.trials if REASON in t.user_attrs)
@@ -39,7 +47,15 @@ def search_text(search: Search, study: optuna.Study) -> str:
 
 
 def final_text(search: Search, final: Final) -> str:
-    """The finalists with the values that decide, the winner, and how to build it."""
+    """The finalists with the values that decide, the winner, and how to build it.
+
+    Args:
+        search: what was searched.
+        final: the finalists.
+
+    Returns:
+        The text.
+    """
     if not final.finalists:
         return "no finalist: no design holds all constraints"
     cells = []

@@ -56,7 +56,15 @@ class DriveSet:
         return len(self.low)
 
     def part(self, values: np.ndarray, kind: str) -> np.ndarray:
-        """Values of a kind `(..., n)`; of the delay `(...,)`."""
+        """Values of a kind `(..., n)`; of the delay `(...,)`.
+
+        Args:
+            values: of all parameters `(..., P)`.
+            kind: of parameter.
+
+        Returns:
+            The values `(..., n)`, or `(...,)`.
+        """
         joints = len(self.subject.joints)
         if kind == "delay":
             return np.asarray(values[..., -1])
@@ -64,7 +72,14 @@ class DriveSet:
         return np.asarray(values[..., at : at + joints])
 
     def place(self, index: int) -> tuple[str, str]:
-        """Effect and location of a parameter."""
+        """Effect and location of a parameter.
+
+        Args:
+            index: of the parameter.
+
+        Returns:
+            Effect and location.
+        """
         joints = len(self.subject.joints)
         if index == self.count - 1:
             return EFFECT["delay"], "robot"
@@ -73,6 +88,12 @@ class DriveSet:
     def cause(self, values: np.ndarray) -> tuple[str, str, float]:
         """What such a fit would name: effect, location and size of the largest change over its
         usual nuisance parameter.
+
+        Args:
+            values: of all parameters `(P,)`.
+
+        Returns:
+            Effect, location and size.
         """
         size = np.abs(values) / self.spread
         at = int(np.argmax(size))
@@ -98,6 +119,13 @@ class Fitted:
 
 def drive_set(subject: Subject, step: float) -> DriveSet:
     """Parameters of a robot whose base is fixed and whose logs have a step [s].
+
+    Args:
+        subject: the robot.
+        step: of the logs [s].
+
+    Returns:
+        The parameters.
 
     Raises:
         InputError: a floating base.
@@ -145,6 +173,9 @@ def _spreads(subject: Subject, step: float) -> np.ndarray:
 
 def check_logs(signals: Sequence[Signals]) -> None:
     """Whether these methods can replay such logs.
+
+    Args:
+        signals: the conditioned logs.
 
     Raises:
         InputError: no logs, or one without targets and gains.

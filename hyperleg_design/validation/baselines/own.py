@@ -71,7 +71,14 @@ class ClosedLoop:
     """`(b, n, n)`"""
 
     def response(self, torque: np.ndarray) -> np.ndarray:
-        """Positions that torques `(b, n, k)` cause, from rest `(b, n, k)` [rad]."""
+        """Positions that torques `(b, n, k)` cause, from rest `(b, n, k)` [rad].
+
+        Args:
+            torque: `(b, n, k)` [Nm].
+
+        Returns:
+            The positions `(b, n, k)` [rad].
+        """
         h = self.step
         position = np.zeros(torque.shape[1:])
         velocity, acceleration = np.zeros_like(position), np.zeros_like(position)
@@ -281,6 +288,12 @@ def _solved(
 def residual_of(one: Signals) -> np.ndarray:
     """Residual that is fitted: of motion, with the command as the torque, as replays of targets
     have it `(t, n)` [Nm].
+
+    Args:
+        one: a conditioned log.
+
+    Returns:
+        The residual `(t, n)` [Nm].
     """
     if one.measured is None:
         return one.residual["motion"]

@@ -116,6 +116,13 @@ def predicted(
 def squared_error(signals: Signals, predicted_position: np.ndarray) -> np.ndarray:
     """Mean square of the whole-log position error, over ticks and joints, of each set `(k,)`
     [rad^2]; infinite where one diverged.
+
+    Args:
+        signals: the conditioned log.
+        predicted_position: of each set of values `(k, t, n)` [rad].
+
+    Returns:
+        The mean squares `(k,)` [rad^2].
     """
     ticks = whole_log(signals).ticks[0]
     error = np.where(
@@ -130,6 +137,15 @@ def position_gap(
 ) -> np.ndarray:
     """Root mean square of the whole-log position error over all logs, by set of values `(k,)`
     [rad].
+
+    Args:
+        signals: the conditioned logs.
+        drives: the parameters.
+        values: sets of values `(k, P)`.
+        options: of the replay.
+
+    Returns:
+        The errors `(k,)` [rad].
     """
     total, weight = np.zeros(len(np.atleast_2d(values))), 0.0
     for one in signals:
@@ -140,7 +156,15 @@ def position_gap(
 
 
 def held_targets(target: np.ndarray | None, default: np.ndarray) -> np.ndarray:
-    """Targets with unknown ticks held at the last known one."""
+    """Targets with unknown ticks held at the last known one.
+
+    Args:
+        target: `(t, n)` [rad], NaN where unknown; there must be some.
+        default: what holds before the first one `(n,)` [rad].
+
+    Returns:
+        The targets `(t, n)` [rad].
+    """
     assert target is not None
     known = np.isfinite(target)
     latest = np.maximum.accumulate(np.where(known, np.arange(len(target))[:, None], 0), 0)

@@ -45,6 +45,12 @@ class Rollout:
     def positions(self, values: np.ndarray) -> np.ndarray:
         """As encoders tell them, from the first valid tick to the last `(T, n)` [rad]; values
         `(P,)`.
+
+        Args:
+            values: of the parameters `(P,)`.
+
+        Returns:
+            The positions `(T, n)` [rad].
         """
         import mujoco
         from mujoco import rollout
@@ -78,7 +84,14 @@ class Rollout:
         return np.concatenate([self.signals.position[first][None], position + bias])
 
     def error(self, values: np.ndarray) -> np.ndarray:
-        """Logged less predicted positions, zero at ticks not fit for use `(T, n)` [rad]."""
+        """Logged less predicted positions, zero at ticks not fit for use `(T, n)` [rad].
+
+        Args:
+            values: of the parameters `(P,)`.
+
+        Returns:
+            The errors `(T, n)` [rad].
+        """
         return np.where(
             self.signals.valid[self.ticks][:, None],
             self.signals.position[self.ticks] - self.positions(values),

@@ -219,7 +219,20 @@ def case_entries(
     threads: int = 1,
     truth: dict[str, Any] | None = None,
 ) -> list[Entry]:
-    """All methods on one case."""
+    """All methods on one case.
+
+    Args:
+        folder: of the trial.
+        name: of the case.
+        methods: their names.
+        budget: time that each method has [s].
+        seed: of their randomness.
+        threads: of the simulations.
+        truth: what is wrong, if the key is open.
+
+    Returns:
+        One entry a method.
+    """
     entries = [_of_diagnosis(folder, name, truth)] if "diagnosis" in methods else []
     fixed = [m for m in FIXED if m in methods]
     if not fixed:
@@ -280,6 +293,12 @@ def _fit(method: str) -> Callable[[Sequence[Signals], DriveSet, float, int, int]
 def open_case(case: Path) -> tuple[list[Signals], list[Signals], list[Signals], DriveSet]:
     """Logs to fit, the held-out one, references, and the parameters of the robot of one case of a
     trial.
+
+    Args:
+        case: folder of the case.
+
+    Returns:
+        The four of them.
 
     Raises:
         InputError: a robot or logs that these methods cannot take.

@@ -39,6 +39,12 @@ def own_checkout() -> Path:
 def checked_checkout(checkout: Path | None) -> Path:
     """The folder of a checkout, by default of this one.
 
+    Args:
+        checkout: the folder; None for this one.
+
+    Returns:
+        The folder.
+
     Raises:
         InputError: it holds no package.
     """
@@ -51,6 +57,13 @@ def checked_checkout(checkout: Path | None) -> Path:
 def open_recordings(path: Path, metadata: Mapping[str, Any] | None = None) -> tuple[Recording, ...]:
     """Logs of any format that the package reads.
 
+    Args:
+        path: of the file.
+        metadata: that the file does not tell.
+
+    Returns:
+        The recordings.
+
     Raises:
         InputError: unreadable.
     """
@@ -62,6 +75,12 @@ def open_recordings(path: Path, metadata: Mapping[str, Any] | None = None) -> tu
 
 def blind_module(name: str) -> Any:
     """A module of the blind plants, such as `plan`.
+
+    Args:
+        name: of the module.
+
+    Returns:
+        The module.
 
     Raises:
         InputError: no package holds it.

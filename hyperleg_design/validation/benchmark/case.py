@@ -95,21 +95,50 @@ class Recording:
     metadata: Mapping[str, Any] = field(default_factory=dict)
 
     def declared(self, **values: Any) -> Recording:
-        """A copy with some metadata replaced."""
+        """A copy with some metadata replaced.
+
+        Args:
+            values: of the metadata, by field.
+
+        Returns:
+            The copy.
+        """
         return replace(self, metadata={**self.metadata, **values})
 
     def without(self, *kinds: str) -> Recording:
-        """A copy without the columns of some signals, such as `motor_torque`."""
+        """A copy without the columns of some signals, such as `motor_torque`.
+
+        Args:
+            kinds: names of the signals.
+
+        Returns:
+            The copy.
+        """
         columns = {c: v for c, v in self.signals.items() if c.split("/")[0] not in kinds}
         return replace(self, signals=columns)
 
     def scaled(self, factor: float, *columns: str) -> Recording:
-        """A copy in which some columns are multiplied by a factor; absent columns are skipped."""
+        """A copy in which some columns are multiplied by a factor; absent columns are skipped.
+
+        Args:
+            factor: on the values.
+            columns: their names.
+
+        Returns:
+            The copy.
+        """
         present = {c: factor * self.signals[c] for c in columns if c in self.signals}
         return replace(self, signals={**self.signals, **present})
 
     def shifted(self, amount: float, column: str) -> Recording:
         """A copy in which a constant is added to one column.
+
+        Args:
+            amount: to add, in the column's unit.
+            column: its name.
+
+        Returns:
+            The copy.
 
         Raises:
             InputError: there is no such column.
@@ -123,6 +152,13 @@ class Recording:
 
         The value at t is the one that was recorded at t + `seconds`; the last `seconds` are cut
         off.
+
+        Args:
+            seconds: by which it is told too early [s].
+            kind: name of the signal.
+
+        Returns:
+            The copy.
         """
         keep = self.time <= self.time[-1] - seconds
         columns = {
@@ -134,7 +170,15 @@ class Recording:
         return replace(self, time=self.time[keep], signals=columns)
 
     def part(self, begin: float, end: float) -> Recording:
-        """The ticks from `begin` to `end` [s]."""
+        """The ticks from `begin` to `end` [s].
+
+        Args:
+            begin: first time [s].
+            end: last time [s].
+
+        Returns:
+            The copy.
+        """
         keep = (self.time >= begin) & (self.time <= end)
         columns = {c: v[keep] for c, v in self.signals.items()}
         return replace(self, time=self.time[keep], signals=columns)
@@ -208,7 +252,12 @@ def write_case(material: Material, folder: Path) -> Path:
 
 
 def write_recording(path: Path, recording: Recording) -> None:
-    """Write a recording as Parquet, its metadata as JSON under the schema key `hyperleg`."""
+    """Write a recording as Parquet, its metadata as JSON under the schema key `hyperleg`.
+
+    Args:
+        path: of the file.
+        recording: to write.
+    """
     columns = {"t": recording.time, **recording.signals}
     table = pa.table({name: np.asarray(values, float) for name, values in columns.items()})
     content = json.dumps(dict(recording.metadata), allow_nan=False)
@@ -216,5 +265,13 @@ def write_recording(path: Path, recording: Recording) -> None:
 
 
 def labelled(logs: Sequence[Recording], **values: Any) -> tuple[Recording, ...]:
-    """Recordings with the same metadata replaced in each."""
+    """Recordings with the same metadata replaced in each.
+
+    Args:
+        logs: the recordings.
+        values: of the metadata, by field.
+
+    Returns:
+        The changed copies.
+    """
     return tuple(log.declared(**values) for log in logs)

@@ -217,7 +217,14 @@ def _blind(rows: Sequence[Row]) -> list[Measure]:
 
 
 def table(rows: Sequence[Row]) -> str:
-    """The measures of development cases, held-out cases and all, in Markdown."""
+    """The measures of development cases, held-out cases and all, in Markdown.
+
+    Args:
+        rows: one a case.
+
+    Returns:
+        The Markdown.
+    """
     columns = {
         "development": [row for row in rows if row["split"] == "development"],
         "held out": [row for row in rows if row["split"] == "held out"],
@@ -254,7 +261,14 @@ def _cell(measure: Measure) -> str:
 
 
 def case_table(rows: Sequence[Row]) -> str:
-    """One line a case, in Markdown."""
+    """One line a case, in Markdown.
+
+    Args:
+        rows: one a case.
+
+    Returns:
+        The Markdown.
+    """
     lines = [
         "| case | split | truth | said | p | outcome | beside | inside | s |",
         "|---|---|---|---|---|---|---|---|---|",

@@ -72,6 +72,14 @@ def chosen_cases(
 ) -> list[Case]:
     """Cases of some suites and splits, whose names hold one of some texts.
 
+    Args:
+        suites: names of the suites.
+        splits: names of the splits.
+        only: texts, one of which a name must hold; all cases without.
+
+    Returns:
+        The cases.
+
     Raises:
         InputError: an unknown suite or split, or no case is left.
     """
@@ -167,13 +175,26 @@ def _spread(
 def run_case(name: str, folder: str, data: str, checkout: str) -> None:
     """Make, diagnose and store one case of this version, by its name; nothing but the result is
     left behind.
+
+    Args:
+        name: of the case.
+        folder: of the results.
+        data: folder of real logs.
+        checkout: folder of the version that diagnoses.
     """
     case = next(case for case in all_cases() if case.name == name)
     store(case, Path(folder), Path(data), Path(checkout))
 
 
 def store(case: Case, folder: Path, data: Path, checkout: Path | None = None) -> None:
-    """Make, diagnose and store one case."""
+    """Make, diagnose and store one case.
+
+    Args:
+        case: the case.
+        folder: of the results.
+        data: folder of real logs.
+        checkout: folder of the version that diagnoses; None for this one.
+    """
     with tempfile.TemporaryDirectory() as work:
         try:
             material, truth = case.build(data)
@@ -219,7 +240,14 @@ def _done(path: Path) -> bool:
 
 
 def scored(entry: dict[str, Any]) -> dict[str, Any]:
-    """A scored case, from what its file holds; rules are applied anew at every reading."""
+    """A scored case, from what its file holds; rules are applied anew at every reading.
+
+    Args:
+        entry: what its file holds.
+
+    Returns:
+        The scored case.
+    """
     known = entry["truth"]
     truth = Truth(
         faults=tuple(

@@ -89,7 +89,15 @@ class Score:
 
 
 def score(truth: Truth, diagnosis: Mapping[str, Any]) -> Score:
-    """Score an answer in the form of `diagnosis.json` by the rules of this module."""
+    """Score an answer in the form of `diagnosis.json` by the rules of this module.
+
+    Args:
+        truth: what is wrong.
+        diagnosis: the answer.
+
+    Returns:
+        The score.
+    """
     verdict = str(diagnosis.get("verdict", FAILED))
     naming = verdict in NAMING
     causes = list(diagnosis.get("causes") or []) if naming else []
@@ -152,7 +160,14 @@ def _outcome(
 
 
 def places_of(cause: Mapping[str, Any]) -> tuple[str, ...]:
-    """Names of the places at which a cause stands."""
+    """Names of the places at which a cause stands.
+
+    Args:
+        cause: as an answer holds it.
+
+    Returns:
+        The names.
+    """
     listed = cause.get("locations")
     places = [str(place) for place in listed] if isinstance(listed, list | tuple) else []
     location = str(cause.get("location", ""))
@@ -225,6 +240,12 @@ def _inside(truth: Truth, causes: Sequence[Mapping[str, Any]]) -> bool | None:
 def remainder_of(diagnosis: Mapping[str, Any]) -> float | None:
     """Share of the gap that an answer leaves to no effect: its field `remainder`, a number or a
     mapping with `share`; None where it has none.
+
+    Args:
+        diagnosis: the answer.
+
+    Returns:
+        The share, or None.
     """
     left = diagnosis.get("remainder")
     if isinstance(left, Mapping):
@@ -239,7 +260,14 @@ def _number(value: Any) -> float | None:
 
 
 def said(diagnosis: Mapping[str, Any]) -> str:
-    """Verdict and causes, or the first two rivals of an `unknown`, or what went wrong."""
+    """Verdict and causes, or the first two rivals of an `unknown`, or what went wrong.
+
+    Args:
+        diagnosis: the answer.
+
+    Returns:
+        The text.
+    """
     verdict = str(diagnosis.get("verdict", FAILED))
     if verdict == FAILED:
         return f"{FAILED}: {diagnosis.get('message', '')}"[:120]

@@ -19,7 +19,15 @@ READ = ("hyperleg_design.gap.logs.log", "hyperleg_design.gap.log")
 
 
 def first(modules: tuple[str, ...], name: str) -> Any:
-    """An attribute of the first of some modules that exists and has it; None where none has."""
+    """An attribute of the first of some modules that exists and has it; None where none has.
+
+    Args:
+        modules: dotted names, in the order in which they are tried.
+        name: of the attribute.
+
+    Returns:
+        The attribute, or None.
+    """
     for module in modules:
         try:
             return getattr(importlib.import_module(module), name)
@@ -55,7 +63,16 @@ def main() -> None:
 
 
 def by_command(case: Path, robot: str, entry: dict[str, Any]) -> dict[str, Any]:
-    """The diagnosis by `hyperleg gap diagnose`."""
+    """The diagnosis by `hyperleg gap diagnose`.
+
+    Args:
+        case: folder of the case.
+        robot: its robot.
+        entry: what is to be diagnosed.
+
+    Returns:
+        The content of `diagnosis.json`.
+    """
     out = case / "by_command"
     command = [sys.executable, "-m", "hyperleg_design.cli", "gap", "diagnose", "--robot", robot]
     command += ["--logs", *(str(case / name) for name in entry["logs"])]

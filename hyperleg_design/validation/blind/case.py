@@ -33,7 +33,14 @@ class Case:
 
 
 def describe(case: Case) -> dict[str, Any]:
-    """Truth of a case for the key."""
+    """Truth of a case for the key.
+
+    Args:
+        case: the case.
+
+    Returns:
+        The truth, as JSON holds it.
+    """
     plan = case.plan
     return {
         "case": f"{plan.index:03d}",

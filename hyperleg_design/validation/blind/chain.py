@@ -119,7 +119,15 @@ class Chain:
         return carried
 
     def with_link(self, name: str, **values: Any) -> Chain:
-        """Copy with other values of one link."""
+        """Copy with other values of one link.
+
+        Args:
+            name: of the link.
+            values: of the link's fields.
+
+        Returns:
+            The copy.
+        """
         return replace(
             self,
             links=tuple(
@@ -128,7 +136,16 @@ class Chain:
         )
 
     def with_point_mass(self, name: str, mass: float, com: np.ndarray) -> Chain:
-        """Copy with a point mass [kg] fixed to a link at `com` of its joint frame [m]."""
+        """Copy with a point mass [kg] fixed to a link at `com` of its joint frame [m].
+
+        Args:
+            name: of the link.
+            mass: [kg].
+            com: in the joint's frame `(3,)` [m].
+
+        Returns:
+            The copy.
+        """
         link = next(link for link in self.links if link.name == name)
         total = link.mass + mass
         middle = (link.mass * link.com + mass * np.asarray(com)) / total
@@ -140,7 +157,14 @@ class Chain:
         return self.with_link(name, mass=total, com=middle, inertia=inertia)
 
     def pinocchio(self, gravity: np.ndarray = GRAVITY) -> pinocchio.Model:
-        """Its rigid bodies, without rotors."""
+        """Its rigid bodies, without rotors.
+
+        Args:
+            gravity: `(3,)` [m/s^2].
+
+        Returns:
+            The model.
+        """
         import pinocchio as pin
 
         model: Any = pin.Model()
@@ -164,13 +188,27 @@ class Chain:
 
 
 def steiner(mass: float, offset: np.ndarray) -> np.ndarray:
-    """Inertia of a point mass about a point `offset` away `(3, 3)` [kg m^2]."""
+    """Inertia of a point mass about a point `offset` away `(3, 3)` [kg m^2].
+
+    Args:
+        mass: [kg].
+        offset: `(3,)` [m].
+
+    Returns:
+        The inertia `(3, 3)` [kg m^2].
+    """
     return mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
 
 
 @cache
 def chain(name: str) -> Chain:
     """A robot of `ROBOTS`.
+
+    Args:
+        name: of the robot.
+
+    Returns:
+        The robot.
 
     Raises:
         ValueError: no such robot.
@@ -318,6 +356,12 @@ def tree_links(model: Any) -> tuple[Link, ...]:
 
     A free joint is left out: its body is the fixed base.
 
+    Args:
+        model: the compiled model.
+
+    Returns:
+        The links.
+
     Raises:
         ValueError: a joint that is neither hinge nor free, or several on one body.
     """
@@ -382,7 +426,14 @@ def _joined(link: Link, mass: float, com: np.ndarray, inertia: np.ndarray) -> Li
 
 
 def matrix(quaternion: np.ndarray) -> np.ndarray:
-    """Rotation of a unit quaternion w x y z, `(3, 3)`."""
+    """Rotation of a unit quaternion w x y z, `(3, 3)`.
+
+    Args:
+        quaternion: `(4,)`.
+
+    Returns:
+        The rotation `(3, 3)`.
+    """
     w, x, y, z = quaternion
     return np.array(
         [

@@ -22,7 +22,17 @@ SIGNED = (
 
 
 def draw(robot: Chain, effect: str, rng: np.random.Generator, taken: Sequence[str] = ()) -> Wrong:
-    """An effect at a drawn place with drawn shape; its size is only a sign yet."""
+    """An effect at a drawn place with drawn shape; its size is only a sign yet.
+
+    Args:
+        robot: the robot.
+        effect: its identifier.
+        rng: source of randomness.
+        taken: places that are not free.
+
+    Returns:
+        What is wrong.
+    """
     from hyperleg_design.validation.blind.truth import KIND
 
     kind = KIND[effect]

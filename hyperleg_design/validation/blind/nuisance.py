@@ -42,12 +42,27 @@ class Nuisance:
     """Temperature at which the motors start [degC]."""
 
     def at_link(self, links: Sequence[str], name: str) -> int:
-        """Place of a link in the arrays."""
+        """Place of a link in the arrays.
+
+        Args:
+            links: names of all links.
+            name: of the link.
+
+        Returns:
+            The index.
+        """
         return list(links).index(name)
 
 
 def perfect(chain: Chain) -> Nuisance:
-    """Nothing off, belts as stiff as belts are."""
+    """Nothing off, belts as stiff as belts are.
+
+    Args:
+        chain: the robot.
+
+    Returns:
+        The nuisance parameters.
+    """
     n, m = chain.joint_from_motor.shape
     one, ones = np.ones(n), np.ones(m)
     return Nuisance(
@@ -68,7 +83,15 @@ def perfect(chain: Chain) -> Nuisance:
 
 
 def of_robot(chain: Chain, rng: np.random.Generator) -> Nuisance:
-    """What stays with one robot for life."""
+    """What stays with one robot for life.
+
+    Args:
+        chain: the robot.
+        rng: source of randomness.
+
+    Returns:
+        The nuisance parameters.
+    """
     n, m = chain.joint_from_motor.shape
 
     def factor(count: int, spread: float) -> np.ndarray:
@@ -93,7 +116,16 @@ def of_robot(chain: Chain, rng: np.random.Generator) -> Nuisance:
 
 
 def of_day(chain: Chain, robot: Nuisance, rng: np.random.Generator) -> Nuisance:
-    """The same robot in another session: calibration, temperature and grease differ a little."""
+    """The same robot in another session: calibration, temperature and grease differ a little.
+
+    Args:
+        chain: the robot.
+        robot: its own nuisance parameters.
+        rng: source of randomness.
+
+    Returns:
+        The nuisance parameters of the session.
+    """
     n, m = chain.joint_from_motor.shape
     friction = 1.0 + 0.03 * np.clip(rng.standard_normal(), -2, 2)
     return replace(
@@ -107,7 +139,15 @@ def of_day(chain: Chain, robot: Nuisance, rng: np.random.Generator) -> Nuisance:
 
 
 def built(chain: Chain, nuisance: Nuisance) -> Chain:
-    """The robot's true links."""
+    """The robot's true links.
+
+    Args:
+        chain: the nominal robot.
+        nuisance: what is off.
+
+    Returns:
+        The robot as it was built.
+    """
     from dataclasses import replace as changed
 
     links = tuple(

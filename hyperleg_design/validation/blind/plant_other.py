@@ -45,6 +45,15 @@ def simulate_other(
 
     `position` and `velocity` are the joints' own; `encoder` is what the rotors' encoders say of
     them.
+
+    Args:
+        plants: the rigs.
+        targets: `(b, ticks, n)` [rad].
+        rate: of the targets [Hz].
+        seeds: of the noise, one a rig.
+
+    Returns:
+        One trace a rig.
     """
     import pinocchio as pin
 

@@ -94,6 +94,16 @@ def walking_model(
 ) -> Any:
     """The robot on its ground in MuJoCo; `masses` has the true links, `pelvis` the factor on the
     pelvis' mass.
+
+    Args:
+        chain: the nominal robot.
+        masses: the robot with its true links.
+        ground: under it.
+        pelvis: factor on the pelvis' mass.
+        gravity: `(3,)` [m/s^2].
+
+    Returns:
+        The compiled model.
     """
     import mujoco
 
@@ -136,7 +146,14 @@ def walking_model(
 
 
 def pad_names(model: Any) -> tuple[str, ...]:
-    """Contact shapes of the soles."""
+    """Contact shapes of the soles.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Their names.
+    """
     return tuple(model.geom(i).name for i in range(model.ngeom) if model.geom_conaffinity[i] == 1)
 
 

@@ -67,7 +67,7 @@ def record(
         recorder: how the rig logs.
         rng: for jitter, noise and lost rows.
         name: of the log.
-        **metadata: of the log, in place of what the robot gives.
+        metadata: of the log, in place of what the robot gives.
     """
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.logs.metadata import Metadata

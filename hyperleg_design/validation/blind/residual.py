@@ -33,6 +33,13 @@ def residual(log: Log, chain: Chain) -> np.ndarray:
 
     Motion: believed joint torque less what the logged motion needs; drives, where torques are
     measured: measured motor torque less what targets and gains ask for.
+
+    Args:
+        log: the log.
+        chain: the nominal robot.
+
+    Returns:
+        The residual `(t, n)` or `(t, n + m)` [Nm].
     """
     import pinocchio as pin
     from scipy.ndimage import minimum_filter1d
@@ -90,6 +97,13 @@ def residual(log: Log, chain: Chain) -> np.ndarray:
 def multiple(with_effect: list[np.ndarray], clean: list[np.ndarray]) -> float:
     """Largest ratio over the rows of the effect's share to the clean log's residual, root mean
     square each, of a case's logs.
+
+    Args:
+        with_effect: residuals of the logs with the effect `(t, rows)`.
+        clean: residuals of the same runs without it `(t, rows)`.
+
+    Returns:
+        The ratio [-].
     """
     difference = np.concatenate([a - b for a, b in zip(with_effect, clean, strict=True)])
     floor = np.concatenate(clean)
@@ -99,6 +113,13 @@ def multiple(with_effect: list[np.ndarray], clean: list[np.ndarray]) -> float:
 
 
 def rms(values: np.ndarray) -> np.ndarray:
-    """Root mean square over the rows `(columns,)`; NaN are left out."""
+    """Root mean square over the rows `(columns,)`; NaN are left out.
+
+    Args:
+        values: `(rows, columns)`.
+
+    Returns:
+        `(columns,)`.
+    """
     known = np.isfinite(values)
     return np.sqrt((np.where(known, values, 0.0) ** 2).sum(0) / np.maximum(known.sum(0), 1))

@@ -38,7 +38,17 @@ class Reach:
 def build_rig(
     chain: Chain, nuisance: Nuisance, wrongs: Sequence[Wrong] = (), reach: Reach | None = None
 ) -> RigPlant:
-    """The plant; `reach` is needed by effects that are limits."""
+    """The plant; `reach` is needed by effects that are limits.
+
+    Args:
+        chain: the nominal robot.
+        nuisance: what is off, though nothing is wrong.
+        wrongs: what is wrong.
+        reach: how far clean runs drive the motors.
+
+    Returns:
+        The plant.
+    """
     n, m = chain.joint_from_motor.shape
     true = built(chain, nuisance)
     matrix = chain.joint_from_motor
@@ -110,7 +120,15 @@ def build_rig(
 
 
 def tilted(angle: float, heading: float) -> np.ndarray:
-    """Gravity of a rig that stands askew `(3,)` [m/s^2]."""
+    """Gravity of a rig that stands askew `(3,)` [m/s^2].
+
+    Args:
+        angle: by which it stands askew [rad].
+        heading: direction in which it leans [rad].
+
+    Returns:
+        The gravity `(3,)` [m/s^2].
+    """
     across = np.array([np.cos(heading), np.sin(heading), 0.0])
     return 9.81 * (np.sin(angle) * across - np.array([0.0, 0.0, np.cos(angle)]))
 

@@ -45,7 +45,14 @@ more."""
 
 
 def rig_case(plan: Plan) -> Case:
-    """Simulate one case of the plants `rig` and `other`."""
+    """Simulate one case of the plants `rig` and `other`.
+
+    Args:
+        plan: of the case.
+
+    Returns:
+        The case.
+    """
     from hyperleg_design.validation.blind.truth import parameters, places
 
     rng = np.random.default_rng([*plan.seed, 2])
@@ -130,7 +137,14 @@ def _referred(healthy: _Rig, rng: np.random.Generator) -> list[Log]:
 
 
 def calm(trace: Trace) -> bool:
-    """Whether a rig held together: nothing turns further or faster than joints can."""
+    """Whether a rig held together: nothing turns further or faster than joints can.
+
+    Args:
+        trace: of the run.
+
+    Returns:
+        True if it did.
+    """
     found = ((trace.position, WILD), (trace.velocity, WILD_SPEED))
     return all(
         bool(np.isfinite(values).all() and np.abs(values).max() < most) for values, most in found
@@ -279,7 +293,14 @@ def size_at(
 
 
 def reach_of(traces: Sequence[Trace]) -> Reach:
-    """How far clean runs drive the motors."""
+    """How far clean runs drive the motors.
+
+    Args:
+        traces: of the clean runs.
+
+    Returns:
+        The reach.
+    """
     return Reach(
         np.max([np.percentile(np.abs(t.command), 99.5, axis=0) for t in traces], 0),
         np.max([np.abs(t.motor_velocity).max(0) for t in traces], 0),

@@ -53,7 +53,14 @@ class Score:
     reread: bool
 
     def row(self, measure: str) -> Row:
-        """Row of a measure."""
+        """Row of a measure.
+
+        Args:
+            measure: its name.
+
+        Returns:
+            The row.
+        """
         return next(row for row in self.rows if row.measure == measure)
 
     def markdown(self) -> str:
@@ -162,6 +169,12 @@ def score(folder: str | os.PathLike[str], *, reread: bool = False, partial: bool
 def open_key(folder: Path) -> list[dict[str, Any]]:
     """The truth of every case, after the seal has been checked.
 
+    Args:
+        folder: of the trial.
+
+    Returns:
+        The truths.
+
     Raises:
         InputError: the key is missing or not the one that was sealed.
     """
@@ -194,6 +207,18 @@ def compared(
 ) -> Score:
     """Score of diagnoses (as in `diagnosis.json`) against truths (as in the key), in the same
     order.
+
+    Args:
+        truths: as in the key.
+        diagnoses: as in `diagnosis.json`, in the same order.
+        seconds: that each took, if known [s].
+        sha256: of the key.
+        seed: of the trial.
+        diagnosed: how many cases were diagnosed; all by default.
+        reread: whether the key had been opened before.
+
+    Returns:
+        The score.
     """
     views = [View(t, d) for t, d in zip(truths, diagnoses, strict=True)]
     single = [v for v in views if v.kind == "single"]

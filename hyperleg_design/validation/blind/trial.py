@@ -120,6 +120,12 @@ def make_trial(
 def read_seal(folder: str | os.PathLike[str]) -> Seal:
     """Seal of a trial.
 
+    Args:
+        folder: of the trial.
+
+    Returns:
+        The seal.
+
     Raises:
         InputError: no finished trial there.
     """
@@ -152,6 +158,19 @@ def make_here(
 ) -> Seal:
     """What the separate process does: simulate, seal, and only then show the cases. Arguments as
     `make_trial`; `say` is told the hash.
+
+    Args:
+        cases: how many.
+        seed: of all randomness.
+        out: folder to write.
+        plants: names of the plants.
+        workers: processes that simulate.
+        duration: shortest and longest log [s].
+        progress: whether to show a bar.
+        say: is told the hash.
+
+    Returns:
+        The seal.
     """
     asked = {"cases": cases, "seed": seed, "plants": list(plants), "duration": list(duration)}
     if (out / SEAL).is_file():
@@ -199,7 +218,15 @@ def make_here(
 
 
 def sealed(truths: list[dict[str, Any]], asked: dict[str, Any]) -> bytes:
-    """The key as a zip file, the same bytes for the same truth."""
+    """The key as a zip file, the same bytes for the same truth.
+
+    Args:
+        truths: of the cases.
+        asked: what the trial was asked for.
+
+    Returns:
+        The bytes of the file.
+    """
     content = json.dumps({"trial": asked, "cases": truths}, indent=1, allow_nan=False).encode()
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -313,7 +340,14 @@ def _diagnose_one(case: str, out: str, seed: int, diagnose: Callable[..., Any] |
 
 
 def as_mapping(diagnosis: Any) -> dict[str, Any]:
-    """A diagnosis in the form of `diagnosis.json`."""
+    """A diagnosis in the form of `diagnosis.json`.
+
+    Args:
+        diagnosis: a mapping already, or a `Diagnosis`.
+
+    Returns:
+        The mapping.
+    """
     if isinstance(diagnosis, dict):
         return diagnosis
     content: dict[str, Any] = diagnosis.mapping()

@@ -54,6 +54,13 @@ KIND = {
 def places(wrong: Wrong, robot: Chain) -> tuple[str, ...]:
     """Names that count as the place of an effect: links and the joints that carry them are one
     place, as are a single drive and its joint.
+
+    Args:
+        wrong: what is wrong.
+        robot: the robot.
+
+    Returns:
+        The names.
     """
     names = [wrong.location]
     for link in robot.links:

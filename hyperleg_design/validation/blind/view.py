@@ -97,7 +97,14 @@ class View:
         )
 
     def first(self, *, lenient: bool = False) -> bool:
-        """Whether the effect is the one named first, or, leniently, in one set with it."""
+        """Whether the effect is the one named first, or, leniently, in one set with it.
+
+        Args:
+            lenient: whether one set with the effect suffices.
+
+        Returns:
+            True if so.
+        """
         return bool(
             self.alarm
             and self.ranked
@@ -227,7 +234,14 @@ class View:
 
 
 def said_of(diagnosis: Mapping[str, Any]) -> str:
-    """The causes that were named, and what else it may be where that was said."""
+    """The causes that were named, and what else it may be where that was said.
+
+    Args:
+        diagnosis: as in `diagnosis.json`.
+
+    Returns:
+        The text.
+    """
     verdict = diagnosis.get("verdict")
     if verdict not in NAMING:
         return str(diagnosis.get("message", ""))

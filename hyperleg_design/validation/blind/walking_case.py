@@ -57,7 +57,14 @@ at rest."""
 
 
 def walking_case(plan: Plan) -> Case:
-    """Simulate one case of the plant `walking`."""
+    """Simulate one case of the plant `walking`.
+
+    Args:
+        plan: of the case.
+
+    Returns:
+        The case.
+    """
     from hyperleg_design.validation.blind.truth import parameters, places
 
     rng = np.random.default_rng([*plan.seed, 3])
@@ -259,7 +266,17 @@ class _Walker:
     def log(
         self, made: tuple[WalkingPlant, WalkingTrace], seed: int, name: str, **metadata: Any
     ) -> Log | None:
-        """A log, or None where the robot fell."""
+        """A log, or None where the robot fell.
+
+        Args:
+            made: the plant and the trace of its run.
+            seed: of the recording.
+            name: of the log.
+            metadata: of the log.
+
+        Returns:
+            The log, or None.
+        """
         plant, trace = made
         return (
             None
@@ -304,7 +321,14 @@ def _hang(model: Any, mass: float, place: np.ndarray) -> None:
 
 
 def drawn_stand(rng: np.random.Generator) -> Stand:
-    """A motion on both feet."""
+    """A motion on both feet.
+
+    Args:
+        rng: source of randomness.
+
+    Returns:
+        The motion.
+    """
     return Stand(
         squat=rng.uniform(0.18, 0.3),
         sway=rng.uniform(0.03, 0.06),

@@ -44,7 +44,15 @@ class Wrong:
 
 
 def motion(robot: Robot, rng: np.random.Generator) -> np.ndarray:
-    """Targets of slow and fast swings with pauses `(t, n)` [rad], one row a step."""
+    """Targets of slow and fast swings with pauses `(t, n)` [rad], one row a step.
+
+    Args:
+        robot: the robot.
+        rng: source of randomness.
+
+    Returns:
+        The targets `(t, n)` [rad].
+    """
     clock = np.arange(int(DURATION / STEP)) * STEP
     if not robot.steps:
         return _smooth(robot, rng, clock)
@@ -83,7 +91,15 @@ def _smooth(robot: Robot, rng: np.random.Generator, clock: np.ndarray) -> np.nda
 
 
 def built(robot: Robot, build: int) -> tuple[mujoco.MjModel, np.ndarray]:
-    """A robot as it was built: its model, and the zeros of its encoders `(n,)` [rad]."""
+    """A robot as it was built: its model, and the zeros of its encoders `(n,)` [rad].
+
+    Args:
+        robot: the robot.
+        build: seed of what is off in it.
+
+    Returns:
+        Model and zeros.
+    """
     model, own = mujoco.MjModel.from_xml_string(robot.xml), np.random.default_rng(build)
     model.body_mass[:] *= 1 + MASSES * own.normal(size=model.nbody)
     model.dof_frictionloss[:] *= 1 + FRICTION * own.normal(size=model.nv)
@@ -92,7 +108,14 @@ def built(robot: Robot, build: int) -> tuple[mujoco.MjModel, np.ndarray]:
 
 
 def moment(model: mujoco.MjModel) -> np.ndarray:
-    """Joint torques from motor torques, transposed `(motors, joints)`: the gears and tendons."""
+    """Joint torques from motor torques, transposed `(motors, joints)`: the gears and tendons.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        `(motors, joints)`.
+    """
     data, dense = mujoco.MjData(model), np.zeros((model.nu, model.nv))
     mujoco.mj_forward(model, data)
     mujoco.mju_sparse2dense(
@@ -254,6 +277,12 @@ class _Drives:
     def with_wrong(self, wrong: Wrong) -> _Drives:
         """Make one transmission soft, `size` its frequency [Hz], or give it a play of `size`
         [rad].
+
+        Args:
+            wrong: what is wrong.
+
+        Returns:
+            The changed drives.
         """
         self.there[wrong.place] = True
         soft = wrong.what == "soft"
@@ -262,14 +291,27 @@ class _Drives:
         return self
 
     def take_rotors(self, model: mujoco.MjModel) -> None:
-        """Take the rotors out of the model: they move by themselves."""
+        """Take the rotors out of the model: they move by themselves.
+
+        Args:
+            model: the compiled model, which is changed.
+        """
         self.inertia = self.share * model.dof_armature
         model.dof_armature[self.there] *= 1 - self.share
         self.stiffness = self.inertia * (2 * np.pi * self.frequency) ** 2
         self.damping = 0.1 * np.sqrt(self.stiffness * self.inertia)
 
     def pull(self, torque: np.ndarray, place: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Mean torques on the joints over a step of the simulation `(n,)` [Nm]."""
+        """Mean torques on the joints over a step of the simulation `(n,)` [Nm].
+
+        Args:
+            torque: of the motors `(m,)` [Nm].
+            place: of the joints `(n,)` [rad].
+            speed: of the joints `(n,)` [rad/s].
+
+        Returns:
+            The torques `(n,)` [Nm].
+        """
         total, parts = np.zeros_like(torque), 8
         for part in range(parts):
             stretch = self.angle - place - speed * STEP * part / parts

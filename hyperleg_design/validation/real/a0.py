@@ -98,6 +98,13 @@ def read_recording(folder: Path, name: str) -> Recording:
 def compensation(folder: Path, name: str) -> np.ndarray:
     """The torque of the friction compensation `tau_fric` in a recording of the makers, at the ticks
     of `read_recording` `(t, 2)` [Nm].
+
+    Args:
+        folder: of the recordings.
+        name: of the recording.
+
+    Returns:
+        The torque `(t, 2)` [Nm].
     """
     table = pd.read_csv(folder / f"{name}.csv", skipinitialspace=True)
     clock = table["time"].to_numpy(float)
@@ -157,7 +164,14 @@ def _compensated(log: Recording, torque: np.ndarray, fault: str, test: bool) -> 
 
 
 def faults(model: DoublePendulum) -> dict[str, Declared]:
-    """All wrong declarations of this robot by name, with the truth that follows from the model."""
+    """All wrong declarations of this robot by name, with the truth that follows from the model.
+
+    Args:
+        model: of the robot.
+
+    Returns:
+        The declarations by name.
+    """
     found = {"nothing": Declared(())}
     for k, joint in enumerate(JOINTS):
         places = (joint,)

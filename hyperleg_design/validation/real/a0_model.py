@@ -59,7 +59,14 @@ class DoublePendulum:
         )
 
     def without_friction(self, *joints: str) -> DoublePendulum:
-        """The model with Coulomb and viscous friction left out at some joints."""
+        """The model with Coulomb and viscous friction left out at some joints.
+
+        Args:
+            joints: their names.
+
+        Returns:
+            The model.
+        """
         keep = [name not in joints for name in JOINTS]
         return replace(
             self,
@@ -96,6 +103,12 @@ class DoublePendulum:
 
 def read_model(path: Path) -> DoublePendulum:
     """The makers' `model_*.yml`.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The model.
 
     Raises:
         InputError: unreadable, or a parameter is missing or no number.
