@@ -26,7 +26,7 @@ from hyperleg_design.simulation.alteration import Alterations, made
 from hyperleg_design.simulation.layout import GRAVITY, layout_of, stacked
 from hyperleg_design.simulation.model import simulated_robots, simulation_model
 from hyperleg_design.simulation.stepping.chunk import Chunk
-from hyperleg_design.simulation.stepping.standing import check_standing
+from hyperleg_design.simulation.stepping.standing import check_all_standing
 from hyperleg_design.simulation.stepping.step import Divergence, Step, joined, merged
 from hyperleg_design.simulation.stepping.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task, check_reward
@@ -127,7 +127,7 @@ class Environment:
         self.design_index: np.ndarray = np.arange(simulations) // (simulations // number)
         """Design of each simulation, `(n,)`."""
         task.check_robot(self.layouts[0], self.designs[0].name)
-        self._check_standing()
+        check_all_standing(self.designs, self.models, self.layouts, task.limits)
         self.layout: Layout = (
             stacked(self.layouts).take(self.design_index) if number > 1 else self.layouts[0]
         )
@@ -189,23 +189,6 @@ class Environment:
     def model(self) -> mujoco.MjModel:
         """MuJoCo model that is simulated; the first one's of a batch of designs."""
         return self.models[0]
-
-    def _check_standing(self) -> None:
-        """Whether all robots can stand.
-
-        Raises:
-            InputError: the first one's reason, and which others cannot.
-        """
-        errors: dict[int, InputError] = {}
-        for i, (design, model) in enumerate(zip(self.designs, self.models, strict=True)):
-            try:
-                check_standing(model, self.layouts[i], self.task.limits, design.name)
-            except InputError as error:
-                errors[i] = error
-        if errors:
-            first = next(iter(errors.values()))
-            bad = np.isin(np.arange(len(self.designs)), list(errors))
-            raise InputError(first.where, first.field, first.value, first.remedy, bad=bad)
 
     @property
     def action_size(self) -> int:

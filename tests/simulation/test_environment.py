@@ -114,7 +114,7 @@ def test_new_starts_stand_on_the_floor(make):
     chunk = environment.chunks[0]
     chunk.batch.bind("geom_xpos")
     chunk.batch.forward()
-    lowest = chunk.batch.geom_xpos[:, chunk._pad_ids, 2].min(1) - chunk._pad_radius
+    lowest = chunk.batch.geom_xpos[:, chunk.starter.pads, 2].min(1) - chunk.starter.pad_radius
     np.testing.assert_allclose(lowest, 0, atol=1e-12)
 
 

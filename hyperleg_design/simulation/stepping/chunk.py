@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.simulation import human_gait
 from hyperleg_design.simulation import model as models
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.commands import commander
@@ -27,6 +26,7 @@ from hyperleg_design.simulation.layout import GRAVITY, Layout
 from hyperleg_design.simulation.model import PAD_SENSOR_SIZE
 from hyperleg_design.simulation.state import Goal, Motion, Sensed, State, read_motion
 from hyperleg_design.simulation.stepping.batch_models import give_models, vary_models
+from hyperleg_design.simulation.stepping.start import Starter
 from hyperleg_design.simulation.stepping.step import Divergence, Step
 from hyperleg_design.simulation.stepping.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task
@@ -73,10 +73,10 @@ class Chunk:
         self.batch = batch.Batch(model, count, threads)
         # A second batch finds how high to start: what is bound in the first is copied out after
         # each of its steps.
-        self._starter = batch.Batch(model, count, 1)
+        starters = batch.Batch(model, count, 1)
         if len(models) > 1:
             give_models(self.batch, models)
-            give_models(self._starter, models)
+            give_models(starters, models)
         vary_models(self.batch, task, rng)
         verticals = [a.vertical for a in alterations if a.vertical is not None]
         self._vertical = verticals[0] if verticals else None
@@ -92,25 +92,15 @@ class Chunk:
         pads = PAD_SENSOR_SIZE * len(layout.pads)
         self._sensors, self._stops = sensors[:, :pads], sensors[:, pads:]
         self._push = self.batch.bind("xfrc_applied")
-        self._places, self._tried = self._starter.bind("geom_xpos"), self._starter.bind("qpos")
+        self.starter = Starter(task, layout, models, starters)
         self.batch.reset(None, 0, 0)
         self._standing = self.batch.state.copy()
         self._pelvis = model.body(layout.base).id
-        self._pad_ids = [model.geom(pad).id for pad in layout.pads]
-        self._pad_radius = np.array([m.geom_size[self._pad_ids[0], 0] for m in models])
         joints, motors, substeps = (
             len(layout.joints),
             len(layout.motors),
             int(task.physics.substeps),
         )
-        start = task.start
-        self._spread = np.r_[
-            [start.joint_position] * joints,
-            [start.joint_velocity] * joints,
-            [start.linear_velocity] * 2,
-            [start.tilt] * 2,
-            start.yaw,
-        ]
         self.action, self.previous_action, self.smoothed = (
             np.zeros((count, joints)) for _ in range(3)
         )
@@ -453,58 +443,18 @@ class Chunk:
 
     def _start(self, ids: np.ndarray) -> Motion:
         """Put robots on the floor near their default posture; motion of these rows."""
-        layout, count, joints = self.layout.take(ids), len(ids), len(self.layout.joints)
-        drawn = self.rng.of(ids).uniform(-1.0, 1.0, (count, len(self._spread) + 1))
-        offset = drawn[:, :-1] * self._spread
         self.batch.state[ids] = self._standing[ids]
         self.batch.warning[ids] = 0
-        position, velocity = self.drive.qpos[ids], np.zeros((count, 6 + joints))
-        position[:, 7:] = np.minimum(
-            np.maximum(position[:, 7:] + offset[:, :joints], layout.lower), layout.upper
-        )
-        position[:, 3:7] = _quaternion(*offset[:, -3:].T)
-        velocity[:, 6:], velocity[:, :2] = (
-            offset[:, joints : 2 * joints],
-            offset[:, 2 * joints : 2 * joints + 2],
-        )
-        self._clock_start[ids] = 0.5 + 0.5 * drawn[:, -1]
-        smoothed = self._stride(ids, position, velocity, offset[:, -1])
-        self._tried[ids] = position
-        self._starter.forward(ids, 1)
-        radius = self._pad_radius[ids] if len(self._pad_radius) > 1 else self._pad_radius
-        position[:, 2] -= self._places[ids][:, self._pad_ids, 2].min(-1) - radius
-        self.drive.qpos[ids], self.drive.qvel[ids] = position, velocity
+        start = self.starter.draw(ids, self.drive.qpos[ids], self.rng)
+        self.drive.qpos[ids], self.drive.qvel[ids] = start.position, start.velocity
+        self._clock_start[ids] = start.phase
         self.episode_step[ids] = 0
         self.thermal.reset(ids)
-        self.drive.reset(ids, position[:, 7:], velocity[:, 6:])
+        self.drive.reset(ids, start.position[:, 7:], start.velocity[:, 6:])
         for values in (self.action, self.previous_action):
             values[ids] = 0.0
-        self.smoothed[ids] = smoothed
-        return read_motion(position, velocity)
-
-    def _stride(
-        self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray, yaw: np.ndarray
-    ) -> np.ndarray:
-        """Put some of the starting robots in mid-stride, in place, and their clock at that phase;
-        the smoothed actions that hold them there, `(n, J)`, zero for those that stand.
-        """
-        smoothed = np.zeros((len(ids), len(self.layout.joints)))
-        share = self.task.start.stride_share
-        if not share:
-            return smoothed
-        drawn = self.rng.of(ids).uniform(size=(len(ids), 3))
-        rows, layout = np.flatnonzero(drawn[:, 0] < share), self.layout.take(ids)
-        places, angle, rate, speed, phase = human_gait.stride(layout.joints, drawn[rows, 1:])
-        self._clock_start[ids[rows]] = phase
-        lower, upper, default = (
-            np.broadcast_to(limit, smoothed.shape)[np.ix_(rows, places)]
-            for limit in (layout.lower, layout.upper, layout.default)
-        )
-        angle = np.clip(angle, lower, upper)
-        position[np.ix_(rows, 7 + places)], velocity[np.ix_(rows, 6 + places)] = angle, rate
-        velocity[rows, 0], velocity[rows, 1] = speed * np.cos(yaw[rows]), speed * np.sin(yaw[rows])
-        smoothed[np.ix_(rows, places)] = (angle - default) / self.task.control.scale
-        return smoothed
+        self.smoothed[ids] = start.smoothed
+        return read_motion(start.position, start.velocity)
 
     def _stop_torque(self, position: np.ndarray) -> np.ndarray:
         """Torque of the stops on the joints, toward the middle of the range of motion [Nm],
@@ -554,17 +504,3 @@ class Chunk:
         if self.told is not None:
             signals |= self.told.signals
         return {name: np.moveaxis(values, 0, 1) for name, values in signals.items()}
-
-
-def _quaternion(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> np.ndarray:
-    """Unit quaternions w x y z of yaw, then pitch, then roll, `(n, 4)`."""
-    (cr, sr), (cp, sp), (cy, sy) = ((np.cos(a / 2), np.sin(a / 2)) for a in (roll, pitch, yaw))
-    return np.stack(
-        [
-            cr * cp * cy + sr * sp * sy,
-            sr * cp * cy - cr * sp * sy,
-            cr * sp * cy + sr * cp * sy,
-            cr * cp * sy - sr * sp * cy,
-        ],
-        -1,
-    )

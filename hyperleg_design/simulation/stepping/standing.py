@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,7 @@ from hyperleg_design.simulation.settings import Limits
 if TYPE_CHECKING:
     import mujoco
 
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.layout import Layout
 
 
@@ -48,3 +50,32 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
             "joints.*.default_deg"
         )
         raise InputError(name, "", np.round(middle, 4).tolist(), remedy)
+
+
+def check_all_standing(
+    designs: Sequence[RobotDesign],
+    models: Sequence[mujoco.MjModel],
+    layouts: Sequence[Layout],
+    limits: Limits,
+) -> None:
+    """Check that all robots of a batch can stand in their default postures.
+
+    Args:
+        designs: the robots.
+        models: their compiled models.
+        layouts: of the robots.
+        limits: at which height a robot counts as fallen.
+
+    Raises:
+        InputError: the first one's reason, and which others cannot.
+    """
+    errors: dict[int, InputError] = {}
+    for i, (design, model, layout) in enumerate(zip(designs, models, layouts, strict=True)):
+        try:
+            check_standing(model, layout, limits, design.name)
+        except InputError as error:
+            errors[i] = error
+    if errors:
+        first = next(iter(errors.values()))
+        bad = np.isin(np.arange(len(designs)), list(errors))
+        raise InputError(first.where, first.field, first.value, first.remedy, bad=bad)
