@@ -22,7 +22,7 @@ import numpy as np
 
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
-from hyperleg_design.evaluation.walk import walk_task
+from hyperleg_design.evaluation.protocols.walk import walk_task
 from hyperleg_design.simulation import model as models
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.stepping.batch_models import give_models

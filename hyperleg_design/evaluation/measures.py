@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hyperleg_design.evaluation.power import GROUPS
+from hyperleg_design.evaluation.motion.power import GROUPS
 
 LESS, MORE, NEITHER = "less", "more", ""
 

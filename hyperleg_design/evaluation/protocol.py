@@ -14,7 +14,7 @@ import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.course import course_length
+from hyperleg_design.evaluation.protocols.course import course_length
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.bearing import headings
-from hyperleg_design.evaluation.course import in_start_frame
 from hyperleg_design.evaluation.measures import OUTCOMES
+from hyperleg_design.evaluation.motion.bearing import headings
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, policy_name
+from hyperleg_design.evaluation.protocols.course import in_start_frame
 from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.training_fit import (
     UNKNOWN,
@@ -25,8 +25,8 @@ from hyperleg_design.evaluation.training_fit import (
 if TYPE_CHECKING:
     import pandas as pd
 
-    from hyperleg_design.evaluation.motor_use import MotorUse
-    from hyperleg_design.evaluation.power import CyclePower
+    from hyperleg_design.evaluation.motion.motor_use import MotorUse
+    from hyperleg_design.evaluation.motion.power import CyclePower
     from hyperleg_design.evaluation.rollout import Trial
     from hyperleg_design.robot.described import RobotDesign
 

@@ -12,9 +12,9 @@ from hyperleg_design.evaluation.believable import walk_findings
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import WalkProtocol
+from hyperleg_design.evaluation.protocols.walk import measure_walk
 from hyperleg_design.evaluation.result import evaluation_of
 from hyperleg_design.evaluation.rollout import FELL
-from hyperleg_design.evaluation.walk import measure_walk
 
 
 def findings(trials, design, protocol=None):

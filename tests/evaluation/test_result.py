@@ -9,9 +9,9 @@ import pytest
 
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import WalkProtocol
+from hyperleg_design.evaluation.protocols.walk import measure_walk
 from hyperleg_design.evaluation.result import evaluation_of
 from hyperleg_design.evaluation.rollout import FELL
-from hyperleg_design.evaluation.walk import measure_walk
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import WalkProtocol
+from hyperleg_design.evaluation.protocols.walk import measure_walk
 from hyperleg_design.evaluation.result import by_seed, evaluation_of
 from hyperleg_design.evaluation.result_tables import (
     cycle_table,
@@ -16,7 +17,6 @@ from hyperleg_design.evaluation.result_tables import (
     write_results,
 )
 from hyperleg_design.evaluation.rollout import FELL
-from hyperleg_design.evaluation.walk import measure_walk
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.evaluation import rollout
+from hyperleg_design.evaluation.motion.power import ledger, power_constants
 from hyperleg_design.evaluation.policy import Scripted, standing
-from hyperleg_design.evaluation.power import ledger, power_constants
 from hyperleg_design.evaluation.rollout import record
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.motors import motor_arrays

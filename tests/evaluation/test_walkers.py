@@ -11,8 +11,8 @@ import pytest
 
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.measures import WALK
+from hyperleg_design.evaluation.motion.power import power_constants
 from hyperleg_design.evaluation.policy import standing
-from hyperleg_design.evaluation.power import power_constants
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.tasks import load_task

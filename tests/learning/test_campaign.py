@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.evaluation.analysis_plan import load_plan
+from hyperleg_design.evaluation.plans.analysis_plan import load_plan
 from hyperleg_design.evaluation.protocol import load_protocol
 from hyperleg_design.learning import campaign as module
 from hyperleg_design.learning.campaign import (

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from hyperleg_design.evaluation.protocol import TTestProtocol, WalkProtocol
+from hyperleg_design.evaluation.protocols.t_test import measure_t_test
+from hyperleg_design.evaluation.protocols.walk import measure_walk
 from hyperleg_design.evaluation.result import evaluation_of
 from hyperleg_design.evaluation.rollout import ARRIVED, FELL, Trial
 from hyperleg_design.evaluation.shipped import Shipped
-from hyperleg_design.evaluation.t_test import measure_t_test
-from hyperleg_design.evaluation.walk import measure_walk
 from hyperleg_design.report.walks.evaluated import Evaluated
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment

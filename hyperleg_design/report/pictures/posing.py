@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from hyperleg_design.evaluation.bearing import headings
+from hyperleg_design.evaluation.motion.bearing import headings
 from hyperleg_design.report.pictures.picture import Solid
 from hyperleg_design.report.pictures.solids import robot_solids
 from hyperleg_design.robot.tree import build_tree

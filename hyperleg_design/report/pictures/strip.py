@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.gait import strides
-from hyperleg_design.evaluation.steps import measured_steps
+from hyperleg_design.evaluation.motion.gait import strides
+from hyperleg_design.evaluation.motion.steps import measured_steps
 from hyperleg_design.report.pictures.picture import Scene, Solid
 from hyperleg_design.report.pictures.posing import level, posed, travel
 from hyperleg_design.report.pictures.solids import PAD

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from hyperleg_design.evaluation import paper, statistics
-from hyperleg_design.evaluation.analysis_plan import ONLY_COMPLETE
 from hyperleg_design.evaluation.measures import measure_of
+from hyperleg_design.evaluation.plans.analysis_plan import ONLY_COMPLETE
 from hyperleg_design.evaluation.result import by_checkpoint
 from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.statistics import AGREES, DIFFERS, Estimate

@@ -6,15 +6,15 @@ import math
 from typing import Any
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.analysis_plan import AnalysisPlan, load_plan
 from hyperleg_design.evaluation.measures import measure_of
-from hyperleg_design.evaluation.planned_analysis import (
+from hyperleg_design.evaluation.plans.analysis_plan import AnalysisPlan, load_plan
+from hyperleg_design.evaluation.plans.planned_analysis import (
     DIFFERENT,
     EQUIVALENT,
     PlannedRow,
     planned_analysis,
 )
-from hyperleg_design.evaluation.planned_tests import plateau
+from hyperleg_design.evaluation.plans.planned_tests import plateau
 from hyperleg_design.evaluation.shipped import learning_curve
 from hyperleg_design.report.drawer import Part
 from hyperleg_design.report.page import Cell, Heading, Table

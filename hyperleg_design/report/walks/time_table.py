@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.evaluation import paper
+from hyperleg_design.evaluation.motion.stretches import NEAR, Stretch, stretches
 from hyperleg_design.evaluation.result import Evaluation
 from hyperleg_design.evaluation.rollout import ARRIVED
-from hyperleg_design.evaluation.stretches import NEAR, Stretch, stretches
 from hyperleg_design.report.page import Table
 
 

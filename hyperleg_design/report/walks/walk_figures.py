@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.evaluation.power import GROUPS
+from hyperleg_design.evaluation.motion.power import GROUPS
 from hyperleg_design.evaluation.statistics import estimate
 from hyperleg_design.report.style import VARIANT_COLOUR, figure_style
 from hyperleg_design.robot.transmission import motor_names

@@ -13,9 +13,9 @@ from hyperleg_design.evaluation import attribution, statistics
 from hyperleg_design.evaluation.believable import walk_findings
 from hyperleg_design.evaluation.foot_pad import heel_mass, pad_of_contact
 from hyperleg_design.evaluation.measures import measure_of
+from hyperleg_design.evaluation.motion.steps import measured_steps
 from hyperleg_design.evaluation.result import by_checkpoint
 from hyperleg_design.evaluation.robustness import curves
-from hyperleg_design.evaluation.steps import measured_steps
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.page import Cell, Table

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from hyperleg_design.evaluation.analysis_plan import load_plan
+from hyperleg_design.evaluation.plans.analysis_plan import load_plan
 from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Cell, Details, Missing, Picture, Table
 from hyperleg_design.report.pictures import gif

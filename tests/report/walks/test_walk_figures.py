@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation.power import GROUPS
+from hyperleg_design.evaluation.motion.power import GROUPS
 from hyperleg_design.report.walks import walk_figures
 
 

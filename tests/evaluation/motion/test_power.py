@@ -7,9 +7,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation.power import FLOWS, GROUPS, cycle_power, flows, ledger, leg_means
+from hyperleg_design.evaluation.motion.power import (
+    FLOWS,
+    GROUPS,
+    cycle_power,
+    flows,
+    ledger,
+    leg_means,
+)
+from hyperleg_design.evaluation.motion.steps import measured_steps
 from hyperleg_design.evaluation.protocol import Events
-from hyperleg_design.evaluation.steps import measured_steps
 from hyperleg_design.robot.motors import motor_arrays
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.evaluation.gait import CYCLE_POINTS, Steps, cycles, strides
+from hyperleg_design.evaluation.motion.gait import CYCLE_POINTS, Steps, cycles, strides
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.sizing.energy import EnergyLedger, energy_ledger, joint_power
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hyperleg_design.evaluation import gait
+from hyperleg_design.evaluation.motion import gait
 
 STEP = 0.005
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation.protocol import Events, Impact
-from hyperleg_design.evaluation.steps import (
+from hyperleg_design.evaluation.motion.steps import (
     foot_contacts,
     impact_measures,
     mean_of,
     measured_steps,
     step_measures,
 )
+from hyperleg_design.evaluation.protocol import Events, Impact
 
 
 def test_heel_and_forefoot_are_the_pads_behind_and_before_the_ankle(planned_trial, planned):

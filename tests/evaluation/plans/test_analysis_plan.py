@@ -11,7 +11,7 @@ import yaml
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.analysis_plan import load_plan, plan_from_mapping
+from hyperleg_design.evaluation.plans.analysis_plan import load_plan, plan_from_mapping
 
 
 @pytest.fixture

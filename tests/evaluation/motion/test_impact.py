@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.impact import impacts, low_pass
+from hyperleg_design.evaluation.motion.impact import impacts, low_pass
 
 STEP = 0.001
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation.course import course_length
+from hyperleg_design.evaluation.motion.stretches import NEAR, stretches
 from hyperleg_design.evaluation.protocol import TTestProtocol
-from hyperleg_design.evaluation.stretches import NEAR, stretches
+from hyperleg_design.evaluation.protocols.course import course_length
 
 STEP = 0.02
 

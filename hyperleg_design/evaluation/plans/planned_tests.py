@@ -13,7 +13,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 
 if TYPE_CHECKING:
-    from hyperleg_design.evaluation.analysis_plan import PlateauRule
+    from hyperleg_design.evaluation.plans.analysis_plan import PlateauRule
 
 FEWEST_POINTS = 5
 """Fewest points in the last part of a curve from which a slope is judged."""

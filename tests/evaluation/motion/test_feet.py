@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation.feet import foot_places
+from hyperleg_design.evaluation.motion.feet import foot_places
 from hyperleg_design.sizing.contacts import contact_points
 
 

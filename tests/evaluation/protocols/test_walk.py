@@ -12,10 +12,10 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures, rollout
 from hyperleg_design.evaluation.evaluate import evaluate
+from hyperleg_design.evaluation.motion.steps import foot_contacts
 from hyperleg_design.evaluation.policy import Scripted, standing
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
-from hyperleg_design.evaluation.steps import foot_contacts
-from hyperleg_design.evaluation.walk import measure_walk, walk_task
+from hyperleg_design.evaluation.protocols.walk import measure_walk, walk_task
 from hyperleg_design.simulation.environment import SMALLEST_SPLIT, Environment
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.settings import Start

@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation import bearing, course, gait, rollout
-from hyperleg_design.evaluation.landmarks import LANDMARKS, landmark_measures
-from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
-from hyperleg_design.evaluation.power import LEG_MEANS, cycle_power, flows, ledger
+from hyperleg_design.evaluation import rollout
+from hyperleg_design.evaluation.motion import bearing, gait
+from hyperleg_design.evaluation.motion.landmarks import LANDMARKS, landmark_measures
+from hyperleg_design.evaluation.motion.motor_use import MotorUse, motor_use
+from hyperleg_design.evaluation.motion.power import LEG_MEANS, cycle_power, flows, ledger
+from hyperleg_design.evaluation.motion.steps import impact_measures, measured_steps, step_measures
 from hyperleg_design.evaluation.protocol import WalkProtocol
-from hyperleg_design.evaluation.protocol_run import Measured, ProtocolRun
-from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
+from hyperleg_design.evaluation.protocols import course
+from hyperleg_design.evaluation.protocols.protocol_run import Measured, ProtocolRun
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.simulation.commands import VelocityCommands
 from hyperleg_design.sizing.energy import cost_of_transport

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation import bearing
+from hyperleg_design.evaluation.motion import bearing
 
 
 def quaternion(axis, angle):

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 if TYPE_CHECKING:
-    from hyperleg_design.evaluation.motor_use import MotorUse
-    from hyperleg_design.evaluation.power import CyclePower
+    from hyperleg_design.evaluation.motion.motor_use import MotorUse
+    from hyperleg_design.evaluation.motion.power import CyclePower
     from hyperleg_design.evaluation.rollout import Trial
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.tasks import Task

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.evaluation.impact import low_pass
-from hyperleg_design.evaluation.steps import foot_contacts, mean_of
+from hyperleg_design.evaluation.motion.impact import low_pass
+from hyperleg_design.evaluation.motion.steps import foot_contacts, mean_of
 
 if TYPE_CHECKING:
-    from hyperleg_design.evaluation.gait import Steps
+    from hyperleg_design.evaluation.motion.gait import Steps
     from hyperleg_design.evaluation.protocol import Events
     from hyperleg_design.evaluation.rollout import Trial
 

@@ -12,7 +12,7 @@ from hyperleg_design.evaluation import measures, rollout
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import TTestProtocol
-from hyperleg_design.evaluation.t_test import measure_t_test, t_test_task
+from hyperleg_design.evaluation.protocols.t_test import measure_t_test, t_test_task
 from hyperleg_design.simulation.tasks import load_task
 
 SPEED = 2.4

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.evaluation import course
+from hyperleg_design.evaluation.protocols import course
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.protocol import TTestProtocol

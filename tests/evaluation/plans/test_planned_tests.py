@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.analysis_plan import PlateauRule
-from hyperleg_design.evaluation.planned_tests import (
+from hyperleg_design.evaluation.plans.analysis_plan import PlateauRule
+from hyperleg_design.evaluation.plans.planned_tests import (
     equivalent,
     holm,
     p_value,

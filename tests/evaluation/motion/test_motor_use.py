@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation.motor_use import at_limit, motor_use
+from hyperleg_design.evaluation.motion.motor_use import at_limit, motor_use
 from hyperleg_design.sizing.envelope import clip_torque, motor_envelope
 
 

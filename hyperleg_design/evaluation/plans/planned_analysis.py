@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.evaluation import planned_tests
+from hyperleg_design.evaluation.plans import planned_tests
 from hyperleg_design.evaluation.result import by_checkpoint
 from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.statistics import FEWEST_SEEDS
@@ -23,7 +23,7 @@ from hyperleg_design.evaluation.statistics import FEWEST_SEEDS
 if TYPE_CHECKING:
     import pandas as pd
 
-    from hyperleg_design.evaluation.analysis_plan import AnalysisPlan, Outcome
+    from hyperleg_design.evaluation.plans.analysis_plan import AnalysisPlan, Outcome
 
 DIFFERENT, EQUIVALENT, UNDECIDED = "different", "equivalent", "undecided"
 TOO_FEW, NOT_MEASURED = "too few trainings", "not measured"

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from hyperleg_design.evaluation.analysis_plan import load_plan, plan_from_mapping
-from hyperleg_design.evaluation.planned_analysis import (
+from hyperleg_design.evaluation.plans.analysis_plan import load_plan, plan_from_mapping
+from hyperleg_design.evaluation.plans.planned_analysis import (
     DIFFERENT,
     EQUIVALENT,
     NOT_MEASURED,

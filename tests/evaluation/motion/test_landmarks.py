@@ -7,14 +7,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hyperleg_design.evaluation.landmarks import (
+from hyperleg_design.evaluation.motion.landmarks import (
     LANDMARKS,
     force_humps,
     in_order,
     landmark_measures,
 )
+from hyperleg_design.evaluation.motion.steps import measured_steps
 from hyperleg_design.evaluation.protocol import WalkProtocol
-from hyperleg_design.evaluation.steps import measured_steps
 
 
 @pytest.fixture(scope="module")

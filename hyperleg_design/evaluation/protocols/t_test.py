@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation import bearing, course, rollout
-from hyperleg_design.evaluation.motor_use import MotorUse, motor_use
-from hyperleg_design.evaluation.power import flows, ledger
+from hyperleg_design.evaluation import rollout
+from hyperleg_design.evaluation.motion import bearing
+from hyperleg_design.evaluation.motion.motor_use import MotorUse, motor_use
+from hyperleg_design.evaluation.motion.power import flows, ledger
+from hyperleg_design.evaluation.motion.steps import impact_measures, measured_steps, step_measures
 from hyperleg_design.evaluation.protocol import TTestProtocol
-from hyperleg_design.evaluation.protocol_run import ProtocolRun
-from hyperleg_design.evaluation.steps import impact_measures, measured_steps, step_measures
+from hyperleg_design.evaluation.protocols import course
+from hyperleg_design.evaluation.protocols.protocol_run import ProtocolRun
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 from hyperleg_design.sizing.energy import cost_of_transport
 

@@ -8,9 +8,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.evaluation import gait
-from hyperleg_design.evaluation.feet import foot_places
-from hyperleg_design.evaluation.impact import impacts, low_pass
+from hyperleg_design.evaluation.motion import gait
+from hyperleg_design.evaluation.motion.feet import foot_places
+from hyperleg_design.evaluation.motion.impact import impacts, low_pass
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.protocol import Events, Impact

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hyperleg_design.evaluation import course
 from hyperleg_design.evaluation.protocol import TTestProtocol
+from hyperleg_design.evaluation.protocols import course
 from hyperleg_design.simulation.waypoint_commands import segment_distance
 
 T = TTestProtocol().course

@@ -1,0 +1,1 @@
+"""Analyses that are planned before their trainings: outcomes, tests and what came out."""

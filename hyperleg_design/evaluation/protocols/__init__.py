@@ -1,0 +1,1 @@
+"""What the protocols run: straight walks, the T-test and its course."""
