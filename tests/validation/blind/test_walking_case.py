@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hyperleg_design.validation.blind import walking_case, walking_residual
+from hyperleg_design.validation.blind import walking_case
 from hyperleg_design.validation.blind.wrong import Wrong
 
 PLAN = SimpleNamespace(duration=10.0)
@@ -30,7 +30,7 @@ class Fragile:
 @pytest.fixture(autouse=True)
 def plainly_shown(monkeypatch):
     monkeypatch.setattr(
-        walking_residual, "shown", lambda effect, logs, clean, robot: float(sum(logs[0]))
+        walking_case, "shown", lambda effect, logs, clean, robot: float(sum(logs[0]))
     )
 
 
