@@ -1,5 +1,7 @@
 """One case on a rig: draw robot and day, seek the size at which the effect shows as often over the
 floor as planned, record.
+
+`case.describe` can be had from here as well, where the benchmark asks every version for it.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ import numpy as np
 
 from hyperleg_design.validation.blind import excitation
 from hyperleg_design.validation.blind.case import Case
+from hyperleg_design.validation.blind.case import describe as describe
 from hyperleg_design.validation.blind.chain import Chain, chain
 from hyperleg_design.validation.blind.drawing import draw
 from hyperleg_design.validation.blind.nuisance import Nuisance, of_day, of_robot
