@@ -6,7 +6,7 @@ import dataclasses
 from pathlib import Path
 from types import SimpleNamespace
 
-from hyperleg_design.evaluation.analysis_plan import load_plan
+from hyperleg_design.evaluation.plans.analysis_plan import load_plan
 from hyperleg_design.evaluation.protocol import TTestProtocol, WalkProtocol
 from hyperleg_design.evaluation.shipped import Shipped
 from hyperleg_design.report.walks.evaluated import Evaluated
