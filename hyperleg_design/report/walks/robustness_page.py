@@ -85,6 +85,7 @@ def _plain(point: CurvePoint) -> dict[str, Any]:
     """A point as plain values, None for what is not a number."""
     values = dataclasses.asdict(point)
     estimate = values.pop("estimate")
+    estimate["confidence"] = estimate.pop("level")  # `level` is the condition's
     return values | {
         key: None if isinstance(v, float) and not math.isfinite(v) else v
         for key, v in estimate.items()

@@ -30,6 +30,13 @@ def test_two_layouts_over_two_conditions(trainings, tmp_path):
     assert len(points) == 2 * 2 * 2 * 2  # conditions, levels, layouts, measures
     arrived = [p for p in points if p["measure"] == "arrived"]
     assert {p["variant"] for p in arrived} == {"toe", "toe_removed_matched"}
+    levels = {(p["condition"], p["level"], p["confidence"]) for p in points}
+    assert levels == {
+        ("floor_friction", 0.8, 0.95),
+        ("floor_friction", 0.4, 0.95),
+        ("uneven_floor", 0.0, 0.95),
+        ("uneven_floor", 0.02, 0.95),
+    }
     assert all(p["mean"] == 0.0 and p["trials"] == 2 for p in arrived)  # they only stand
     assert json.loads((tmp_path / "out" / CURVES).read_text()) == points
     assert len(pd.read_parquet(tmp_path / "out" / TRIALS)) == 2 * 2 * 2 * 2
