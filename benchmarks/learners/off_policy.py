@@ -26,10 +26,11 @@ from torch import nn
 from torch.nn import functional as F
 
 from hyperleg_design.learning.meter import Meter
-from hyperleg_design.learning.preset import load_preset
+from hyperleg_design.learning.preset_file import load_preset
+from hyperleg_design.learning.progress import finite
 from hyperleg_design.learning.schedule import Schedule
 from hyperleg_design.learning.symmetry import Mirrors
-from hyperleg_design.learning.train import TRIAL_SEED, _finite
+from hyperleg_design.learning.training import TRIAL_SEED
 from hyperleg_design.learning.trial import trial
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment
@@ -288,7 +289,7 @@ def main() -> None:
             if schedule.iteration % int(preset.trial_every) == 0:
                 row["trial"] = trial(design, task, learner.policy, seed=TRIAL_SEED)
                 print(f"{row['steps'] / 1e6:.2f} M, {seconds / 60:.1f} min, {row['trial']}")
-            stream.write(json.dumps(_finite(row)) + "\n")
+            stream.write(json.dumps(finite(row)) + "\n")
             stream.flush()
     environment.close()
 

@@ -29,7 +29,11 @@ class TorchMirror:
         self.sign = torch.as_tensor(mirror.sign.copy(), dtype=torch.float32)
 
     def to(self, device: str) -> None:
-        """Move to a device, in place."""
+        """Move to a device, in place.
+
+        Args:
+            device: as torch writes it.
+        """
         self.index, self.sign = self.index.to(device), self.sign.to(device)
 
     def __call__(self, values: torch.Tensor) -> torch.Tensor:

@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from hyperleg_design.learning.preset import Preset, preset_from_mapping
+from hyperleg_design.learning.preset import Preset
+from hyperleg_design.learning.preset_file import preset_from_mapping
 
 
 def tiny_mapping() -> dict:

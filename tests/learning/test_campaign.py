@@ -19,7 +19,7 @@ from hyperleg_design.learning.campaign import (
     run_campaign,
     status_table,
 )
-from hyperleg_design.learning.preset import load_preset
+from hyperleg_design.learning.preset_file import load_preset
 
 from .conftest import tiny_mapping
 
@@ -193,7 +193,7 @@ def test_an_interrupt_stops_the_trainings(
 def test_a_shipped_policy_counts_as_long_as_nothing_it_rests_on_has_changed(
     tmp_path: Path, write
 ) -> None:
-    from hyperleg_design.learning.preset import load_preset
+    from hyperleg_design.learning.preset_file import load_preset
     from hyperleg_design.learning.resolved import preset_mapping, task_mapping
     from hyperleg_design.robot.design import load_design
     from hyperleg_design.simulation.tasks import load_task

@@ -8,7 +8,7 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.final_reward import final_rewards, final_share, settled_after
-from hyperleg_design.learning.preset import load_preset, preset_from_mapping
+from hyperleg_design.learning.preset_file import load_preset, preset_from_mapping
 from hyperleg_design.learning.schedule import Schedule
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.learning.preset import load_preset, preset_from_mapping
+from hyperleg_design.learning.preset_file import load_preset, preset_from_mapping
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.simulation.design_spread import load_design_spread
 from hyperleg_design.simulation.tasks import load_task, task_from_mapping, task_names

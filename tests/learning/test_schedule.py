@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from hyperleg_design.learning.preset import Preset, preset_from_mapping
+from hyperleg_design.learning.preset import Preset
+from hyperleg_design.learning.preset_file import preset_from_mapping
 from hyperleg_design.learning.schedule import DECAY_EVERY, FAST_ENOUGH, LONG_ENOUGH, Schedule
 from hyperleg_design.robot.design import Design
 from hyperleg_design.simulation.environment import Environment

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.learning.preset import Preset, preset_from_mapping
+from hyperleg_design.learning.preset import Preset
+from hyperleg_design.learning.preset_file import preset_from_mapping
 from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, policies, read_status
 from hyperleg_design.simulation.design_observation import DesignRanges, Range
 from hyperleg_design.simulation.design_spread import DesignSpread
@@ -21,6 +22,7 @@ pytest.importorskip("rsl_rl")
 pytest.importorskip("tensorboard")
 
 from hyperleg_design.learning import train as module  # noqa: E402
+from hyperleg_design.learning import training  # noqa: E402
 from hyperleg_design.learning.checkpoint import load_checkpoint  # noqa: E402
 from hyperleg_design.learning.train import train  # noqa: E402
 
@@ -113,7 +115,7 @@ def test_a_finished_training_is_left_alone(tiny: Preset, tmp_path: Path) -> None
 def test_a_signal_stops_with_a_checkpoint(
     tiny: Preset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, "SHOW_EVERY", 0.0)
+    monkeypatch.setattr(training, "SHOW_EVERY", 0.0)
     assert not train(
         "walk",
         "toe",
@@ -160,7 +162,7 @@ def test_a_truncated_checkpoint_is_named_and_a_full_disk_costs_nothing(
         raise OutputError("disk full")
 
     with monkeypatch.context() as patch:
-        patch.setattr(module, "save_checkpoint", full)
+        patch.setattr(training, "save_checkpoint", full)
         with pytest.raises(OutputError):
             train("walk", "toe", 0, tiny, folder)
     assert (folder / CHECKPOINT).read_bytes() == content

@@ -19,7 +19,8 @@ pytest.importorskip("tensorboard")
 
 from hyperleg_design.learning.algorithm import as_tensors  # noqa: E402
 from hyperleg_design.learning.preset import WarmStart  # noqa: E402
-from hyperleg_design.learning.train import Training, describe, train  # noqa: E402
+from hyperleg_design.learning.train import describe, train  # noqa: E402
+from hyperleg_design.learning.training import Training  # noqa: E402
 from hyperleg_design.learning.warm_start import read_start  # noqa: E402
 from hyperleg_design.robot.design import load_design  # noqa: E402
 from hyperleg_design.simulation.tasks import Task, load_task  # noqa: E402

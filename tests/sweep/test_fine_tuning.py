@@ -27,7 +27,7 @@ pytest.importorskip("torch")
 pytest.importorskip("rsl_rl")
 
 from hyperleg_design.evaluation.shipped import find_policy
-from hyperleg_design.learning.preset import load_preset, preset_from_mapping
+from hyperleg_design.learning.preset_file import load_preset, preset_from_mapping
 from hyperleg_design.learning.schedule import Schedule
 from hyperleg_design.learning.train import train
 

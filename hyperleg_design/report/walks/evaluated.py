@@ -311,8 +311,8 @@ def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:
 def _compared(folder: str | Path | None, *, late: bool = True) -> list[Shipped]:
     """Policies of the HyperLeg in a folder that are more than starts of others."""
     starts = load_campaign().starts
-    found = shipped_policies(folder, late=late)
-    return [p for p in found if p.family == "hyperleg" and p.group not in starts]
+    policies = shipped_policies(folder, late=late)
+    return [p for p in policies if p.family == "hyperleg" and p.group not in starts]
 
 
 def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:

@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.learning.preset import load_preset, preset_from_mapping, preset_names
+from hyperleg_design.learning.preset_file import load_preset, preset_from_mapping, preset_names
 
 from .conftest import tiny_mapping
 

@@ -1,0 +1,277 @@
+"""Reading of training presets: `sim/preset_*.yaml`, or a user's file."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from hyperleg_design import resources
+from hyperleg_design.errors import InputError
+from hyperleg_design.learning.final_reward import check_final_share
+from hyperleg_design.learning.preset import (
+    BEGINS,
+    Algorithm,
+    Network,
+    Preset,
+    Ramp,
+    Stage,
+    WarmStart,
+)
+from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot.parameters import fields as parameter_fields
+from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.simulation.terms.rewards import TERMS
+
+OWN = ("name", "description", "tasks", "final_share")
+"""What a preset does not take from its base."""
+
+
+def preset_names() -> list[str]:
+    """List the shipped presets.
+
+    Returns:
+        Their names, sorted.
+    """
+    return resources.sim_names("preset")
+
+
+def load_preset(name: str | Path) -> Preset:
+    """Read a training preset from a shipped file or a file of the user.
+
+    Args:
+        name: a shipped name such as `laptop`, or a YAML file.
+
+    Returns:
+        The validated preset.
+
+    Raises:
+        InputError: names file, field, value and remedy.
+    """
+    path = resources.find_sim("preset", name)
+    return preset_from_mapping(_with_base(read_yaml(path), short_name(path)), short_name(path))
+
+
+def _with_base(
+    data: Mapping[str, Any], where: str, before: tuple[str, ...] = ()
+) -> Mapping[str, Any]:
+    """Fill what a preset leaves out with what its `base` states, but for name, tasks and the share
+    of the final reward.
+    """
+    base = data.get("base")
+    if base is None:
+        return data
+    if not isinstance(base, str) or base in before:
+        raise InputError(where, "base", base, "expects the name of a preset that has other bases")
+    path = resources.find_sim("preset", base)
+    below = _with_base(read_yaml(path), short_name(path), (*before, base))
+    merged = {key: value for key, value in below.items() if key not in OWN}
+    for key, value in data.items():
+        old = merged.get(key)
+        if isinstance(old, Mapping) and isinstance(value, Mapping):
+            merged[key] = {**old, **value}
+        else:
+            merged[key] = value
+    del merged["base"]
+    return merged
+
+
+def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
+    """Build a preset from nested mappings, as YAML gives them.
+
+    Args:
+        data: sections by name.
+        where: file, for error messages.
+
+    Returns:
+        The validated preset.
+
+    Raises:
+        InputError: unknown or missing field, or a value that makes no sense.
+    """
+    rest = dict(data)
+    rest.pop("description", None)
+    name, tasks = rest.pop("name", None), rest.pop("tasks", None)
+    if not isinstance(name, str):
+        raise InputError(where, "name", name, "expects a text")
+    given = {str(t): s for t, s in _mapping(tasks, where, "tasks").items()}
+    for task, entry in given.items():
+        if isinstance(entry, str) and not isinstance(given.get(entry), list):
+            raise InputError(
+                where, f"tasks.{task}", entry, "expects stages, or a task that has them"
+            )
+    stages = {
+        t: _stages(given[s] if isinstance(s, str) else s, where, f"tasks.{t}")
+        for t, s in given.items()
+    }
+    network = dict(_mapping(rest.pop("network", {}), where, "network"))
+    hidden = network.pop("hidden", [512, 256, 128])
+    if (
+        not isinstance(hidden, list)
+        or not hidden
+        or not all(
+            isinstance(h, int) and not isinstance(h, bool) and 0 < h <= 65536 for h in hidden
+        )
+    ):
+        raise InputError(where, "network.hidden", hidden, "expects a list of widths")
+    settings = parameters.from_mapping(Network, network, where, "network")
+    warm = parameters.from_mapping(WarmStart, rest.pop("warm_start", {}), where, "warm_start")
+    algorithm = parameters.from_mapping(Algorithm, rest.pop("algorithm", {}), where, "algorithm")
+    if (algorithm.mirror, algorithm.adapted) in (("half", "minibatch"), ("append", "iteration")):
+        raise InputError(
+            where,
+            "algorithm.adapted",
+            algorithm.adapted,
+            f"with mirror: {algorithm.mirror} would judge mirrored samples",
+        )
+    sizes = ("simulations", "rollout", "checkpoint_every", "trial_every", "late", "late_apart")
+    least = _number(rest.pop("final_share", 0.0), where, "final_share", 0, 1)
+    for task, parts in stages.items():
+        check_final_share(parts, least, where, f"tasks.{task}")
+    for key in rest:
+        if key not in sizes:
+            known = [
+                "name",
+                "base",
+                *sizes,
+                "final_share",
+                "algorithm",
+                "network",
+                "warm_start",
+                "tasks",
+            ]
+            raise InputError(where, str(key), rest[key], parameters.unknown(str(key), known))
+    values = {key: _whole(rest[key], where, key) for key in rest}
+    try:
+        shape = dataclasses.replace(settings, hidden=tuple(hidden))
+        return Preset(
+            name=name,
+            final_share=least,
+            algorithm=algorithm,
+            network=shape,
+            warm_start=warm,
+            tasks=stages,
+            **values,
+        )
+    except InputError as error:
+        raise InputError(where, error.field, error.value, error.remedy) from None
+
+
+def _stages(data: Any, where: str, path: str) -> tuple[Stage, ...]:
+    if not isinstance(data, list) or not data:
+        raise InputError(where, path, data, "expects a list of stages")
+    return tuple(_stage(entry, where, f"{path}.{i}") for i, entry in enumerate(data))
+
+
+def _stage(data: Any, where: str, path: str) -> Stage:
+    known = ("name", "steps", "assist", "assist_gone_by", "rewards", "commands", "ramps")
+    data = _mapping(data, where, path)
+    for key in data:
+        if key not in known:
+            raise InputError(
+                where, f"{path}.{key}", data[key], parameters.unknown(str(key), list(known))
+            )
+    for key in ("name", "steps"):
+        if key not in data:
+            raise InputError(where, f"{path}.{key}", None, "is missing")
+    rewards: dict[str, Mapping[str, float]] = {}
+    for term, entry in _mapping(data.get("rewards", {}), where, f"{path}.rewards").items():
+        values = entry if isinstance(entry, Mapping) else {"weight": entry}
+        _check_term(str(term), [str(k) for k in values], where, f"{path}.rewards.{term}")
+        rewards[str(term)] = {
+            str(k): _number(v, where, f"{path}.rewards.{term}.{k}") for k, v in values.items()
+        }
+    commands = {
+        str(k): _number(v, where, f"{path}.commands.{k}")
+        for k, v in _mapping(data.get("commands", {}), where, f"{path}.commands").items()
+    }
+    ramps = data.get("ramps", [])
+    if not isinstance(ramps, list):
+        raise InputError(where, f"{path}.ramps", ramps, "expects a list of ramps")
+    return Stage(
+        name=str(data["name"]),
+        steps=_number(data["steps"], where, f"{path}.steps", 1, 1e12),
+        assist=None
+        if data.get("assist") is None
+        else _number(data["assist"], where, f"{path}.assist", 0, 1),
+        assist_gone_by=_number(
+            data.get("assist_gone_by", 1.0), where, f"{path}.assist_gone_by", 0, 1
+        ),
+        rewards=rewards,
+        commands=commands,
+        ramps=tuple(_ramp(entry, where, f"{path}.ramps.{i}") for i, entry in enumerate(ramps)),
+    )
+
+
+def _ramp(data: Any, where: str, path: str) -> Ramp:
+    data = _mapping(data, where, path)
+    for key in data:
+        if key not in ("set", "from", "to", "steps", "begins"):
+            raise InputError(
+                where,
+                f"{path}.{key}",
+                data[key],
+                parameters.unknown(str(key), ["set", "from", "to", "steps", "begins"]),
+            )
+    for key in ("set", "from", "to", "steps"):
+        if key not in data:
+            raise InputError(where, f"{path}.{key}", None, "is missing")
+    kind, _, rest = str(data["set"]).partition(".")
+    name, _, parameter = rest.partition(".")
+    if kind == "rewards" and name:
+        parameter = parameter or "weight"
+        _check_term(name, [parameter], where, f"{path}.set")
+    elif str(data["set"]) not in ("policy.deviation", "clock.shown") and (
+        kind != "commands" or not name or parameter
+    ):
+        raise InputError(
+            where,
+            f"{path}.set",
+            data["set"],
+            "expects rewards.TERM, rewards.TERM.PARAMETER, commands.SETTING, clock.shown or "
+            "policy.deviation",
+        )
+    begins = data.get("begins", "stage")
+    if begins not in BEGINS:
+        raise InputError(where, f"{path}.begins", begins, f"expects one of {', '.join(BEGINS)}")
+    least = 1e-3 if kind == "policy" else -1e12
+    low, high = (_number(data[key], where, f"{path}.{key}", least) for key in ("from", "to"))
+    return Ramp(
+        (kind, name, parameter),
+        low,
+        high,
+        _number(data["steps"], where, f"{path}.steps", 1, 1e12),
+        begins,
+    )
+
+
+def _check_term(term: str, settings: list[str], where: str, path: str) -> None:
+    if term not in TERMS:
+        raise InputError(
+            where, path, term, parameters.unknown(term, sorted(TERMS)).replace("field", "term")
+        )
+    for name in settings:
+        if name != "weight" and name not in TERMS[term].parameters:
+            raise InputError(
+                where, path, name, parameters.unknown(name, ["weight", *TERMS[term].parameters])
+            )
+
+
+def _number(value: Any, where: str, path: str, low: float = -1e12, high: float = 1e12) -> float:
+    return float(
+        parameters.checked(value, parameter_fields.Rule("number", low=low, high=high), where, path)
+    )
+
+
+def _whole(value: Any, where: str, path: str) -> float:
+    number = _number(value, where, path)
+    if number != int(number):
+        raise InputError(where, path, value, "expects a whole number")
+    return number
+
+
+def _mapping(data: Any, where: str, path: str) -> Mapping[str, Any]:
+    if not isinstance(data, Mapping):
+        raise InputError(where, path, data, "expects a mapping")
+    return data
