@@ -63,6 +63,7 @@ place is known."""
 _LOADS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 _GIVEN: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 _OWN: WeakKeyDictionary[Signals, dict[tuple[int, bool], np.ndarray]] = WeakKeyDictionary()
+_ROTORLESS: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
 
 def load(signals: Signals, motor: int) -> np.ndarray:
@@ -249,27 +250,34 @@ def trace(
     if side.any():
         subject = signals.subject
         share = subject.motor_from_joint[motor]
-        nominal = rigid.inverse_dynamics(
-            subject,
-            signals.position,
-            signals.velocity,
-            signals.acceleration,
-            signals.base,
-            rotors=False,
+        rows = np.flatnonzero(side * np.any(moved != 0, 1))
+        limbs = subject.tree.limbs(np.flatnonzero(share).tolist())
+        rates = moved, first_derivative(moved, signals.step), second_derivative(moved, signals.step)
+        logged = signals.position, signals.velocity, signals.acceleration
+        own = np.stack(
+            [
+                x - np.multiply.outer(rate[rows], share)
+                for x, rate in zip(logged, rates, strict=True)
+            ]
         )
-        for row in np.flatnonzero(side * np.any(moved != 0, 1)):
-            one = moved[row]
-            rates = one, first_derivative(one, signals.step), second_derivative(one, signals.step)
-            logged = signals.position, signals.velocity, signals.acceleration
-            q, v, a = (
-                x - np.multiply.outer(rate, share) for x, rate in zip(logged, rates, strict=True)
-            )
-            found["motion"][row] += side[row] * (
-                rigid.inverse_dynamics(subject, q, v, a, signals.base, rotors=False) - nominal
-            )
+        beyond = rigid.inverse_dynamics(subject, *own, signals.base, rotors=False, joints=limbs)
+        beyond -= _rotorless(signals)[:, limbs]
+        found["motion"][np.ix_(rows, range(len(signals.time)), limbs)] += (
+            side[rows, None, None] * beyond
+        )
         if behind is not None and (rubbing := behind >= CHOSEN).any():
             found["motion"][rubbing] += _rubbed(signals, moved[rubbing], share)
     return found
+
+
+def _rotorless(signals: Signals) -> np.ndarray:
+    """Torque that the logged motion needs, without rotors `(t, n)` [Nm]."""
+    if signals not in _ROTORLESS:
+        motion = signals.position, signals.velocity, signals.acceleration
+        _ROTORLESS[signals] = rigid.inverse_dynamics(
+            signals.subject, *motion, signals.base, rotors=False
+        )
+    return _ROTORLESS[signals]
 
 
 def _rubbed(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarray:

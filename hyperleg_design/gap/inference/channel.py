@@ -14,74 +14,32 @@ products of C, y and x are needed, so that the cost does not depend on the lengt
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from hyperleg_design.gap.inference.scales import Scales, log_prior_of_scales
+from hyperleg_design.gap.inference.spectrum import Spectrum
+
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.rules import DiscrepancyRules, InferenceRules
+    from hyperleg_design.gap.inference.rules import InferenceRules
 
-STEPS = (1.2, 0.5, 0.2)
-"""Steps of the search for a scale's logarithm, each halved about [-]."""
-MOST_STEPS = 4
-"""Of each of `STEPS`."""
-ABSENT = 1e-3
-"""Logarithm of `Scales.new` up to which nothing unlisted acts [-]."""
+NOISES = 3
+"""Noises of a channel whose spectra are kept."""
 
 
 @dataclass(frozen=True, eq=False)
-class Scales:
-    """Hyperparameters of one channel."""
+class Residual:
+    """Sums of products of a channel's residual, or of what is left of it, by cell."""
 
-    noise: np.ndarray
-    """Variance of the noise over what is expected, by band `(b,)` [-]."""
-    standing: float = 0.0
-    """Logarithm of the scale of the discrepancy that all sessions share."""
-    change: float = 0.0
-    """Logarithm of the scale of its change from session to session."""
-    new: float = 0.0
-    """Logarithm of how much larger the change is in sessions under test; 0 of a healthy robot."""
-
-
-@dataclass(frozen=True, eq=False)
-class Turned:
-    """Products of one channel at given noise, each session's discrepancy columns turned to where
-    they are apart, so that no scale needs a new decomposition of them.
-    """
-
-    values: np.ndarray
-    """Products of the columns with themselves `(sessions, k)`."""
-    axes: np.ndarray
-    """`(sessions, k, k)`"""
     cross: np.ndarray
-    """With the residual `(sessions, k)`."""
-    square: float
-    """Of the residual with itself, all sessions."""
-    spread: float
-    """Log determinant of the noise."""
-
-    def log_likelihood(self, change: np.ndarray, standing: float) -> float:
-        """As of `Channel.log_likelihood`.
-
-        Args:
-            change: scale of the change of each session `(sessions,)`.
-            standing: logarithm of the scale of the standing discrepancy.
-        """
-        squares = change[:, None] ** 2
-        shrunk = 1 / (1 + squares * self.values)
-        left_own = self.axes * (shrunk * self.values)[:, None, :]
-        whole = np.exp(2 * standing) * np.tensordot(left_own, self.axes, ((0, 2), (0, 2)))
-        whole[np.diag_indices_from(whole)] += 1.0
-        factor = np.linalg.cholesky(whole)
-        cross = np.einsum("sij,sj->i", self.axes, shrunk * self.cross)
-        taken = np.exp(standing) * solve_triangular(factor, cross, lower=True, check_finite=False)
-        left = self.square - float(np.sum(squares * shrunk * self.cross**2)) - float(taken @ taken)
-        determinant = 2 * float(np.log(np.diag(factor)).sum()) - float(np.log(shrunk).sum())
-        return -0.5 * (left + determinant + self.spread)
+    """With the discrepancy columns `(cells, k)`."""
+    square: np.ndarray
+    """With itself `(cells,)`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,12 +117,12 @@ class Channel:
         unlisted -= len(over) * float(np.log(own.unlisted_spread))
         return float(np.log(1 - odds)) + healthy, float(np.log(odds)) + unlisted
 
-    @property
+    @cached_property
     def referenced(self) -> bool:
         """Whether reference logs teach the standing discrepancy."""
         return not bool(self.tested.all())
 
-    @property
+    @cached_property
     def changes(self) -> bool:
         """Whether more than one session tells a change from what stands."""
         return len(self.tested) > 1
@@ -191,6 +149,28 @@ class Channel:
         standing = prior.referenced if self.referenced else prior.standing
         return Scales(noise, float(np.log(standing)), float(np.log(prior.change)))
 
+    @cached_property
+    def whole_residual(self) -> Residual:
+        """Products of the residual as it is."""
+        return Residual(self.products[:, :-1, -1], self.products[:, -1, -1])
+
+    @cached_property
+    def _cuts(self) -> tuple[np.ndarray | slice, ...]:
+        """`places`, as slices where they are one, so that no samples are copied."""
+        return tuple(
+            slice(int(place[0]), int(place[-1]) + 1)
+            if len(place) and place[-1] - place[0] + 1 == len(place) and (np.diff(place) == 1).all()
+            else place
+            for place in self.places
+        )
+
+    def shows(self, columns: np.ndarray) -> np.ndarray:
+        """Whether each of some columns `(m, S)` is anything in this channel `(m,)`."""
+        found = np.zeros(len(columns), bool)
+        for cut in self._cuts:
+            found |= columns[:, cut].any(1)
+        return found
+
     def crossed(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Sums of products with further columns.
 
@@ -204,11 +184,48 @@ class Channel:
         m = len(columns)
         cross = np.zeros((len(self.number), self.columns + 1, m))
         own = np.zeros((len(self.number), m, m))
-        for cell, (place, white) in enumerate(zip(self.places, self.whitened, strict=True)):
-            mine = columns[:, place]
+        for cell, (cut, white) in enumerate(zip(self._cuts, self.whitened, strict=True)):
+            mine = columns[:, cut]
             if mine.any():
                 cross[cell], own[cell] = white @ mine.T, mine @ mine.T
         return cross, own
+
+    def between(
+        self, noise: np.ndarray, some: np.ndarray, others: Sequence[np.ndarray]
+    ) -> np.ndarray:
+        """Sum over all cells of products of columns over the noise.
+
+        Args:
+            noise: by band `(b,)`.
+            some: weighted twice as the residual `(m, S)`.
+            others: unweighted, `(n, S)` each, or shorter where they end with the logs under test.
+
+        Returns:
+            `(m, n)`, all others one after the other.
+        """
+        found = np.zeros((len(some), sum(len(one) for one in others)))
+        for cut, over in zip(self._cuts, noise[self.band].tolist(), strict=True):
+            mine = some[:, cut] / over
+            if mine.shape[1] and mine.any():
+                last = cut.stop - 1 if isinstance(cut, slice) else cut[-1]
+                at = 0
+                for one in others:
+                    if last < one.shape[1]:
+                        found[:, at : at + len(one)] += mine @ one[:, cut].T
+                    at += len(one)
+        return found
+
+    def left(self, cross: np.ndarray, own: np.ndarray, theta: np.ndarray) -> Residual:
+        """Products of what is left of the residual without a trace.
+
+        Args:
+            cross: products with the trace's columns, as of `crossed` `(cells, k + 1, m)`.
+            own: among themselves `(cells, m, m)`.
+            theta: the trace over these columns `(m,)`.
+        """
+        taken = cross @ theta
+        square = self.whole_residual.square - 2 * taken[:, -1] + own @ theta @ theta
+        return Residual(self.whole_residual.cross - taken[:, :-1], square)
 
     def without(self, trace: np.ndarray) -> Channel:
         """The channel whose residual lacks a trace `(S,)`, weighted as the residual."""
@@ -225,21 +242,28 @@ class Channel:
         found[:, k, k] += own[:, 0, 0] - 2 * cross[:, k, 0]
         return replace(self, products=found, whitened=tuple(white))
 
-    def stacked(self, cross: np.ndarray, own: np.ndarray) -> np.ndarray:
-        """Products of discrepancy columns, residual and further columns, as of `crossed` `(cells, k
-        + 1 + m, k + 1 + m)`.
-        """
-        size, m = self.columns + 1, own.shape[1]
-        found = np.empty((len(self.number), size + m, size + m))
-        found[:, :size, :size], found[:, :size, size:] = self.products, cross
-        found[:, size:, :size], found[:, size:, size:] = cross.swapaxes(1, 2), own
-        return found
-
-    def summed(self, noise: np.ndarray, products: np.ndarray | None = None) -> np.ndarray:
-        """Products over the noise, by session `(sessions, n, n)`."""
-        products = self.products if products is None else products
+    def _summed(self, noise: np.ndarray, products: np.ndarray) -> np.ndarray:
+        """Products by cell `(cells, ...)` over the noise, by session `(sessions, ...)`."""
         share = (self.session == np.arange(len(self.tested))[:, None]) / noise[self.band]
         return np.asarray(np.tensordot(share, products, 1))
+
+    @cached_property
+    def _spectra(self) -> Callable[[bytes], Spectrum]:
+        """Spectra at the noise that some bytes hold."""
+        products = np.ascontiguousarray(self.products[:, :-1, :-1])
+        tested, band = self.tested, self.band
+        sessions = self.session == np.arange(len(tested))[:, None]
+
+        @lru_cache(maxsize=NOISES)
+        def spectrum(noise: bytes) -> Spectrum:
+            share = sessions / np.frombuffer(noise)[band]
+            return Spectrum(np.tensordot(share, products, 1), tested)
+
+        return spectrum
+
+    def spectrum(self, noise: np.ndarray) -> Spectrum:
+        """Spectrum of the discrepancy columns at some noise by band `(b,)`."""
+        return self._spectra(np.ascontiguousarray(noise, float).tobytes())
 
     def change_scales(self, scales: Scales) -> np.ndarray:
         """D of each session `(sessions,)`; 0 where a single session cannot tell it."""
@@ -247,175 +271,148 @@ class Channel:
             return np.zeros(len(self.tested))
         return np.exp(scales.change + np.where(self.tested, scales.new, 0.0))
 
-    def reduced(self, scales: Scales, summed: np.ndarray) -> np.ndarray:
+    def reduced(
+        self, scales: Scales, cross: np.ndarray | None = None, own: np.ndarray | None = None
+    ) -> np.ndarray:
         """Integrate the discrepancy out.
 
         Args:
             scales: hyperparameters.
-            summed: products by session, the k discrepancy columns first `(sessions, k + m, k + m)`.
+            cross: products of the discrepancy columns and the residual with m further columns, as
+                of `crossed` `(cells, k + 1, m)`; none by default.
+            own: of these among themselves `(cells, m, m)`.
 
         Returns:
-            Products of the other m columns in the metric of the marginal covariance `(m, m)`.
+            Products of the residual and these columns in the metric of the marginal covariance
+            `(m + 1, m + 1)`.
         """
-        k = self.columns
-        change = self.change_scales(scales)[:, None, None] ** 2
-        own, cross, rest = summed[:, :k, :k], summed[:, :k, k:], summed[:, k:, k:]
-        eye = np.eye(k)
-        solved = np.linalg.solve(eye + change * own, np.concatenate([cross, own], -1))
-        cross_left, own_left = solved[..., : cross.shape[-1]].sum(0), solved[..., -k:].sum(0)
-        taken = change * cross.swapaxes(1, 2) @ solved[..., : cross.shape[-1]]
-        shared = np.exp(2 * scales.standing)
-        whole = eye + shared * 0.5 * (own_left + own_left.T)
-        left: np.ndarray = (rest - taken).sum(0)
-        return left - shared * cross_left.T @ np.linalg.solve(whole, cross_left)
+        weight = 1 / scales.noise[self.band]
+        right = self.whole_residual.cross[:, :, None]
+        rest = np.full((1, 1), weight @ self.whole_residual.square)
+        if cross is not None and own is not None:
+            right = np.concatenate([right, cross[:, :-1]], -1)
+            m = own.shape[1]
+            beside, rest = weight @ cross[:, -1], np.pad(rest, (0, m))
+            rest[0, 1:], rest[1:, 0] = beside, beside
+            rest[1:, 1:] = (weight @ own.reshape(len(own), -1)).reshape(m, m)
+        taken = self.taken(scales, right)
+        return np.asarray(rest - taken.T @ taken)
 
-    def turned(self, noise: np.ndarray) -> Turned:
-        """The products at some noise, in the axes in which each session's columns are apart."""
-        summed, k = self.summed(noise), self.columns
-        values, axes = np.linalg.eigh(summed[:, :k, :k])
-        cross = (summed[:, None, k, :k] @ axes)[:, 0]
-        spread = float(self.numbers @ np.log(noise))
-        return Turned(np.maximum(values, 0.0), axes, cross, float(summed[:, k, k].sum()), spread)
-
-    def log_likelihood(self, scales: Scales, turned: Turned | None = None) -> float:
-        """Marginal log-likelihood of the residual, up to what all models share [nat].
+    def taken(self, scales: Scales, cross: np.ndarray) -> np.ndarray:
+        """What the discrepancy takes of columns, as vectors: of the products of two columns over
+        the noise, it takes that of their vectors.
 
         Args:
             scales: hyperparameters.
-            turned: the products at the noise of these.
+            cross: products of the discrepancy columns with m others `(cells, k, m)`.
+
+        Returns:
+            `((sessions + 1) k, m)`.
         """
-        turned = self.turned(scales.noise) if turned is None else turned
-        return turned.log_likelihood(self.change_scales(scales), scales.standing)
+        spectrum, change = self.spectrum(scales.noise), self.change_scales(scales)
+        turned, shrunk = spectrum.turned(self._summed(scales.noise, cross)), spectrum.shrunk(change)
+        shared = np.exp(scales.standing) * solve_triangular(
+            spectrum.factor(change, scales.standing),
+            (spectrum.axes @ (shrunk[:, :, None] * turned)).sum(0),
+            lower=True,
+            check_finite=False,
+        )
+        alone = (change[:, None] * np.sqrt(shrunk))[:, :, None] * turned
+        return np.concatenate([alone.reshape(-1, cross.shape[-1]), shared])
 
-    def log_prior(self, scales: Scales, rules: InferenceRules) -> float:
-        """Log prior density of the hyperparameters, up to a constant [nat]."""
-        prior = rules.discrepancy
-        taught = np.delete(scales.noise, self.bands_tested)
-        noise = -0.5 * rules.noise.weight * float(np.sum(np.log(taught) + 1 / taught))
-        noise += float(np.logaddexp(*self.noisy(scales.noise, rules)))
-        if not self.referenced:
-            found = noise + _mixed(scales.standing, prior)
-        else:
-            found = noise + _normal(scales.standing, prior.referenced, prior.referenced_spread)
-            odds = prior.unlisted_probability
-            found += (
-                float(np.log(1 - odds))
-                if scales.new <= ABSENT
-                else float(np.log(odds))
-                + _normal(scales.new, prior.unlisted, prior.unlisted_spread)
-            )
-        if self.changes:
-            found += _normal(scales.change, prior.change, prior.change_spread)
-        return found
-
-    def log_posterior(
-        self, scales: Scales, rules: InferenceRules, turned: Turned | None = None
-    ) -> float:
-        """Log-likelihood and log prior of the hyperparameters [nat]."""
-        return self.log_likelihood(scales, turned) + self.log_prior(scales, rules)
-
-    def discrepancy(self, scales: Scales) -> tuple[np.ndarray, np.ndarray]:
-        """Posterior of w + delta_s: means `(sessions, k)` and covariances `(sessions, k, k)`."""
-        k = self.columns
-        summed = self.summed(scales.noise)
-        own, right = summed[:, :k, :k], summed[:, :k, k]
-        change = self.change_scales(scales) ** 2
-        inverse = np.linalg.inv(np.eye(k) + change[:, None, None] * own)
-        total = np.einsum("sij,sjk->ik", own, inverse)
-        target = np.einsum("sji,sj->i", inverse, right)
-        shared = np.linalg.inv(np.eye(k) * np.exp(-2 * scales.standing) + 0.5 * (total + total.T))
-        mean = shared @ target
-        spread = change[:, None, None] * inverse
-        kept = np.eye(k) - spread @ own
-        means = mean + np.einsum("sij,sj->si", spread, right - own @ mean)
-        return means, spread + kept @ shared @ kept.swapaxes(1, 2)
-
-    def fitted(
-        self,
-        scales: Scales,
-        rules: InferenceRules,
-        sweeps: int = 3,
-        steps: tuple[float, ...] = STEPS,
-    ) -> Scales:
-        """Hyperparameters at the maximum of their posterior: noise by expectation maximisation,
-        scales by a line search each.
+    def likelihood(self, noise: np.ndarray, residual: Residual | None = None) -> Likelihood:
+        """Marginal log-likelihood of a residual at some noise, as a function of the scales.
 
         Args:
-            scales: to begin with.
-            rules: of the inference.
-            sweeps: of noise and scales in turn.
-            steps: of the searches for a scale's logarithm.
+            noise: by band `(b,)`.
+            residual: as it is by default.
         """
-        k, weight = self.columns, rules.noise.weight
-        for _ in range(sweeps):
-            means, covariances = self.discrepancy(scales)
-            mean = np.concatenate([-means, np.ones((len(means), 1))], 1)[self.session]
-            square = np.einsum("ci,cij,cj->c", mean, self.products, mean)
-            square += np.einsum("cij,cji->c", self.products[:, :k, :k], covariances[self.session])
-            left = np.bincount(self.band, np.maximum(square, 0.0), len(self.numbers))
-            usual = np.ones(len(self.numbers))
-            usual[self.bands_tested] = self.usual_noise(scales.noise, rules)
-            scales = replace(scales, noise=(weight * usual + left) / (weight + self.numbers))
-            turned = self.turned(scales.noise)
-            scales = self._searched(scales, "standing", rules, turned, steps)
-            if self.changes:
-                scales = self._searched(scales, "change", rules, turned, steps)
-        if self.referenced:
-            turned = self.turned(scales.noise)
-            healthy = replace(scales, new=0.0)
-            begin = max(scales.new, float(np.log(rules.discrepancy.unlisted)) / 2)
-            unlisted = self._searched(replace(scales, new=begin), "new", rules, turned, steps)
-            scales = max(
-                (healthy, unlisted), key=lambda one: self.log_posterior(one, rules, turned)
-            )
-        return scales
+        residual = self.whole_residual if residual is None else residual
+        spectrum = self.spectrum(noise)
+        cross = spectrum.turned(self._summed(noise, residual.cross)[:, :, None])[:, :, 0]
+        square = float(residual.square @ (1 / noise[self.band]))
+        return Likelihood(spectrum, cross, square, float(self.numbers @ np.log(noise)))
 
-    def _searched(
-        self,
-        scales: Scales,
-        name: str,
-        rules: InferenceRules,
-        turned: Turned,
-        steps: tuple[float, ...],
-    ) -> Scales:
-        def moved(value: float) -> Scales:
-            changes: dict[str, Any] = {name: value}
-            return replace(scales, **changes)
+    def log_likelihood(self, scales: Scales, residual: Residual | None = None) -> float:
+        """Marginal log-likelihood of a residual, up to what all models share [nat].
 
-        def score(value: float) -> float:
-            return self.log_posterior(moved(value), rules, turned)
+        Args:
+            scales: hyperparameters.
+            residual: as it is by default.
+        """
+        return self.likelihood(scales.noise, residual).at(
+            self.change_scales(scales), scales.standing
+        )
 
-        lowest = 2 * ABSENT if name == "new" else -np.inf
-        return moved(_climbed(score, float(getattr(scales, name)), lowest, steps))
+    def log_prior_of_noise(self, noise: np.ndarray, rules: InferenceRules) -> float:
+        """Log prior density of the noise by band `(b,)`, up to a constant [nat]."""
+        taught = np.delete(noise, self.bands_tested)
+        found = -0.5 * rules.noise.weight * float(np.sum(np.log(taught) + 1 / taught))
+        return found + float(np.logaddexp(*self.noisy(noise, rules)))
 
+    def log_prior_of_scales(self, scales: Scales, rules: InferenceRules) -> float:
+        """Log prior density of the scales of the discrepancy, up to a constant [nat]."""
+        return log_prior_of_scales(scales, rules.discrepancy, self.referenced, self.changes)
 
-def _climbed(
-    score: Callable[[float], float], begin: float, lowest: float, steps: tuple[float, ...]
-) -> float:
-    """Where a function of one variable has a local maximum, by steps that shrink."""
-    best, value = begin, score(begin)
-    for step in steps:
-        for _ in range(MOST_STEPS):
-            for other in (best + step, max(best - step, lowest)):
-                trial = score(other)
-                if trial > value + 1e-9:
-                    best, value = other, trial
-                    break
-            else:
-                break
-    return best
+    def log_posterior(
+        self, scales: Scales, rules: InferenceRules, residual: Residual | None = None
+    ) -> float:
+        """Log-likelihood of a residual, as it is by default, and log prior of the hyperparameters
+        [nat].
+        """
+        prior = self.log_prior_of_noise(scales.noise, rules)
+        prior += self.log_prior_of_scales(scales, rules)
+        return self.log_likelihood(scales, residual) + prior
 
+    def discrepancy(
+        self, scales: Scales, residual: Residual | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Posterior of w + delta_s: means `(sessions, k)` and covariances `(sessions, k, k)`.
 
-def _normal(logarithm: float, median: float, spread: float) -> float:
-    """Log density of a scale's logarithm, without 2 pi."""
-    return float(-0.5 * ((logarithm - np.log(median)) / spread) ** 2 - np.log(spread))
+        Args:
+            scales: hyperparameters.
+            residual: as it is by default.
+        """
+        residual = self.whole_residual if residual is None else residual
+        spectrum, change = self.spectrum(scales.noise), self.change_scales(scales)
+        axes, shrunk = spectrum.axes, spectrum.shrunk(change)
+        turned = spectrum.turned(self._summed(scales.noise, residual.cross)[:, :, None])[:, :, 0]
+        target = (axes @ (shrunk * turned)[:, :, None])[:, :, 0].sum(0)
+        inverse = np.linalg.inv(spectrum.factor(change, scales.standing))
+        shared = np.exp(2 * scales.standing) * (inverse.T @ inverse)
+        mean = shared @ target
+        beyond = turned - spectrum.values * (mean @ axes)
+        squares = change[:, None] ** 2 * shrunk
+        means = mean + (axes @ (squares * beyond)[:, :, None])[:, :, 0]
+        # with A = (I + c^2 O)^-1, the covariance is c^2 A + A shared A
+        kept = (axes * shrunk[:, None, :]) @ axes.swapaxes(1, 2)
+        return means, (change**2)[:, None, None] * kept + kept @ shared @ kept
 
 
-def _mixed(logarithm: float, prior: DiscrepancyRules) -> float:
-    """Log density of the standing scale of a robot without references: healthy, or with something
-    unlisted.
-    """
-    healthy = _normal(logarithm, prior.standing, prior.standing_spread)
-    unlisted = _normal(logarithm, prior.unlisted, prior.unlisted_spread)
-    odds = prior.unlisted_probability
-    return float(np.logaddexp(np.log(1 - odds) + healthy, np.log(odds) + unlisted))
+@dataclass(frozen=True, eq=False)
+class Likelihood:
+    """Marginal log-likelihood of one residual at given noise, as a function of the scales."""
+
+    spectrum: Spectrum
+    cross: np.ndarray
+    """Products of the residual with each session's columns along their axes `(sessions, k)`."""
+    square: float
+    """Of the residual with itself, all sessions."""
+    spread: float
+    """Log determinant of the noise."""
+
+    def at(self, change: np.ndarray, standing: float) -> float:
+        """Log-likelihood, up to what all models share [nat].
+
+        Args:
+            change: scale of the change of each session `(sessions,)`.
+            standing: logarithm of the scale of the standing discrepancy.
+        """
+        shrunk = self.spectrum.shrunk(change)
+        factor = self.spectrum.factor(change, standing)
+        cross = (self.spectrum.axes @ (shrunk * self.cross)[:, :, None]).sum(0)[:, 0]
+        taken = np.exp(standing) * solve_triangular(factor, cross, lower=True, check_finite=False)
+        left = self.square - float(np.sum(change[:, None] ** 2 * shrunk * self.cross**2))
+        left -= float(taken @ taken)
+        determinant = 2 * float(np.log(np.diag(factor)).sum()) - float(np.log(shrunk).sum())
+        return -0.5 * (left + determinant + self.spread)

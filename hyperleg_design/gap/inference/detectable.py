@@ -16,7 +16,6 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
-from hyperleg_design.gap.inference.hypothesis import reduced
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.search import Search
@@ -45,9 +44,7 @@ class Detectable:
 
 def detectable(search: Search) -> tuple[Detectable, ...]:
     """Of each effect and place with one parameter that is a size and a trace that grows with it."""
-    weight = search.evidence.weight
-    entries: list[tuple[str, str, int, float, float, np.ndarray]] = []
-    size = len(weight)
+    entries: list[tuple[str, str, int, float, float, float]] = []
     for (name, place, standing), traced in search.traces.items():
         if standing or isinstance(traced, screen.NotJudged):
             continue
@@ -55,27 +52,20 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
         subject = search.evidence.signals[0].subject
         most = np.abs(effect.bounds(place, subject) - effect.nulls).max(0)
         sizes = [i for i, p in enumerate(effect.parameters) if not p.shape]
+        information = search.promises.information(
+            (name, place, standing), search.fits.nothing.scales
+        )
         if isinstance(traced, list):
             for i in sizes:
-                entries.append(
-                    (name, place, i, traced[0].usual[i], most[i], traced[0].columns[i] * weight)
-                )
+                entries.append((name, place, i, traced[0].usual[i], most[i], information[i]))
         elif len(sizes) == 1:
             i = sizes[0]
             change = np.abs(traced[0][:, i] - effect.nulls[i])
             if change.max() > 0:
                 first = int(np.argmin(np.where(change > 0, change, np.inf)))
-                own = traced[1][first]
-                padded = np.pad(own, (0, size - len(own))) * weight
-                entries.append((name, place, i, float(change[first]), most[i], padded))
-    if not entries:
-        return ()
-    columns = np.stack([entry[-1] for entry in entries])
-    information = np.diag(reduced(search.evidence, search.nothing.scales, columns))[1:]
+                entries.append((name, place, i, float(change[first]), most[i], information[first]))
     found = []
-    for (name, place, i, unit_size, limit, _), own in zip(
-        entries, information.tolist(), strict=True
-    ):
+    for name, place, i, unit_size, limit, own in entries:
         hypotheses = len(search.count) * search.count[name]
         odds = float(np.log(hypotheses / search.rules.cause.probability))
         size = (np.sqrt(2 * odds) + OFTEN) / np.sqrt(max(own, LEAST)) * unit_size

@@ -62,13 +62,23 @@ class Cause:
         return np.asarray(phi @ self.columns + (0.0 if self.linear else self.constant))
 
 
-def bounded(
+def within_bounds(
     matrix: np.ndarray,
     right: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Least squares within bounds, and the covariance without them."""
+) -> np.ndarray:
+    """Least squares within bounds.
+
+    Args:
+        matrix: of the normal equations `(k, k)`.
+        right: of them `(k,)`.
+        low: bounds `(k,)`.
+        high: the same.
+
+    Returns:
+        Where x matrix x / 2 - right x is least with low < x < high `(k,)`.
+    """
     phi, free = np.where(low >= high, low, 0.0), low < high
     if free.any():
         inner, rest = (
@@ -79,7 +89,7 @@ def bounded(
         if (found < low[free]).any() or (found > high[free]).any():
             found = _within(inner, rest, low[free], high[free])
         phi[free] = found
-    return phi, np.linalg.inv(matrix) if len(right) else np.zeros((0, 0))
+    return phi
 
 
 def _within(matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:

@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import erfcx
 
-from hyperleg_design.gap.inference.fit import bounded
+from hyperleg_design.gap.inference.crossing import Crossing
+from hyperleg_design.gap.inference.fit import within_bounds
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.channel import Scales
     from hyperleg_design.gap.inference.endogenous import Factor, Shrinking
     from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.rules import InferenceRules
+    from hyperleg_design.gap.inference.scales import Scales
 
 Name = tuple[str, str, bool]
 """Effect, location, and whether it acts in all logs, references included."""
@@ -119,6 +120,18 @@ class Stack:
     """Parameters that scale the torque which the residual is made of, and the missing term of its
     density, see `endogenous`."""
 
+    @property
+    def constant_last(self) -> bool:
+        """Whether `rows` ends with a constant trace."""
+        return bool(self.constant.any())
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Columns, and the constant trace where there is one `(k, S)` or `(k + 1, S)`."""
+        if not self.constant_last:
+            return self.columns
+        return np.concatenate([self.columns, self.constant[None]])
+
     @classmethod
     def of(cls, causes: Sequence[Cause], weight: np.ndarray) -> Stack:
         """Of causes that are linearised."""
@@ -153,14 +166,7 @@ def reduced(evidence: Evidence, scales: Sequence[Scales], columns: np.ndarray) -
     Returns:
         `(m + 1, m + 1)`, the residual first.
     """
-    found = np.zeros((len(columns) + 1, len(columns) + 1))
-    for channel, own in zip(evidence.channels, scales, strict=True):
-        shown = np.flatnonzero(np.any(columns[:, channel.samples] != 0, 1))
-        products = channel.stacked(*channel.crossed(columns[shown])) if len(shown) else None
-        left = channel.reduced(own, channel.summed(own.noise, products))
-        place = np.r_[0, 1 + shown]
-        found[np.ix_(place, place)] += left
-    return found
+    return Crossing.of(evidence.channels, columns).reduced(evidence.channels, scales)
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,12 +228,13 @@ def _solve(
             slope, bend = factor.slopes(float(theta[place]))
             precision[place, place] += bend
             target[place] += slope + bend * theta[place]
-        theta, covariance = bounded(precision, target, low, high)
+        theta = within_bounds(precision, target, low, high)
     occam = -0.5 * float(np.sum((theta / deviation) ** 2))
     occam -= float(np.sum(np.log(deviation))) + 0.5 * float(np.linalg.slogdet(precision)[1])
     occam += sum(factor.log(float(theta[place])) for place, factor in factors)
     occam += _beyond(theta, precision, target, low, high, shape)
     gain = float(right @ theta - 0.5 * theta @ normal @ theta)
+    covariance = np.linalg.inv(precision) if len(theta) else np.zeros((0, 0))
     return Solution(theta, covariance, gain + occam, occam)
 
 

@@ -8,7 +8,9 @@ all but the last without mass.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +21,8 @@ from hyperleg_design.errors import InputError
 if TYPE_CHECKING:
     import mujoco
     import pinocchio
+
+    from hyperleg_design.gap.model.recursion import Joint
 
 BASE = -1
 """Place of the base (or, of a fixed one, the world) among the joints."""
@@ -75,6 +79,26 @@ class Mechanism:
             found.append(joint)
             joint = int(self.parent[joint])
         return found[::-1]
+
+    def limbs(self, joints: Iterable[int]) -> list[int]:
+        """List all joints of the limbs that hold some joints: no other joint feels their motion
+        where the base's is given.
+
+        Args:
+            joints: indices of joints.
+
+        Returns:
+            Indices, parents before children.
+        """
+        roots = {self.chain(j)[0] for j in joints}
+        return [j for j in range(self.count) if self.chain(j)[0] in roots]
+
+    @cached_property
+    def fixed_parts(self) -> tuple[Joint, ...]:
+        """What of each joint no motion changes, see `recursion`."""
+        from hyperleg_design.gap.model.recursion import fixed_parts
+
+        return fixed_parts(self)
 
     def beyond(self, name: str) -> int:
         """Count the joints in a row that a link carries at most: 0 at the ends of a robot, 1 of

@@ -1,4 +1,4 @@
-"""Steps of the recursive Newton-Euler algorithm over a kinematic tree, for many ticks at once."""
+"""Steps of the recursive Newton-Euler algorithm from one link to the next, for many ticks at once."""
 
 from __future__ import annotations
 
@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from hyperleg_design.gap.model.mechanism import BASE
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.base import BaseMotion
@@ -43,45 +41,6 @@ def base_start(
     if base is None or not subject.floating:
         return np.zeros((3, 1)), np.zeros((3, 1)), -np.asarray(subject.gravity, float)[:, None]
     return base.angular_velocity.T, base.angular_acceleration.T, base.specific_force.T
-
-
-def newton_euler(
-    tree: Mechanism, q: np.ndarray, v: np.ndarray, a: np.ndarray, root: Motion
-) -> tuple[np.ndarray, np.ndarray]:
-    """Run the recursion from the base to the last link and back.
-
-    Args:
-        tree: the links.
-        q: positions `(n, t)` [rad, m].
-        v: velocities `(n, t)`.
-        a: accelerations `(n, t)`.
-        root: motion of the base.
-
-    Returns:
-        Torques `(t, n)` [Nm, N], and the wrench on the base `(t, 6)` [N, Nm].
-    """
-    count, ticks = q.shape
-    sin, cos = np.sin(q), np.cos(q)
-    motions: list[Motion] = []
-    forces, moments = [], []
-    for j in range(count):
-        above = root if tree.parent[j] == BASE else motions[tree.parent[j]]
-        motions.append(child_motion(tree, j, above, q[j], v[j], a[j], sin[j], cos[j]))
-        force, moment = _inertial_wrench(tree.inertial[j], motions[j])
-        forces.append(force)
-        moments.append(moment)
-    force, moment = _inertial_wrench(tree.base_inertial, root)
-    torque = np.empty((ticks, count))
-    for j in range(count - 1, -1, -1):
-        torque[:, j] = moments[j][2] if tree.hinge[j] else forces[j][2]
-        up_force, up_moment = to_parent(tree, j, forces[j], moments[j], q[j], sin[j], cos[j])
-        above_index = int(tree.parent[j])
-        if above_index == BASE:
-            force, moment = force + up_force, moment + up_moment
-        else:
-            forces[above_index] = forces[above_index] + up_force
-            moments[above_index] = moments[above_index] + up_moment
-    return torque, np.concatenate([force, moment]).T
 
 
 def child_motion(
@@ -132,25 +91,6 @@ def child_motion(
     linear[1] -= 2 * spin[0] * v
     linear[2] += a
     return Motion(spin, angular, linear)
-
-
-def _inertial_wrench(parameters: np.ndarray, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Force and moment about the origin that a rigid body's motion needs, `(3, t)` each."""
-    if not parameters.any():
-        return np.zeros_like(motion.linear), np.zeros_like(motion.linear)
-    mass, first, xx, xy, yy, xz, yz, zz = parameters[0], parameters[1:4, None], *parameters[4:]
-    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    force = (
-        mass * motion.linear
-        + cross(motion.angular, first)
-        + cross(motion.spin, cross(motion.spin, first))
-    )
-    moment = (
-        inertia @ motion.angular
-        + cross(motion.spin, inertia @ motion.spin)
-        + cross(first, motion.linear)
-    )
-    return force, moment
 
 
 def to_parent(

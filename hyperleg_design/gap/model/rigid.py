@@ -11,16 +11,13 @@ not depend on posture here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.model.newton_euler import (
-    Motion,
-    base_start,
-    newton_euler,
-)
+from hyperleg_design.gap.model.newton_euler import base_start
+from hyperleg_design.gap.model.recursion import torques
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.base import BaseMotion
@@ -38,6 +35,7 @@ def inverse_dynamics(
     base: BaseMotion | None = None,
     *,
     rotors: bool = True,
+    joints: Sequence[int] | None = None,
 ) -> np.ndarray:
     """Joint torques that a motion needs, without friction, springs or contact [Nm].
 
@@ -48,11 +46,12 @@ def inverse_dynamics(
         acceleration: the same [rad/s^2].
         base: of a floating base, of t ticks; at rest by default.
         rotors: add the rotors' inertia.
+        joints: whose torques are computed, whole limbs as of `Mechanism.limbs`; all by default.
 
     Returns:
-        `(..., t, n)`.
+        `(..., t, n)`, or `(..., t, len(joints))`.
     """
-    return _dynamics(subject, position, velocity, acceleration, base, rotors)[0]
+    return _dynamics(subject, position, velocity, acceleration, base, rotors, joints)[0]
 
 
 def accelerating(
@@ -115,29 +114,30 @@ def _dynamics(
     acceleration: np.ndarray,
     base: BaseMotion | None,
     rotors: bool,
+    joints: Sequence[int] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     tree = subject.tree
+    own = range(tree.count) if joints is None else joints
     position, velocity, acceleration = np.broadcast_arrays(position, velocity, acceleration)
     shape = position.shape
     q, v, a = (
         x.reshape(-1, shape[-1]).T for x in (position - tree.reference, velocity, acceleration)
     )
     ticks, rows = q.shape[1], shape[-2] if len(shape) > 1 else 1
-    torque, wrench = np.empty((ticks, tree.count)), np.empty((ticks, 6))
-    start = base_start(subject, base, rows)
+    torque, wrench = np.empty((ticks, len(own))), np.empty((ticks, 6))
+    start = np.concatenate(base_start(subject, base, rows))
     for first in range(0, ticks, BLOCK):
         part = slice(first, min(first + BLOCK, ticks))
         index = np.arange(part.start, part.stop) % rows
-        root = Motion(
-            *(x[:, index] if x.shape[1] > 1 else np.broadcast_to(x, (3, len(index))) for x in start)
-        )
-        torque[part], wrench[part] = newton_euler(
+        root = start[:, index] if start.shape[1] > 1 else np.tile(start, len(index))
+        torque[part], wrench[part] = torques(
             tree,
             np.ascontiguousarray(q[:, part]),
             np.ascontiguousarray(v[:, part]),
             np.ascontiguousarray(a[:, part]),
             root,
+            own,
         )
     if rotors:
-        torque += a.T @ subject.armature.T
-    return torque.reshape(shape), wrench.reshape(*shape[:-1], 6)
+        torque += a.T @ subject.armature[own].T
+    return torque.reshape(*shape[:-1], len(own)), wrench.reshape(*shape[:-1], 6)

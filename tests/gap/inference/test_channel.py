@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from hyperleg_design.gap.inference.channel import Channel, Scales
+from hyperleg_design.gap.inference.channel import Channel
 from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.scale_fit import fitted as fit_scales
+from hyperleg_design.gap.inference.scales import Scales
 
 RULES = InferenceRules()
 
@@ -78,9 +80,7 @@ def test_reduced_products_are_those_in_the_metric_of_the_covariance():
     rng = np.random.default_rng(5)
     channel, white = made(rng)
     columns = rng.standard_normal((3, len(channel.samples)))
-    left = channel.reduced(
-        SCALES, channel.summed(SCALES.noise, channel.stacked(*channel.crossed(columns)))
-    )
+    left = channel.reduced(SCALES, *channel.crossed(columns))
     total = sum(one.shape[1] for one in white)
     whole = np.zeros((4, total))
     whole[0] = np.concatenate([one[-1] for one in white])
@@ -128,11 +128,36 @@ def test_taking_a_trace_off_is_the_same_as_another_residual():
     np.testing.assert_allclose(channel.without(trace).products, changed, atol=1e-9)
 
 
+def test_what_is_left_without_columns_is_the_residual_without_their_trace():
+    rng = np.random.default_rng(12)
+    channel, _ = made(rng)
+    columns, theta = rng.standard_normal((3, len(channel.samples))), rng.standard_normal(3)
+    left = channel.left(*channel.crossed(columns), theta)
+    expected = channel.without(theta @ columns).whole_residual
+    np.testing.assert_allclose(left.cross, expected.cross, atol=1e-9)
+    np.testing.assert_allclose(left.square, expected.square, rtol=1e-9)
+
+
+def test_products_between_columns_are_summed_over_the_noise():
+    rng = np.random.default_rng(14)
+    channel, _ = made(rng)
+    some = rng.standard_normal((2, len(channel.samples)))
+    others = [rng.standard_normal((n, len(channel.samples))) for n in (1, 3)]
+    noise = np.concatenate(
+        [
+            np.full(len(place), SCALES.noise[band])
+            for place, band in zip(channel.places, channel.band, strict=True)
+        ]
+    )
+    expected = (some / noise) @ np.concatenate(others).T
+    np.testing.assert_allclose(channel.between(SCALES.noise, some, others), expected, atol=1e-9)
+
+
 def test_fitting_scales_never_lowers_the_posterior():
     rng = np.random.default_rng(3)
     channel, _ = made(rng, count=120)
     start = channel.start(RULES)
-    fitted = channel.fitted(start, RULES)
+    fitted = fit_scales(channel, start, RULES)
     assert channel.log_posterior(fitted, RULES) >= channel.log_posterior(start, RULES)
 
 
@@ -140,7 +165,7 @@ def test_noise_is_found_where_nothing_else_acts():
     rng = np.random.default_rng(21)
     channel, _ = made(rng, sessions=1, count=4000, k=2)
     quiet = replace(channel, products=channel.products * np.array([1.0, 9.0])[:, None, None])
-    fitted = quiet.fitted(quiet.start(RULES), RULES)
+    fitted = fit_scales(quiet, quiet.start(RULES), RULES)
     np.testing.assert_allclose(fitted.noise, [1.0, 9.0], rtol=0.1)
 
 
@@ -158,7 +183,7 @@ def test_a_change_under_test_alone_is_unlisted_and_one_in_all_sessions_is_not():
         own = replace(
             channel, whitened=tuple(changed), products=np.array([o @ o.T for o in changed])
         )
-        fitted = own.fitted(own.start(RULES), RULES)
+        fitted = fit_scales(own, own.start(RULES), RULES)
         assert (fitted.new > 0) is unlisted
 
 

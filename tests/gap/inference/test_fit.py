@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hyperleg_design.gap.inference.fit import bounded
+from hyperleg_design.gap.inference.fit import within_bounds
 
 
 @given(st.integers(1, 8), st.integers(0, 10**6))
@@ -16,7 +16,7 @@ def test_least_squares_within_bounds_are_the_least(count, seed):
     low = np.where(rng.random(count) < 0.2, -np.inf, -rng.random(count))
     high = np.where(rng.random(count) < 0.2, low, rng.random(count))
     high = np.where(np.isfinite(high), high, 0.0)
-    phi, _ = bounded(matrix, right, low, high)
+    phi = within_bounds(matrix, right, low, high)
     assert ((phi >= low) & (phi <= high)).all()
     slope, small = matrix @ phi - right, 1e-6 * (np.abs(matrix) @ np.abs(phi) + np.abs(right))
     assert (slope[phi > low] <= small[phi > low]).all(), "what could be less would make it better"

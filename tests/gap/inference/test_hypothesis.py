@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, norm
 
-from hyperleg_design.gap.inference.channel import Scales
 from hyperleg_design.gap.inference.hypothesis import reduced, shifted, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.scales import Scales
 from tests.gap.inference.test_channel import dense, made
 
 RULES = InferenceRules()

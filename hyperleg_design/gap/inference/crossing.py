@@ -1,0 +1,75 @@
+"""Sums of products of columns with all channels, which no scale and no size of a cause changes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.channel import Channel, Residual
+    from hyperleg_design.gap.inference.scales import Scales
+
+
+@dataclass(frozen=True, eq=False)
+class Crossing:
+    """Products of m columns with each channel and among themselves."""
+
+    count: int
+    """m."""
+    shown: tuple[np.ndarray, ...]
+    """Of each channel, the columns that are anything there `(some,)`."""
+    cross: tuple[np.ndarray, ...]
+    """With discrepancy columns and residual, by cell `(cells, k + 1, some)`; see
+    `Channel.crossed`."""
+    own: tuple[np.ndarray, ...]
+    """Among themselves, by cell `(cells, some, some)`."""
+
+    @classmethod
+    def of(cls, channels: Sequence[Channel], columns: np.ndarray) -> Crossing:
+        """Of columns weighted as the residual `(m, S)`."""
+        shown = [np.flatnonzero(one.shows(columns)) for one in channels]
+        made = [
+            one.crossed(columns[some] if len(some) < len(columns) else columns)
+            if len(some)
+            else (np.zeros((0, 0, 0)), np.zeros((0, 0, 0)))
+            for one, some in zip(channels, shown, strict=True)
+        ]
+        return cls(len(columns), tuple(shown), tuple(c for c, _ in made), tuple(o for _, o in made))
+
+    def left(self, channels: Sequence[Channel], theta: np.ndarray) -> list[Residual]:
+        """What is left of each channel's residual without a trace over these columns.
+
+        Args:
+            channels: of which these are the products.
+            theta: the trace over the columns `(m,)`.
+        """
+        return [
+            one.left(cross, own, theta[some]) if len(some) else one.whole_residual
+            for one, some, cross, own in zip(
+                channels, self.shown, self.cross, self.own, strict=True
+            )
+        ]
+
+    def reduced(self, channels: Sequence[Channel], scales: Sequence[Scales]) -> np.ndarray:
+        """Products of residual and columns in the metric of the marginal covariance, over all
+        channels.
+
+        Args:
+            channels: of which these are the products.
+            scales: hyperparameters by channel.
+
+        Returns:
+            `(m + 1, m + 1)`, the residual first.
+        """
+        found = np.zeros((self.count + 1, self.count + 1))
+        for one, its, some, cross, own in zip(
+            channels, scales, self.shown, self.cross, self.own, strict=True
+        ):
+            place = np.r_[0, 1 + some]
+            found[np.ix_(place, place)] += (
+                one.reduced(its, cross, own) if len(some) else one.reduced(its)
+            )
+        return found

@@ -1,0 +1,206 @@
+"""The fit of a set of causes: their sizes, and the scales of the channels that they show in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.cause_prior import log_prior
+from hyperleg_design.gap.inference.crossing import Crossing
+from hyperleg_design.gap.inference.hypothesis import (
+    Candidate,
+    Hypothesis,
+    Name,
+    Solution,
+    Stack,
+    shifted,
+    solve,
+)
+from hyperleg_design.gap.inference.scale_fit import STEPS, fitted
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.assembly import Evidence
+    from hyperleg_design.gap.inference.fit import Cause
+    from hyperleg_design.gap.inference.promises import Promise
+    from hyperleg_design.gap.inference.rules import InferenceRules
+    from hyperleg_design.gap.inference.scales import Scales
+
+CLOSE = 0.02
+"""Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""
+WHOLE_STEPS = 3
+"""Gauss-Newton steps before they are halved."""
+EASED = 2.0
+"""Noise under test over a healthy robot's, in variance, at most where a fit begins [-]."""
+
+
+class HypothesisFit:
+    """Fits of hypotheses to one body of evidence.
+
+    Args:
+        evidence: channels.
+        rules: of the inference.
+        traces: of each effect at each place.
+        count: places of each effect that is tried.
+        threads: that share the work; they change no result.
+    """
+
+    def __init__(
+        self,
+        evidence: Evidence,
+        rules: InferenceRules,
+        traces: Mapping[Name, screen.Traces],
+        count: Mapping[str, int],
+        threads: int = 1,
+    ) -> None:
+        self.evidence, self.rules, self.threads = evidence, rules, threads
+        self.traces, self.count = traces, count
+
+    @cached_property
+    def nothing(self) -> Hypothesis:
+        """No cause: noise and discrepancy alone."""
+        scales = tuple(
+            screen.spread(
+                lambda one: fitted(one, one.start(self.rules), self.rules),
+                self.evidence.channels,
+                self.threads,
+            )
+        )
+        prior = float(np.log(1 - self.rules.cause.probability))
+        return Hypothesis((), np.zeros(0), np.zeros((0, 0)), scales, 0.0, prior)
+
+    @cached_property
+    def ground(self) -> np.ndarray:
+        """Log posterior of each channel without any cause `(channels,)` [nat]."""
+        return np.array(
+            [
+                channel.log_posterior(scales, self.rules)
+                for channel, scales in zip(self.evidence.channels, self.nothing.scales, strict=True)
+            ]
+        )
+
+    def candidate(self, promise: Promise, current: Hypothesis) -> Candidate | None:
+        """An effect linearised where it fits best, by Gauss-Newton steps at fixed scales."""
+        traced = self.traces[promise.name]
+        if isinstance(traced, list):
+            return Candidate(promise.effect, promise.location, (traced[promise.variant],))
+        assert not isinstance(traced, screen.NotJudged)
+        effect = EFFECTS[promise.effect]
+        subject = self.evidence.signals[0].subject
+        low, high = effect.bounds(promise.location, subject)
+        values = np.array(traced[0][promise.variant], float)
+        scales = eased(self.evidence, current.scales, self.rules)
+        best: tuple[float, Cause] | None = None
+        for step in range(self.rules.search.steps):
+            cause = screen.linearise(
+                self.evidence.samples if promise.standing else self.evidence.tests,
+                effect,
+                promise.location,
+                values,
+            )
+            if cause is None:
+                break
+            cause = self.evidence.acting(cause, promise.standing)
+            stack = Stack.of((*current.causes, cause), self.evidence.weight)
+            crossing = Crossing.of(self.evidence.channels, stack.rows)
+            solution = self.at_scales(stack, crossing, scales)
+            if best is None or solution.gain > best[0]:
+                best = solution.gain, cause
+            wanted = cause.nulls + solution.theta[-len(cause.nulls) :] * cause.usual
+            move = np.clip(wanted, low, high) - values
+            if np.max(np.abs(move) / cause.usual) < CLOSE:
+                break
+            values = values + move * (1.0 if step < WHOLE_STEPS else 0.5)
+        return None if best is None else Candidate(promise.effect, promise.location, (best[1],))
+
+    def at_scales(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> Solution:
+        """Causes at fixed scales; the gain is over no cause at these.
+
+        Args:
+            stack: columns of the causes.
+            crossing: of its rows with the channels.
+            scales: by channel.
+        """
+        products = crossing.reduced(self.evidence.channels, scales)
+        own = shifted(products, stack.constant_last)
+        solution = solve(own, stack.low, stack.high, stack.shape, self.rules, stack.factors)
+        change = -0.5 * float(own[0, 0] - products[0, 0])
+        return replace(solution, gain=solution.gain + change)
+
+    def fit(self, candidates: Sequence[Candidate], scales: Sequence[Scales]) -> Hypothesis:
+        """Fit causes and the scales of the channels that they show in, in turn: from scales as they
+        are, and from ones whose noise does not hide what the causes explain.
+
+        Args:
+            candidates: of the hypothesis.
+            scales: to begin with.
+        """
+        stack = Stack.of([c for one in candidates for c in one.causes], self.evidence.weight)
+        crossing = Crossing.of(self.evidence.channels, stack.rows)
+        found = [self._fit(candidates, stack, crossing, scales)]
+        clear = eased(self.evidence, scales, self.rules)
+        if any(np.any(one.noise < own.noise) for one, own in zip(clear, scales, strict=True)):
+            found.append(self._fit(candidates, stack, crossing, clear))
+        return max(found, key=lambda one: one.score)
+
+    def _fit(
+        self,
+        candidates: Sequence[Candidate],
+        stack: Stack,
+        crossing: Crossing,
+        scales: Sequence[Scales],
+    ) -> Hypothesis:
+        """As `fit`, from the given scales."""
+        channels, rules = self.evidence.channels, self.rules.search
+        found = list(scales)
+        solution = self.at_scales(stack, crossing, found)
+        for turn in range(rules.rounds):
+            left = crossing.left(channels, _sizes(stack, solution))
+            sweeps, steps = (2, STEPS) if turn == 0 else (1, STEPS[-1:])
+            found = [
+                fitted(channel, own, self.rules, rest, sweeps, steps) if len(seen) else own
+                for channel, own, rest, seen in zip(
+                    channels, found, left, crossing.shown, strict=True
+                )
+            ]
+            before, solution = solution.theta, self.at_scales(stack, crossing, found)
+            deviation = np.sqrt(np.maximum(np.diag(solution.covariance), 1e-300))
+            if np.all(np.abs(solution.theta - before) < rules.settled * deviation):
+                break
+        left = crossing.left(channels, _sizes(stack, solution))
+        likelihood = solution.occam + sum(
+            channel.log_posterior(own, self.rules, rest) - ground
+            for channel, own, rest, ground in zip(channels, found, left, self.ground, strict=True)
+        )
+        hypothesis = Hypothesis(
+            tuple(candidates),
+            solution.theta,
+            solution.covariance,
+            tuple(found),
+            float(likelihood),
+            0.0,
+        )
+        prior = log_prior(hypothesis, self.evidence, self.rules, self.count)
+        return replace(hypothesis, log_prior=prior)
+
+
+def _sizes(stack: Stack, solution: Solution) -> np.ndarray:
+    """Sizes of all rows of a stack: those of the causes, and 1 of the constant trace."""
+    return np.append(solution.theta, 1.0) if stack.constant_last else solution.theta
+
+
+def eased(
+    evidence: Evidence, scales: Sequence[Scales], rules: InferenceRules
+) -> tuple[Scales, ...]:
+    """Scales whose noise under test is at most `EASED` times that of a healthy robot."""
+    found = []
+    for channel, one in zip(evidence.channels, scales, strict=True):
+        noise, place = one.noise.copy(), channel.bands_tested
+        noise[place] = np.minimum(noise[place], EASED * channel.usual_noise(one.noise, rules))
+        found.append(replace(one, noise=noise))
+    return tuple(found)

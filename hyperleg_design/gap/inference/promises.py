@@ -1,0 +1,219 @@
+"""What every effect at every place would gain beside a hypothesis, at fixed scales."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.crossing import Crossing
+from hyperleg_design.gap.inference.hypothesis import Name, Solution, Stack, solve
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.assembly import Evidence
+    from hyperleg_design.gap.inference.fit import Cause
+    from hyperleg_design.gap.inference.rules import InferenceRules
+    from hyperleg_design.gap.inference.scales import Scales
+
+LARGEST = 10.0
+"""Size of a start's trace that is tried, over the start's own [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Promise:
+    """An effect at a place and what it gains at fixed scales, by its columns or by one start."""
+
+    effect: str
+    location: str
+    standing: bool
+    variant: int
+    gain: float
+    """[nat]"""
+
+    @property
+    def name(self) -> Name:
+        """Effect, location, and whether it acts in all logs."""
+        return self.effect, self.location, self.standing
+
+
+@dataclass(frozen=True, eq=False)
+class _Beside:
+    """A hypothesis beside which effects are tried, at its scales."""
+
+    stack: Stack | None
+    crossing: Crossing | None
+    scales: tuple[Scales, ...]
+    products: np.ndarray
+    """Of the residual, the columns, and the constant trace where there is one."""
+    twice: np.ndarray
+    """Columns and constant trace, weighted twice as the residual `(k, S)`."""
+    taken: tuple[np.ndarray, ...]
+    """Of residual, columns and constant trace by channel, see `Channel.taken`."""
+    gain: float
+    """Of the hypothesis alone [nat]."""
+
+
+class Promises:
+    """Gains of all effects at all places on one body of evidence.
+
+    Args:
+        evidence: channels.
+        rules: of the inference.
+        traces: of each effect at each place.
+        threads: that share the work; they change no result.
+    """
+
+    def __init__(
+        self,
+        evidence: Evidence,
+        rules: InferenceRules,
+        traces: Mapping[Name, screen.Traces],
+        threads: int = 1,
+    ) -> None:
+        self.evidence, self.rules, self.threads = evidence, rules, threads
+        self.traces = traces
+        self._crossings: dict[Name, Crossing] = {}
+
+    def options(self, name: Name) -> tuple[list[Cause | None], list[np.ndarray]]:
+        """Variants or starts of an effect at a place, none where the logs do not show it.
+
+        Returns:
+            Causes, None for starts, and their columns, unweighted `(k, S)` each, or shorter where
+            they end with the logs under test.
+        """
+        traced = self.traces[name]
+        if isinstance(traced, screen.NotJudged):
+            return [], []
+        if isinstance(traced, list):
+            return list(traced), [one.columns for one in traced]
+        return [None] * len(traced[1]), list(traced[1][:, None])
+
+    def crossing(self, name: Name) -> Crossing:
+        """Products of the columns of all options of an effect at a place, one after the other."""
+        if name not in self._crossings:
+            weight = self.evidence.weight
+            weighted = [
+                np.pad(one * weight[: one.shape[1]], ((0, 0), (0, len(weight) - one.shape[1])))
+                for one in self.options(name)[1]
+            ]
+            self._crossings[name] = Crossing.of(self.evidence.channels, np.concatenate(weighted))
+        return self._crossings[name]
+
+    def beside(self, causes: Sequence[Cause], scales: tuple[Scales, ...]) -> list[Promise]:
+        """Gain of every effect at every place beside some causes, best first.
+
+        Args:
+            causes: of a hypothesis.
+            scales: by channel.
+        """
+        base = self._base(causes, scales)
+        taken = {(c.effect, c.location, c.standing) for c in causes}
+        names = [
+            name
+            for name, traced in self.traces.items()
+            if name not in taken and not isinstance(traced, screen.NotJudged)
+        ]
+        found = screen.spread(lambda name: self._of(name, base), names, self.threads)
+        promises = [one for some in found for one in some]
+        return sorted(promises, key=lambda one: (-one.gain, *one.name, one.variant))
+
+    def information(self, name: Name, scales: tuple[Scales, ...]) -> np.ndarray:
+        """Fisher information of the size of each column of an effect at a place, at some scales.
+
+        Args:
+            name: of the effect and place.
+            scales: by channel.
+
+        Returns:
+            In the order of `crossing` `(m,)`.
+        """
+        return np.diag(self.crossing(name).reduced(self.evidence.channels, scales))[1:]
+
+    def _base(self, causes: Sequence[Cause], scales: tuple[Scales, ...]) -> _Beside:
+        channels, weight = self.evidence.channels, self.evidence.weight
+        stack = Stack.of(causes, weight) if causes else None
+        rows = np.zeros((0, len(weight))) if stack is None else stack.rows
+        crossing = Crossing.of(channels, rows)
+        taken = []
+        for channel, own, some, cross in zip(
+            channels, scales, crossing.shown, crossing.cross, strict=True
+        ):
+            whole = np.zeros((*channel.whole_residual.cross.shape, 1 + len(rows)))
+            whole[:, :, 0] = channel.whole_residual.cross
+            if len(some):
+                whole[:, :, 1 + some] = cross[:, :-1]
+            taken.append(channel.taken(own, whole))
+        products = crossing.reduced(channels, scales)
+        base = _Beside(stack, crossing, scales, products, rows * weight, tuple(taken), 0.0)
+        gain = self._solved(base, products, np.zeros(0, int), None).gain if causes else 0.0
+        return _Beside(stack, crossing, scales, products, rows * weight, tuple(taken), gain)
+
+    def _of(self, name: Name, base: _Beside) -> list[Promise]:
+        """All options of an effect at a place."""
+        crossing = self.crossing(name)
+        options, columns = self.options(name)
+        rows = len(base.products)
+        products = np.zeros((rows + crossing.count,) * 2)
+        products[:rows, :rows] = base.products
+        for channel, scales, known, some, cross, own in zip(
+            self.evidence.channels,
+            base.scales,
+            base.taken,
+            crossing.shown,
+            crossing.cross,
+            crossing.own,
+            strict=True,
+        ):
+            if not len(some):
+                continue
+            weight = 1 / scales.noise[channel.band]
+            mine = channel.taken(scales, cross[:, :-1])
+            beside = -known.T @ mine
+            beside[0] += weight @ cross[:, -1]
+            if rows > 1:
+                beside[1:] += channel.between(scales.noise, base.twice, columns)[:, some]
+            at = rows + some
+            products[:rows, at] += beside
+            products[np.ix_(at, at)] += np.tensordot(weight, own, 1) - mine.T @ mine
+        products[rows:, :rows] = products[:rows, rows:].T
+        found, at = [], rows
+        for variant, (cause, own_columns) in enumerate(zip(options, columns, strict=True)):
+            place = np.arange(at, at + len(own_columns))
+            gain = self._solved(base, products, place, cause).gain - base.gain
+            found.append(Promise(*name, variant, gain))
+            at += len(own_columns)
+        return found
+
+    def _solved(
+        self, base: _Beside, products: np.ndarray, place: np.ndarray, cause: Cause | None
+    ) -> Solution:
+        """One option's columns beside those of the hypothesis.
+
+        Args:
+            base: the hypothesis.
+            products: of the residual, its rows, and the option's columns.
+            place: of these columns.
+            cause: of the option; None for a start.
+        """
+        stack, known = base.stack, 0 if base.stack is None else len(base.stack.columns)
+        some = np.r_[0 : 1 + known, place]
+        own = products[np.ix_(some, some)]
+        if stack is not None and stack.constant_last:
+            constant = products[1 + known]
+            own[0] -= constant[some]
+            own[:, 0] -= constant[some]
+            own[0, 0] += constant[1 + known]
+        stacks = [] if stack is None else [(stack.low, stack.high, stack.shape)]
+        factors = [] if stack is None else list(stack.factors)
+        if cause is not None:
+            low, high = ((end - cause.nulls) / cause.usual for end in (cause.low, cause.high))
+            stacks.append((low, high, cause.shape))
+            if cause.factor is not None:
+                factors.append((known + cause.factor.parameter, cause.factor))
+        elif len(place):
+            stacks.append((np.zeros(1), np.full(1, LARGEST), np.zeros(1, bool)))
+        low, high, shape = (np.concatenate([s[i] for s in stacks]) for i in range(3))
+        return solve(own, low, high, shape.astype(bool), self.rules, factors)

@@ -1,0 +1,202 @@
+"""Torques of a kinematic tree by the recursive Newton-Euler algorithm, many ticks at once.
+
+The motion of a frame is one column of fifteen numbers: angular velocity w, angular acceleration,
+acceleration of the origin minus gravity, and the six products of the components of w. What the
+fixed arm and axes of a joint make of the motion of its parent is linear in these, and so is the
+wrench that the inertia of a body needs. So each of both is one product with a constant matrix; only
+the turn about the joint's own axis and the joint's own rates come on top.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.model.mechanism import BASE
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.model.mechanism import Mechanism
+
+SPIN, ANGULAR, LINEAR, PRODUCTS = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 15)
+"""Rows of a frame's motion: angular velocity, angular acceleration, acceleration of the origin
+minus gravity, and products of angular velocities (xx, yy, zz, xy, xz, yz)."""
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+"""Of components, in the order of `PRODUCTS`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """What of one joint no motion changes."""
+
+    down: np.ndarray
+    """Motion of the joint's frame before it turns, over that of its parent `(9, 15)`."""
+    along: np.ndarray
+    """Acceleration of a sliding joint's origin over its position and its parent's motion
+    `(3, 15)`."""
+    wrench: np.ndarray
+    """Force and moment that the carried mass needs, over the motion of its frame `(6, 15)`."""
+    up: np.ndarray
+    """Wrench on the parent over that on the joint's frame before it turned `(6, 6)`."""
+    lever: np.ndarray
+    """Moment on the parent over a sliding joint's position and the force on it `(3, 3)`."""
+
+
+def fixed_parts(tree: Mechanism) -> tuple[Joint, ...]:
+    """Compute the constant matrices of every joint of a tree.
+
+    Args:
+        tree: the robot.
+
+    Returns:
+        One entry a joint.
+    """
+    found = []
+    for rotation, offset, inertial in zip(tree.rotation, tree.offset, tree.inertial, strict=True):
+        into = rotation.T
+        down = np.zeros((9, 15))
+        down[SPIN, SPIN] = down[ANGULAR, ANGULAR] = into
+        down[LINEAR] = into @ _of_point(offset)
+        along = into @ _of_point(rotation[:, 2])
+        along[:, LINEAR] = 0.0
+        up = np.zeros((6, 6))
+        up[:3, :3] = up[3:, 3:] = rotation
+        up[3:, :3] = _skew(offset) @ rotation
+        lever = _skew(rotation[:, 2]) @ rotation
+        found.append(Joint(down, along, inertial_wrench(inertial), up, lever))
+    return tuple(found)
+
+
+def inertial_wrench(parameters: np.ndarray) -> np.ndarray:
+    """Compute the matrix of the wrench that a rigid body's motion needs.
+
+    Args:
+        parameters: inertial parameters, see `Mechanism.inertial`, `(10,)`.
+
+    Returns:
+        Force and moment about the origin over the motion of the body's frame `(6, 15)`.
+    """
+    mass, first, (xx, xy, yy, xz, yz, zz) = parameters[0], parameters[1:4], parameters[4:]
+    found = np.zeros((6, 15))
+    found[:3] = _of_point(first)
+    found[:3, LINEAR] *= mass
+    found[3:, ANGULAR] = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+    found[3:, LINEAR] = _skew(first)
+    # w x (inertia w)
+    found[3:, PRODUCTS] = [
+        [0.0, yz, -yz, xz, -xy, zz - yy],
+        [-xz, 0.0, xz, -yz, xx - zz, xy],
+        [xy, -xy, 0.0, yy - xx, yz, -xz],
+    ]
+    return found
+
+
+def _of_point(place: np.ndarray) -> np.ndarray:
+    """Acceleration of a point fixed in a frame over the frame's motion `(3, 15)`; times a mass in
+    `place`, the force.
+    """
+    x, y, z = place
+    found = np.zeros((3, 15))
+    found[:, ANGULAR] = -_skew(place)
+    found[:, LINEAR] = np.eye(3)
+    # w x (w x place)
+    found[:, PRODUCTS] = [
+        [0.0, -x, -x, y, z, 0.0],
+        [-y, 0.0, -y, x, 0.0, z],
+        [-z, -z, 0.0, 0.0, x, y],
+    ]
+    return found
+
+
+def _skew(vector: np.ndarray) -> np.ndarray:
+    """Matrix of the cross product of a vector with another."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def torques(
+    tree: Mechanism,
+    position: np.ndarray,
+    velocity: np.ndarray,
+    acceleration: np.ndarray,
+    root: np.ndarray,
+    joints: Sequence[int],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Compute the torques that a motion needs.
+
+    Args:
+        tree: the robot, of n joints.
+        position: of the joints, from the reference `(n, t)` [rad or m].
+        velocity: `(n, t)`.
+        acceleration: `(n, t)`.
+        root: angular velocity, angular acceleration, and acceleration minus gravity of the base
+            `(9, t)`.
+        joints: that are computed, parents before children, with all joints of their limbs.
+
+    Returns:
+        Torques of these joints `(t, len(joints))`, and the base's wrench, its own and that of these
+        joints `(t, 6)`.
+    """
+    ticks = position.shape[1]
+    sin, cos = np.sin(position), np.cos(position)
+    parts = tree.fixed_parts
+    base = _with_products(root)
+    motions: dict[int, np.ndarray] = {BASE: base}
+    wrenches = {BASE: inertial_wrench(tree.base_inertial) @ base}
+    for j in joints:
+        above, part = motions[int(tree.parent[j])], parts[j]
+        whole = np.empty((15, ticks))
+        motion = whole[:9]
+        np.matmul(part.down, above, out=motion)
+        v, a = velocity[j], acceleration[j]
+        if tree.hinge[j]:
+            _turn(motion.reshape(3, 3, ticks), sin[j], cos[j])
+            motion[3] += motion[1] * v
+            motion[4] -= motion[0] * v
+            motion[5] += a
+            motion[2] += v
+        else:
+            motion[LINEAR] += (part.along @ above) * position[j]
+            motion[6] += 2 * motion[1] * v
+            motion[7] -= 2 * motion[0] * v
+            motion[8] += a
+        _products(whole)
+        motions[j], wrenches[j] = whole, part.wrench @ whole
+    torque = np.empty((ticks, len(joints)))
+    for place in range(len(joints) - 1, -1, -1):
+        j = joints[place]
+        own, part = wrenches[j], parts[j]
+        torque[:, place] = own[5] if tree.hinge[j] else own[2]
+        if tree.hinge[j]:
+            _turn(own.reshape(2, 3, ticks), -sin[j], cos[j])
+            wrenches[int(tree.parent[j])] += part.up @ own
+        else:
+            up = part.up @ own
+            up[3:] += (part.lever @ own[:3]) * position[j]
+            wrenches[int(tree.parent[j])] += up
+    return torque, wrenches[BASE].T
+
+
+def _turn(vectors: np.ndarray, sin: np.ndarray, cos: np.ndarray) -> None:
+    """Turn vectors `(k, 3, t)` in place into a frame turned about z."""
+    x, y = vectors[:, 0], vectors[:, 1]
+    across = sin * x
+    x *= cos
+    x += sin * y
+    y *= cos
+    y -= across
+
+
+def _with_products(motion: np.ndarray) -> np.ndarray:
+    """A motion `(9, t)` with the products of its angular velocities `(15, t)`."""
+    whole = np.empty((15, motion.shape[1]))
+    whole[:9] = motion
+    _products(whole)
+    return whole
+
+
+def _products(whole: np.ndarray) -> None:
+    for row, (i, j) in enumerate(PAIRS, start=PRODUCTS.start):
+        np.multiply(whole[i], whole[j], out=whole[row])
