@@ -20,7 +20,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dtrtrs
 
 from hyperleg_design.gap.inference.scales import Scales, log_prior_of_scales
 from hyperleg_design.gap.inference.spectrum import Spectrum
@@ -311,11 +311,10 @@ class Channel:
         """
         spectrum, change = self.spectrum(scales.noise), self.change_scales(scales)
         turned, shrunk = spectrum.turned(self._summed(scales.noise, cross)), spectrum.shrunk(change)
-        shared = np.exp(scales.standing) * solve_triangular(
+        shared, _ = dtrtrs(
             spectrum.factor(change, scales.standing),
-            (spectrum.axes @ (shrunk[:, :, None] * turned)).sum(0),
-            lower=True,
-            check_finite=False,
+            np.exp(scales.standing) * (spectrum.axes @ (shrunk[:, :, None] * turned)).sum(0),
+            lower=1,
         )
         alone = (change[:, None] * np.sqrt(shrunk))[:, :, None] * turned
         return np.concatenate([alone.reshape(-1, cross.shape[-1]), shared])
@@ -411,7 +410,7 @@ class Likelihood:
         shrunk = self.spectrum.shrunk(change)
         factor = self.spectrum.factor(change, standing)
         cross = (self.spectrum.axes @ (shrunk * self.cross)[:, :, None]).sum(0)[:, 0]
-        taken = np.exp(standing) * solve_triangular(factor, cross, lower=True, check_finite=False)
+        taken, _ = dtrtrs(factor, np.exp(standing) * cross, lower=1)
         left = self.square - float(np.sum(change[:, None] ** 2 * shrunk * self.cross**2))
         left -= float(taken @ taken)
         determinant = 2 * float(np.log(np.diag(factor)).sum()) - float(np.log(shrunk).sum())

@@ -79,7 +79,11 @@ def within_bounds(
     Returns:
         Where x matrix x / 2 - right x is least with low < x < high `(k,)`.
     """
-    phi, free = np.where(low >= high, low, 0.0), low < high
+    free = low < high
+    if free.all():
+        phi = np.linalg.solve(matrix, right)
+        return phi if ((phi >= low) & (phi <= high)).all() else _within(matrix, right, low, high)
+    phi = np.where(free, 0.0, low)
     if free.any():
         inner, rest = (
             matrix[np.ix_(free, free)],
@@ -96,6 +100,8 @@ def _within(matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.nda
     """Where x matrix x / 2 - right x is least with low < x < high, all `(k,)`."""
     from scipy.optimize import lsq_linear
 
+    if len(right) == 1:
+        return np.clip(right / matrix[0], low, high)
     size = np.sqrt(np.diag(matrix))
     square, axes = np.linalg.eigh(matrix / np.outer(size, size))
     root = np.sqrt(np.maximum(square, SINGULAR))

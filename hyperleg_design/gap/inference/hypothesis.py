@@ -199,30 +199,38 @@ def solve(
         rules: of the inference.
         factors: as of `Stack`.
     """
+    # columns that are alike to rounding must not make the normal equations singular
+    normal = products[1:, 1:] * (1 + ALIKE * np.eye(len(low)))
     found = [
-        _solve(products, low, high, shape, rules, factors, first)
+        _solve(normal, products[1:, 0], low, high, shape, rules, factors, first)
         for first in (rules.cause.width, FREE)
     ]
-    return max(found, key=lambda one: one.gain)
+    theta, precision, gain, occam = max(found, key=lambda one: one[2])
+    covariance = np.linalg.inv(precision) if len(theta) else np.zeros((0, 0))
+    return Solution(theta, covariance, gain, occam)
 
 
 def _solve(
-    products: np.ndarray,
+    normal: np.ndarray,
+    right: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
     shape: np.ndarray,
     rules: InferenceRules,
     factors: Sequence[tuple[int, Factor | Shrinking]],
     first: float,
-) -> Solution:
-    """As `solve`, from a first prior deviation of the sizes."""
-    # columns that are alike to rounding must not make the normal equations singular
-    normal, right = products[1:, 1:] * (1 + ALIKE * np.eye(len(low))), products[1:, 0]
+) -> tuple[np.ndarray, np.ndarray, float, float]:
+    """As `solve`, from a first prior deviation of the sizes: theta, its precision, gain and
+    occam.
+    """
     theta = np.zeros(len(low))
     deviation = np.where(shape, 1.0, first)
     for turn in range(ROUNDS):
         if turn:
-            deviation = np.where(shape, 1.0, np.maximum(rules.cause.width, np.abs(theta)))
+            wider = np.where(shape, 1.0, np.maximum(rules.cause.width, np.abs(theta)))
+            if not factors and np.array_equal(wider, deviation):
+                break
+            deviation = wider
         precision, target = normal + np.diag(1 / deviation**2), right.copy()
         for place, factor in factors:
             slope, bend = factor.slopes(float(theta[place]))
@@ -234,8 +242,7 @@ def _solve(
     occam += sum(factor.log(float(theta[place])) for place, factor in factors)
     occam += _beyond(theta, precision, target, low, high, shape)
     gain = float(right @ theta - 0.5 * theta @ normal @ theta)
-    covariance = np.linalg.inv(precision) if len(theta) else np.zeros((0, 0))
-    return Solution(theta, covariance, gain + occam, occam)
+    return theta, precision, gain + occam, occam
 
 
 def _beyond(
@@ -253,6 +260,8 @@ def _beyond(
     slope = target - precision @ theta
     held = ~shape & (low < high)
     at_end = ((theta <= low) & (slope < 0)) | ((theta >= high) & (slope > 0))
+    if not (held & at_end).any():
+        return 0.0
     z = (np.abs(slope) / np.sqrt(np.diag(precision)))[held & at_end]
     return float(np.sum(np.log(0.5 * erfcx(z / np.sqrt(2)))))
 

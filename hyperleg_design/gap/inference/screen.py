@@ -87,17 +87,14 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         step = effect.steps(location, subject)
         tried = np.clip(np.where(values + step <= high, values + step, values - step), low, high)
         divide = (tried - values) / usual
-        settings = np.concatenate(
-            [np.broadcast_to(values, (k, k)) + np.diag(tried - values), values[None]]
-        )
-        found = samples.columns(lambda s: effect.trace(s, location, settings), k + 1)
+        some = np.flatnonzero(divide)
+        settings = np.concatenate([(values + np.diag(tried - values))[some], values[None]])
+        found = samples.columns(lambda s: effect.trace(s, location, settings), len(settings))
         if found is None:
             return None
-        some = divide != 0
-        columns = np.where(
-            some[:, None], (found[:k] - found[k]) / np.where(some, divide, 1.0)[:, None], 0.0
-        )
-        constant = found[k] - ((values - nulls) / usual) @ columns
+        columns = np.zeros((k, found.shape[1]))
+        columns[some] = (found[:-1] - found[-1]) / divide[some, None]
+        constant = found[-1] - ((values - nulls) / usual) @ columns
     declared = max(
         (
             float(kg[0])

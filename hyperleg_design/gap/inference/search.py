@@ -64,30 +64,31 @@ class Search:
         self.traces = traces_of(evidence, places, threads)
         self.fits = HypothesisFit(evidence, rules, self.traces, self.count, threads)
         self.promises = Promises(evidence, rules, self.traces, threads)
+        self.fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.nothing}
+        """By the names of their candidates."""
 
     def result(self) -> Result:
         """Search forward until no further cause is worth its prior, drop what is not, and put
         others in the place of each.
         """
-        fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.nothing}
         current = self.fits.nothing
         most = self.rules.search.causes * (1 + bool(self.evidence.references))
         fewer: list[Hypothesis] = []
         while True:
             best = current
             if len(current.candidates) < most:
-                best = self._better(self.further(current), current, fitted)
+                best = self._better(self.further(current), current)
             if best is current and len(current.candidates) > 1:
-                fewer = fewer or self._fewer(current, fitted)
+                fewer = fewer or self._fewer(current)
                 for one, rest in zip(current.candidates, fewer, strict=True):
-                    best = self._better(self.further(rest, one), best, fitted)
+                    best = self._better(self.further(rest, one), best)
             if best is current:
                 break
-            current, fewer = best, self._fewer(best, fitted)
+            current, fewer = best, self._fewer(best)
             best = max((current, *fewer[:-1]), key=lambda one: one.score)
             if best is not current:
                 current, fewer = best, []
-        ranked = sorted(fitted.values(), key=lambda one: (-one.score, one.names))
+        ranked = sorted(self.fitted.values(), key=lambda one: (-one.score, one.names))
         missing = tuple(
             traced
             for (*_, standing), traced in self.traces.items()
@@ -95,30 +96,25 @@ class Search:
         )
         return Result(tuple(ranked), missing)
 
-    def _better(
-        self,
-        found: Sequence[Hypothesis],
-        current: Hypothesis,
-        fitted: dict[tuple[Name, ...], Hypothesis],
-    ) -> Hypothesis:
+    def _better(self, found: Sequence[Hypothesis], current: Hypothesis) -> Hypothesis:
         """The best of some hypotheses, if better than a current one; all are kept."""
         for one in found:
-            before = fitted.get(one.names)
-            if before is None or one.score > before.score:
-                fitted[one.names] = one
+            self.fitted[one.names] = one
             current = max(current, one, key=lambda any_: any_.score)
         return current
 
-    def _fewer(
-        self, current: Hypothesis, fitted: dict[tuple[Name, ...], Hypothesis]
-    ) -> list[Hypothesis]:
+    def _fewer(self, current: Hypothesis) -> list[Hypothesis]:
         """A hypothesis without each of its candidates."""
         found = []
         for place in range(len(current.candidates)):
             rest = current.candidates[:place] + current.candidates[place + 1 :]
-            found.append(self.fits.fit(rest, current.scales) if rest else self.fits.nothing)
-            fitted.setdefault(found[-1].names, found[-1])
+            found.append(self._known(rest) or self.fits.fit(rest, current.scales))
+            self.fitted[found[-1].names] = found[-1]
         return found
+
+    def _known(self, candidates: Sequence[Candidate | Promise]) -> Hypothesis | None:
+        """The hypothesis of some candidates, where it was fitted before."""
+        return self.fitted.get(tuple(sorted(one.name for one in candidates)))
 
     def further(self, current: Hypothesis, instead: Candidate | None = None) -> list[Hypothesis]:
         """Fit the most promising causes beside those of a hypothesis.
@@ -149,7 +145,8 @@ class Search:
         )
         found = [one for one in fitted if one is not None]
         found += [
-            self.fits.fit((*current.candidates, one), current.scales)
+            self._known((*current.candidates, one))
+            or self.fits.fit((*current.candidates, one), current.scales)
             for gain, one in groups[: rules.groups]
             if gain > least
         ]
@@ -157,6 +154,9 @@ class Search:
 
     def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
         """The best fit of an effect at a place beside a hypothesis, from several starts."""
+        known = self._known((*current.candidates, promises[0]))
+        if known is not None:
+            return known
         linear = EFFECTS[promises[0].effect].linear
         found = [
             self.fits.fit((*current.candidates, one), current.scales)
