@@ -15,7 +15,7 @@ products of C, y and x are needed, so that the cost does not depend on the lengt
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
@@ -399,6 +399,8 @@ class Likelihood:
     """Of the residual with itself, all sessions."""
     spread: float
     """Log determinant of the noise."""
+    _parts: dict[bytes, tuple[np.ndarray, float]] = field(default_factory=dict)
+    """Of each change, what no standing scale alters."""
 
     def at(self, change: np.ndarray, standing: float) -> float:
         """Log-likelihood, up to what all models share [nat].
@@ -407,11 +409,14 @@ class Likelihood:
             change: scale of the change of each session `(sessions,)`.
             standing: logarithm of the scale of the standing discrepancy.
         """
-        shrunk = self.spectrum.shrunk(change)
+        key = change.tobytes()
+        if key not in self._parts:
+            shrunk = self.spectrum.shrunk(change)
+            cross = (self.spectrum.axes @ (shrunk * self.cross)[:, :, None]).sum(0)[:, 0]
+            alone = float(np.sum(change[:, None] ** 2 * shrunk * self.cross**2))
+            self._parts[key] = cross, self.square - alone - float(np.log(shrunk).sum())
+        cross, rest = self._parts[key]
         factor = self.spectrum.factor(change, standing)
-        cross = (self.spectrum.axes @ (shrunk * self.cross)[:, :, None]).sum(0)[:, 0]
         taken, _ = dtrtrs(factor, np.exp(standing) * cross, lower=1)
-        left = self.square - float(np.sum(change[:, None] ** 2 * shrunk * self.cross**2))
-        left -= float(taken @ taken)
-        determinant = 2 * float(np.log(np.diag(factor)).sum()) - float(np.log(shrunk).sum())
-        return -0.5 * (left + determinant + self.spread)
+        determinant = 2 * float(np.log(np.diag(factor)).sum())
+        return -0.5 * (rest - float(taken @ taken) + determinant + self.spread)

@@ -11,6 +11,8 @@ from hyperleg_design.gap.inference.endogenous import Factor, Shrinking
 SINGULAR = 1e-13
 """Least eigenvalue, over the diagonal, of normal equations that are solved within bounds: less is
 rounding."""
+TURNS = 8
+"""Guesses of which parameters lie at their bounds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +99,33 @@ def within_bounds(
 
 
 def _within(matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Where x matrix x / 2 - right x is least with low < x < high, all `(k,)`."""
-    from scipy.optimize import lsq_linear
-
+    """Where x matrix x / 2 - right x is least with low < x < high, all `(k,)`: by the parameters
+    that lie at their bounds, which a few solutions mostly tell, else by `lsq_linear`.
+    """
     if len(right) == 1:
         return np.clip(right / matrix[0], low, high)
+    below = above = np.zeros(len(right), bool)
+    for _ in range(TURNS):
+        held = below | above
+        found, free = np.where(below, low, high), ~held
+        if free.any():
+            rest = right[free] - matrix[np.ix_(free, held)] @ found[held]
+            found[free] = np.linalg.solve(matrix[np.ix_(free, free)], rest)
+        slope = right - matrix @ found
+        before = below, above
+        below = (free & (found < low)) | (below & (slope < 0))
+        above = (free & (found > high)) | (above & (slope > 0))
+        if (below == before[0]).all() and (above == before[1]).all():
+            return found
+    return _by_least_squares(matrix, right, low, high)
+
+
+def _by_least_squares(
+    matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """As `_within`."""
+    from scipy.optimize import lsq_linear
+
     size = np.sqrt(np.diag(matrix))
     square, axes = np.linalg.eigh(matrix / np.outer(size, size))
     root = np.sqrt(np.maximum(square, SINGULAR))
