@@ -144,7 +144,10 @@ class HypothesisFit:
         crossing = Crossing.of(self.evidence.channels, stack.rows)
         found = [self._fit(candidates, stack, crossing, scales)]
         clear = eased(self.evidence, scales, self.rules)
-        if any(np.any(one.noise < own.noise) for one, own in zip(clear, scales, strict=True)):
+        if any(
+            len(seen) and np.any(one.noise < own.noise)
+            for one, own, seen in zip(clear, scales, crossing.shown, strict=True)
+        ):
             found.append(self._fit(candidates, stack, crossing, clear))
         return max(found, key=lambda one: one.score)
 

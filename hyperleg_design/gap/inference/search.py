@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.crossing import Crossing
@@ -19,7 +21,7 @@ from hyperleg_design.gap.inference.hypothesis import (
     Name,
     Stack,
 )
-from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit, eased
+from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, HypothesisFit, eased
 from hyperleg_design.gap.inference.promises import Promise, Promises
 
 if TYPE_CHECKING:
@@ -158,11 +160,12 @@ class Search:
         if known is not None:
             return known
         linear = EFFECTS[promises[0].effect].linear
-        found = [
-            self.fits.fit((*current.candidates, one), current.scales)
-            for promise in promises[: 1 if linear else None]
-            if (one := self.fits.candidate(promise, current)) is not None
-        ]
+        apart: list[Candidate] = []
+        for promise in promises[: 1 if linear else None]:
+            candidate = self.fits.candidate(promise, current)
+            if candidate and not any(_alike(candidate, other) for other in apart):
+                apart.append(candidate)
+        found = [self.fits.fit((*current.candidates, one), current.scales) for one in apart]
         return max(found, key=lambda one: one.score, default=None)
 
     def everywhere(
@@ -193,6 +196,14 @@ class Search:
         stack = Stack.of(causes, self.evidence.weight)
         crossing = Crossing.of(self.evidence.channels, stack.rows)
         return self.fits.at_scales(stack, crossing, scales).gain
+
+
+def _alike(one: Candidate, other: Candidate) -> bool:
+    """Whether an effect at a place is linearised at about the same values twice."""
+    return all(
+        bool(np.all(np.abs(a.values - b.values) < CLOSE * a.usual))
+        for a, b in zip(one.causes, other.causes, strict=True)
+    )
 
 
 def traces_of(
