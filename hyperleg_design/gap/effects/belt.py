@@ -254,17 +254,22 @@ def trace(
         limbs = subject.tree.limbs(np.flatnonzero(share).tolist())
         rates = moved, first_derivative(moved, signals.step), second_derivative(moved, signals.step)
         logged = signals.position, signals.velocity, signals.acceleration
-        own = np.stack(
-            [
-                x - np.multiply.outer(rate[rows], share)
-                for x, rate in zip(logged, rates, strict=True)
-            ]
+        position, velocity, acceleration = (
+            x - np.multiply.outer(rate[rows], share) for x, rate in zip(logged, rates, strict=True)
         )
-        beyond = rigid.inverse_dynamics(subject, *own, signals.base, rotors=False, joints=limbs)
+        beyond = rigid.inverse_dynamics(
+            subject,
+            position,
+            velocity,
+            acceleration,
+            signals.base,
+            rotors=False,
+            joints=limbs,
+        )
         beyond -= _rotorless(signals)[:, limbs]
-        found["motion"][np.ix_(rows, range(len(signals.time)), limbs)] += (
+        found["motion"][rows[:, None], :, np.array(limbs)] += (
             side[rows, None, None] * beyond
-        )
+        ).swapaxes(1, 2)
         if behind is not None and (rubbing := behind >= CHOSEN).any():
             found["motion"][rubbing] += _rubbed(signals, moved[rubbing], share)
     return found
