@@ -1,4 +1,4 @@
-"""Steps of the recursive Newton-Euler algorithm from one link to the next, for many ticks at once."""
+"""Steps of the recursive Newton-Euler algorithm over a kinematic tree, one joint at a time."""
 
 from __future__ import annotations
 
