@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import log_ndtr
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.prior_odds import prior_odds
@@ -71,5 +71,5 @@ def _like_usual(
         if not usual:
             return 0.0
         over = (abs(value - null) - usual) / max(factor * deviation[place], 1e-300)
-        odds.append(-float(norm.logcdf(over)))
+        odds.append(-float(log_ndtr(over)))
     return min(odds, default=0.0)

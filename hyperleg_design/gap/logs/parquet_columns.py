@@ -95,8 +95,11 @@ def parquet_columns(
 def _array(column: Any) -> np.ndarray:
     import pyarrow
 
-    if pyarrow.types.is_null(column.type):
+    if pyarrow.types.is_null(column.type) or not len(column):
         return np.full(len(column), np.nan)
-    return np.asarray(
-        column.cast(pyarrow.float64(), safe=False).to_numpy(zero_copy_only=False), float
-    )
+    values = column.cast(pyarrow.float64(), safe=False)
+    if values.null_count:
+        values = values.fill_null(np.nan)
+    # by its buffer, as `to_numpy` imports pandas, which takes longer than to read a log
+    start = values.offset * values.type.byte_width
+    return np.frombuffer(values.buffers()[1], float, len(values), start).copy()

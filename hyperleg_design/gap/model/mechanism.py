@@ -14,7 +14,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from hyperleg_design.errors import InputError
 
@@ -338,6 +337,8 @@ def quaternion_rotation(wxyz: np.ndarray) -> np.ndarray:
     Returns:
         `(..., 3, 3)`; NaN where a quaternion is unknown.
     """
+    from scipy.spatial.transform import Rotation
+
     q = np.asarray(wxyz, float)
     rows = q.reshape(-1, 4)
     known = np.isfinite(rows).all(1)

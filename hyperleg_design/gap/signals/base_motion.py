@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model.base import BaseMotion
@@ -203,6 +202,8 @@ def _integrated(
     """Orientation from angular velocity, drawn to the accelerometer's vertical while that feels
     little but gravity.
     """
+    from scipy.spatial.transform import Rotation
+
     strength = float(np.linalg.norm(gravity)) or 1.0
     up = -np.asarray(gravity) / strength
     start = np.nanmean(force[: max(len(force) // 200, 5)], 0)
@@ -223,6 +224,8 @@ def _integrated(
 
 def _turn_onto(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Shortest rotation that takes one unit vector to another."""
+    from scipy.spatial.transform import Rotation
+
     axis, cosine = np.cross(one, other), float(one @ other)
     sine = float(np.linalg.norm(axis))
     if sine < 1e-9:
