@@ -11,7 +11,7 @@ from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
 from hyperleg_design.gap.effects.ground_friction import ChangedGround, ground_trace
-from hyperleg_design.gap.signals import ground
+from hyperleg_design.gap.signals import nominal_ground
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
@@ -107,5 +107,5 @@ class GroundCompliance(Effect):
             What adds it to a simulation.
         """
         values = np.asarray(values, float)
-        bodies = ground.foot_bodies(subject, subject.feet.index(location))
+        bodies = nominal_ground.foot_bodies(subject, subject.feet.index(location))
         return ChangedGround(bodies, compliance=values[..., 0], damping=values[..., 1])

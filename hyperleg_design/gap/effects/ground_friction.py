@@ -11,7 +11,7 @@ import numpy as np
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
-from hyperleg_design.gap.signals import ground
+from hyperleg_design.gap.signals import ground, nominal_ground
 from hyperleg_design.simulation.alteration import Alteration
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ class GroundFriction(Effect):
             What adds it to a simulation.
         """
         return ChangedGround(
-            ground.foot_bodies(subject, subject.feet.index(location)),
+            nominal_ground.foot_bodies(subject, subject.feet.index(location)),
             friction=np.asarray(values, float)[..., 0],
         )
 
@@ -181,10 +181,10 @@ class ChangedGround(Alteration):
         )
         if friction == compliance == damping == 1.0:
             return
-        floors = ground.floor_geoms(model)
+        floors = nominal_ground.floor_geoms(model)
         top = int(model.geom_priority[floors].max()) if floors else 0
-        for geom in ground.foot_geoms(model, self.bodies):
-            mixed, solref, dimensions = ground.pair_settings(model, geom)
+        for geom in nominal_ground.foot_geoms(model, self.bodies):
+            mixed, solref, dimensions = nominal_ground.pair_settings(model, geom)
             if solref[0] > 0:
                 # k' falls by the compliance, b' by its root, so that the damping ratio stays unless
                 # scaled itself

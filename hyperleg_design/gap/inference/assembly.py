@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.inference import noise_model, nuisance
+from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
 from hyperleg_design.gap.inference.channel import Channel
 from hyperleg_design.gap.inference.discrepancy import MOTORS, load, shapes
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.samples import gather
-from hyperleg_design.gap.signals import filtering
+from hyperleg_design.gap.signals import filtering, resting
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.fit import Cause
@@ -202,7 +202,7 @@ def _set(
     calibrated: bool,
     tested: bool,
 ) -> _Set:
-    filtered_logs = [filtering.filtered_log(one, filtering.sticking(one)) for one in signals]
+    filtered_logs = [filtering.filtered_log(one, resting.sticking(one)) for one in signals]
     floors = [noise_model.expected(one, rules.noise) for one in filtered_logs]
     names = [one.log.metadata.session or f"\0{i}" for i, one in enumerate(signals)]
     order = list(dict.fromkeys(names))
@@ -210,7 +210,7 @@ def _set(
     samples = gather(filtered_logs, floors, sessions, rules.noise.information)
     columns = np.zeros((len(errors), len(samples.value)))
     for filtered, places in zip(filtered_logs, samples.where, strict=True):
-        for row, found in nuisance.columns(filtered, errors, calibrated).items():
+        for row, found in nuisance_traces.columns(filtered, errors, calibrated).items():
             columns[:, places[row]] = found
     return _Set(filtered_logs, samples, floors, columns, tested)
 

@@ -15,13 +15,14 @@ products of C, y and x are needed, so that the cost does not depend on the lengt
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg.lapack import dtrtrs
 
+from hyperleg_design.gap.inference.likelihood import Likelihood
 from hyperleg_design.gap.inference.scales import Scales, log_prior_of_scales
 from hyperleg_design.gap.inference.spectrum import Spectrum
 
@@ -386,37 +387,3 @@ class Channel:
         # with A = (I + c^2 O)^-1, the covariance is c^2 A + A shared A
         kept = (axes * shrunk[:, None, :]) @ axes.swapaxes(1, 2)
         return means, (change**2)[:, None, None] * kept + kept @ shared @ kept
-
-
-@dataclass(frozen=True, eq=False)
-class Likelihood:
-    """Marginal log-likelihood of one residual at given noise, as a function of the scales."""
-
-    spectrum: Spectrum
-    cross: np.ndarray
-    """Products of the residual with each session's columns along their axes `(sessions, k)`."""
-    square: float
-    """Of the residual with itself, all sessions."""
-    spread: float
-    """Log determinant of the noise."""
-    _parts: dict[bytes, tuple[np.ndarray, float]] = field(default_factory=dict)
-    """Of each change, what no standing scale alters."""
-
-    def at(self, change: np.ndarray, standing: float) -> float:
-        """Log-likelihood, up to what all models share [nat].
-
-        Args:
-            change: scale of the change of each session `(sessions,)`.
-            standing: logarithm of the scale of the standing discrepancy.
-        """
-        key = change.tobytes()
-        if key not in self._parts:
-            shrunk = self.spectrum.shrunk(change)
-            cross = (self.spectrum.axes @ (shrunk * self.cross)[:, :, None]).sum(0)[:, 0]
-            alone = float(np.sum(change[:, None] ** 2 * shrunk * self.cross**2))
-            self._parts[key] = cross, self.square - alone - float(np.log(shrunk).sum())
-        cross, rest = self._parts[key]
-        factor = self.spectrum.factor(change, standing)
-        taken, _ = dtrtrs(factor, np.exp(standing) * cross, lower=1)
-        determinant = 2 * float(np.log(np.diag(factor)).sum())
-        return -0.5 * (rest - float(taken @ taken) + determinant + self.spread)

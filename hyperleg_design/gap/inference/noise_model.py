@@ -17,10 +17,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from hyperleg_design.gap.effects.placing import joint_strength
-from hyperleg_design.gap.inference.nuisance import stop
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.ground import footings
+from hyperleg_design.gap.signals.stop_operator import stop
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.rules import NoiseRules

@@ -7,36 +7,22 @@ own. Widths are assumed, of the order that data sheets and drawings are wrong by
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS, belt
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import (
     ROBOT,
-    before_measurement,
     driven_motors,
-    is_commanded,
-    is_logged,
     joint_inertia,
     joint_strength,
     motor_strength,
-    motor_velocity,
 )
-from hyperleg_design.gap.effects.series import first_derivative
-from hyperleg_design.gap.model import friction, pads
-from hyperleg_design.gap.signals.channels import applied
-from hyperleg_design.gap.signals.sliding import sliding
-from hyperleg_design.gap.signals.transmission import turned
-from hyperleg_design.simulation.drives.actuation import friction_damping
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.filtering import FilteredLog
-    from hyperleg_design.gap.signals.signals import Signals
 
 TORQUE_CONSTANT = 0.03
 COULOMB, COULOMB_LEAST = 0.08, 0.0008
@@ -230,83 +216,6 @@ def nuisance_parameters(
     return [one for one in found if one.location in places[one.effect] and one.spread > 0]
 
 
-def traces(
-    signals: Signals, errors: Sequence[NuisanceParameter], calibrated: bool = False
-) -> list[dict[str, np.ndarray]]:
-    """Trace of each error at one spread from its null, by residual `(t, columns)`.
-
-    Torque constants scale the torque that the motion needs, not the measured one, and so do gains
-    where nobody measured any: else all of them together could scale the noise away, masses and
-    loads along with it, which no motion contradicts. So does friction under load where the model
-    has none and reference logs calibrate it: else its share of a torque that is mostly friction
-    explains all of it.
-    """
-    needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)
-    modelled = replace(
-        signals, believed=np.where(np.isfinite(needed), needed, signals.believed), target=None
-    )
-    steered = _steered(signals)
-    bare = {
-        joint
-        for joint, coulomb in zip(signals.subject.joints, signals.subject.coulomb, strict=True)
-        if calibrated and not coulomb
-    }
-    found = []
-    for one in errors:
-        if one.effect in (TURNOVER, SWUNG):
-            trace = (_turnover if one.effect == TURNOVER else _swung)(
-                signals, one.location, one.parameter
-            )
-            found.append({b: v * one.spread for b, v in trace.items()})
-            continue
-        if one.effect in UNLISTED:
-            alone = {STEPPED: _stepped, FILTERED: _filtered}.get(
-                one.effect, _speeds if one.effect in SPEEDS else _told
-            )
-            found.append(alone(signals, one))
-            continue
-        effect = EFFECTS[one.effect]
-        if one.effect == "torque_constant" and one.parameter == READING:
-            found.append(_read(signals, one.location, one.spread))
-            continue
-        values = effect.nulls
-        low, high = effect.bounds(one.location, signals.subject)[:, one.parameter]
-        sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
-        values[one.parameter] = np.clip(values[one.parameter] + sign * one.spread, low, high)
-        source = {"torque_constant": modelled, "controller_gain": steered}.get(one.effect, signals)
-        if one.effect == "load_dependent_friction" and one.location in bare:
-            source = modelled
-        moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
-        found.append(
-            {b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()}
-            if moved
-            else {}
-        )
-    return found
-
-
-def _steered(signals: Signals) -> Signals:
-    """With targets by which the controllers would ask for just what the motion needs, where its
-    residual rests on them alone.
-    """
-    if signals.target is None or signals.measured is not None or "control" in signals.residual:
-        return signals
-    stiffness, damping = signals.subject.gains.T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        target = signals.position + (signals.rigid + damping * signals.velocity) / stiffness
-    return replace(signals, target=np.where(np.isfinite(target), target, signals.target))
-
-
-def _read(signals: Signals, motor: str, share: float) -> dict[str, np.ndarray]:
-    """A share of what a motor was asked for, where it is also measured."""
-    place = signals.subject.motors.index(motor)
-    if signals.measured is None or "drive" not in signals.residual:
-        return {}
-    rows = np.zeros_like(signals.measured)
-    rows[:, place] = share * (signals.measured - signals.residual["drive"])[:, place]
-    return {"drive": rows}
-
-
 def _give(subject: Subject, motor: int) -> float:
     """Compliance of a belt or gear as they are, on the motor's side [rad/Nm]."""
     inertia = float(subject.rotor_inertia[motor])
@@ -319,171 +228,8 @@ def _give(subject: Subject, motor: int) -> float:
     return max(of_belt, of_gear)
 
 
-def _speeds(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
-    """Usual errors of a motor's speed beside its joints'."""
-    if "transmission" not in signals.residual:
-        return {}
-    subject = signals.subject
-    motor = subject.motors.index(one.location)
-    if one.effect == GEARED:
-        speed = motor_velocity(signals, motor)
-    elif one.effect == TOLD_LATE:
-        speed = -signals.acceleration @ subject.joint_from_motor[:, motor]
-    else:
-        speed = first_derivative(belt.transmitted(signals, motor), signals.step)
-    return {
-        residual_name: rows[0]
-        for residual_name, rows in turned(signals, motor, one.spread * speed[None]).items()
-    }
-
-
-def _stepped(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
-    """Friction as simulators step it, less friction at once."""
-    subject, half = signals.subject, signals.acceleration * signals.step / 2
-    damping = friction_damping(
-        subject.coulomb,
-        np.zeros_like(subject.coulomb),
-        signals.velocity - half,
-        subject.friction_speed,
-    )
-    smooth = subject.coulomb * friction.turned(signals.velocity, subject.friction_speed)
-    return {"motion": one.spread * (damping * (signals.velocity + half) - smooth)}
-
-
-def _filtered(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
-    """What speeds that controllers know late make them ask for; a motor's own back-EMF is never
-    late.
-    """
-    subject = signals.subject
-    damping = np.where(
-        subject.passive | ~np.isfinite(subject.gains).all(1), 0.0, subject.gains[:, 1]
-    )
-    asked = applied(subject.motor_from_joint, one.spread * damping * signals.acceleration)
-    control, changes = np.zeros_like(asked), {}
-    controlled = [
-        is_commanded(signals, m) and not np.isfinite(subject.supply[m])
-        for m in range(len(subject.motors))
-    ]
-    for motor in np.flatnonzero(controlled).tolist():
-        if is_logged(signals, motor):
-            control[:, motor] = asked[:, motor]
-        else:
-            changes[motor] = asked[None, :, motor]
-    found = {
-        residual_name: rows[0]
-        for residual_name, rows in before_measurement(signals, changes).items()
-    }
-    return found | ({"control": control} if "control" in signals.residual else {})
-
-
-def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
-    """Usual errors of what is told of forces and torques."""
-    subject = signals.subject
-    if one.effect == TORQUES_LATE:
-        known = signals.measured is not None
-        return (
-            {"motion": -one.spread * first_derivative(signals.rigid.T, signals.step).T}
-            if known
-            else {}
-        )
-    if signals.pad_force is None:
-        return {}
-    force, rotation = (
-        np.nan_to_num(signals.pad_force),
-        None if signals.base is None else signals.base.rotation,
-    )
-    own = np.array([subject.feet[p.foot] == one.location for p in subject.pads])
-    if one.effect == FORCES_LATE:
-        torque, wrench = (
-            -one.spread * first_derivative(values.T, signals.step).T
-            for values in pads.contact_torque(subject, signals.position, rotation, force)
-        )
-    elif one.effect == FORCES_SCALED:
-        scaled = one.spread * np.where(own[:, None], force, 0.0)
-        torque, wrench = pads.contact_torque(subject, signals.position, rotation, scaled)
-    else:
-        force = np.where(own[:, None], force, 0.0)
-        load = np.maximum(force[..., 2], 0.0)
-        share = (
-            load / max(float(load[load > 0].mean()), 1e-9)
-            if one.effect == SOLE_GIVES and load.any()
-            else 1.0
-        )
-        higher, lower = (
-            pads.contact_torque(subject, signals.position, rotation, force, lift)
-            for lift in (one.spread * share, 0.0)
-        )
-        torque, wrench = (a - b for a, b in zip(higher, lower, strict=True))
-    return {"motion": torque} | ({"base": wrench} if "base" in signals.residual else {})
-
-
-def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
-    """Friction that turns over at once less that of the model as it is; or on a way, less that at
-    once.
-    """
-    subject, rows = signals.subject, np.zeros_like(signals.position)
-    j = subject.joints.index(joint)
-    at_once = sliding(signals)[:, j]
-    swing = None if signals.limit_cycle is None else signals.limit_cycle.speed[:, j]
-    turned = friction.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
-    shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
-    rows[:, j] = turning(subject)[j] * shape
-    return {"motion": rows}
-
-
 def turning(subject: Subject) -> np.ndarray:
     """Friction whose turning over is a nuisance parameter `(n,)` [Nm]: the model's, or a usual
     error where it has none.
     """
     return np.where(subject.coulomb > 0, subject.coulomb, COULOMB_LEAST * joint_strength(subject))
-
-
-def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
-    """Friction of the model of a joint that chatters by another amplitude, less that by the one
-    that the log shows.
-    """
-    subject = signals.subject
-    j = subject.joints.index(joint)
-    if signals.limit_cycle is None or not signals.limit_cycle.speed[:, j].any():
-        return {}
-    rows, speed, width = (
-        np.zeros_like(signals.position),
-        signals.velocity[:, j],
-        subject.friction_speed[j],
-    )
-    swing = signals.limit_cycle.speed[:, j]
-    rows[:, j] = subject.coulomb[j] * (
-        friction.turned(speed, width, SWINGS[place] * swing) - friction.turned(speed, width, swing)
-    )
-    return {"motion": rows}
-
-
-def stop(position: np.ndarray, way: float) -> np.ndarray:
-    """Prandtl's stop operator of positions `(t,)`: from -1 to 1 on twice a way [rad], starting from
-    where it is going first.
-    """
-    moved = np.diff(position, prepend=position[0]) / way
-    far = np.abs(position - position[0]) > way
-    state = float(np.sign(position[np.argmax(far)] - position[0])) if far.any() else 0.0
-    out = np.empty(len(position))
-    for tick, step in enumerate(moved.tolist()):
-        state = min(max(state + step, -1.0), 1.0)
-        out[tick] = state
-    return out
-
-
-def columns(
-    filtered_log: FilteredLog, errors: Sequence[NuisanceParameter], calibrated: bool = False
-) -> dict[int, np.ndarray]:
-    """Samples of all errors at one spread each, by row `(errors, samples)`."""
-    found = {
-        row: np.zeros((len(errors), filtered_log.count(row)))
-        for row in range(len(filtered_log.rows))
-    }
-    for place, trace in enumerate(traces(filtered_log.signals, errors, calibrated)):
-        for row, one in enumerate(filtered_log.rows):
-            if one.residual_name in trace:
-                values = trace[one.residual_name][:, one.column]
-                if np.any(np.nan_to_num(values) != 0):
-                    found[row][place] = filtered_log.sample(row, values[None])[0]
-    return found

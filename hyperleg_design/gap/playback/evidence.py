@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.gap.signals.filtering import moving_ticks, sticking
+from hyperleg_design.gap.signals.resting import moving_ticks, sticking
 from hyperleg_design.gap.signals.signals import OF_MOTORS
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ import pytest
 from pendulum import Wrong, steps
 
 from hyperleg_design.gap.effects.friction import JointFriction
-from hyperleg_design.gap.signals.filtering import sticking
+from hyperleg_design.gap.signals.resting import sticking
 from hyperleg_design.simulation.drives.machine import Machine
 
 

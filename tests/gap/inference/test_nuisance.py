@@ -14,11 +14,9 @@ from hyperleg_design.gap.inference.nuisance import (
     TURNOVER,
     UNLISTED,
     WAYS,
-    columns,
     nuisance_parameters,
-    stop,
-    traces,
 )
+from hyperleg_design.gap.inference.nuisance_traces import columns, traces
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.filtering import filtered_log
@@ -104,16 +102,6 @@ def test_traces_are_those_of_the_effects(signals, errors):
     sampled = columns(filtered_log(signals), errors)
     assert sampled[1][place].any()
     assert not sampled[0][place].any()
-
-
-def test_the_stop_operator_stays_between_its_ends_and_turns_over_on_its_way():
-    way = 0.01
-    position = np.concatenate([np.linspace(0, 0.1, 200), np.linspace(0.1, 0.0, 200)])
-    found = stop(position, way)
-    assert np.abs(found).max() <= 1
-    assert found[150] == 1
-    turned = position[200 + np.argmax(found[200:] <= -1 + 1e-9)]
-    assert turned == pytest.approx(0.1 - 2 * way, abs=2e-3)
 
 
 def targets_alone(seed, **given):

@@ -17,7 +17,8 @@ from hyperleg_design.gap.effects.ground_compliance import GroundCompliance
 from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
 from hyperleg_design.gap.inference.nuisance import BEARING
 from hyperleg_design.gap.results.diagnosis import Value
-from hyperleg_design.gap.signals.ground import LOADED, Footing, Law, footings
+from hyperleg_design.gap.signals.ground import LOADED, Footing, footings
+from hyperleg_design.gap.signals.nominal_ground import Law
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
