@@ -13,7 +13,8 @@ import numpy as np
 from hyperleg_design.gap.inference.scales import ABSENT, Scales
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channel import Channel, Likelihood, Residual
+    from hyperleg_design.gap.inference.channel import Channel, Residual
+    from hyperleg_design.gap.inference.likelihood import Likelihood
     from hyperleg_design.gap.inference.rules import InferenceRules
 
 STEPS = (1.2, 0.5, 0.2)

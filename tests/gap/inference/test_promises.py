@@ -1,0 +1,81 @@
+"""Gains beside a hypothesis from parts that are kept, against all columns at once."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
+from hyperleg_design.gap.inference.promises import LARGEST, Promises
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.scales import Scales
+from hyperleg_design.gap.inference.screen import NotJudged
+from tests.gap.inference.test_channel import made
+
+RULES = InferenceRules()
+SCALES = Scales(np.array([0.7, 1.9, 1.2, 0.4]), np.log(0.8), np.log(0.5), np.log(3.0))
+
+
+def cause(effect: str, columns: np.ndarray, constant: np.ndarray | None = None) -> Cause:
+    """Without bounds, linear unless it has a constant trace."""
+    k = len(columns)
+    return Cause(
+        effect,
+        "knee",
+        np.zeros(k),
+        np.zeros(k),
+        np.ones(k),
+        np.full(k, -np.inf),
+        np.full(k, np.inf),
+        np.zeros(k, bool),
+        columns,
+        np.zeros(columns.shape[1]) if constant is None else constant,
+        constant is None,
+    )
+
+
+@pytest.mark.parametrize("constant", [False, True])
+@pytest.mark.parametrize("alone", [False, True])
+def test_gains_are_those_of_all_columns_at_once(constant, alone):
+    rng = np.random.default_rng(5)
+    channels = [made(rng)[0] for _ in range(2)]
+    size = len(channels[0].samples)
+    weight = rng.uniform(0.5, 2.0, size)
+    evidence = SimpleNamespace(channels=channels, weight=weight)
+    tested = 2 * len(channels[0].places[0])
+    linear, starts = rng.standard_normal((2, size)), rng.standard_normal((3, tested))
+    traces = {
+        ("friction", "knee", False): [cause("friction", linear)],
+        ("delay", "robot", False): (np.arange(3.0)[:, None], starts),
+        ("payload", "foot", False): NotJudged("payload", "foot", "no motion"),
+    }
+    acting = cause(
+        "spring", rng.standard_normal((2, size)), rng.standard_normal(size) if constant else None
+    )
+    causes = [] if alone else [acting]
+    scales = (SCALES, SCALES)
+    found = Promises(evidence, RULES, traces).beside(causes, scales)
+    assert len(found) == 4
+    assert [one.gain for one in found] == sorted((one.gain for one in found), reverse=True)
+
+    def gain(columns, low, high):
+        stack = Stack.of(causes, weight) if causes else None
+        rows = [] if stack is None else [stack.columns]
+        padded = np.pad(columns, ((0, 0), (0, size - columns.shape[1])))
+        last = stack is not None and stack.constant_last
+        rows += [padded * weight, *([stack.constant[None]] if last else [])]
+        products = shifted(reduced(evidence, scales, np.concatenate(rows)), last)
+        free = np.full(0 if stack is None else 2, np.inf)
+        low, high = np.r_[-free, low], np.r_[free, high]
+        return solve(products, low, high, np.zeros(len(low), bool), RULES).gain
+
+    start = gain(np.zeros((0, size)), np.zeros(0), np.zeros(0)) if causes else 0.0
+    for one in found:
+        if one.effect == "friction":
+            expected = gain(linear, np.full(2, -np.inf), np.full(2, np.inf))
+        else:
+            expected = gain(starts[one.variant : one.variant + 1], np.zeros(1), np.full(1, LARGEST))
+        assert one.gain == pytest.approx(expected - start, rel=1e-7, abs=1e-7)
