@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,8 +19,6 @@ from hyperleg_design.errors import InputError
 if TYPE_CHECKING:
     import mujoco
     import pinocchio
-
-    from hyperleg_design.gap.model.recursion import Joint
 
 BASE = -1
 """Place of the base (or, of a fixed one, the world) among the joints."""
@@ -91,13 +88,6 @@ class Mechanism:
         """
         roots = {self.chain(j)[0] for j in joints}
         return [j for j in range(self.count) if self.chain(j)[0] in roots]
-
-    @cached_property
-    def fixed_parts(self) -> tuple[Joint, ...]:
-        """What of each joint no motion changes, see `recursion`."""
-        from hyperleg_design.gap.model.recursion import fixed_parts
-
-        return fixed_parts(self)
 
     def beyond(self, name: str) -> int:
         """Count the joints in a row that a link carries at most: 0 at the ends of a robot, 1 of

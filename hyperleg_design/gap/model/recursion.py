@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -44,8 +45,12 @@ class Joint:
     """Moment on the parent over a sliding joint's position and the force on it `(3, 3)`."""
 
 
+_PARTS: WeakKeyDictionary[Mechanism, tuple[Joint, ...]] = WeakKeyDictionary()
+
+
 def fixed_parts(tree: Mechanism) -> tuple[Joint, ...]:
-    """Compute the constant matrices of every joint of a tree.
+    """Compute the constant matrices of every joint of a tree; the result is kept while the tree
+    lives.
 
     Args:
         tree: the robot.
@@ -53,6 +58,12 @@ def fixed_parts(tree: Mechanism) -> tuple[Joint, ...]:
     Returns:
         One entry a joint.
     """
+    if tree not in _PARTS:
+        _PARTS[tree] = tuple(_fixed_parts(tree))
+    return _PARTS[tree]
+
+
+def _fixed_parts(tree: Mechanism) -> list[Joint]:
     found = []
     for rotation, offset, inertial in zip(tree.rotation, tree.offset, tree.inertial, strict=True):
         into = rotation.T
@@ -66,7 +77,7 @@ def fixed_parts(tree: Mechanism) -> tuple[Joint, ...]:
         up[3:, :3] = _skew(offset) @ rotation
         lever = _skew(rotation[:, 2]) @ rotation
         found.append(Joint(down, along, inertial_wrench(inertial), up, lever))
-    return tuple(found)
+    return found
 
 
 def inertial_wrench(parameters: np.ndarray) -> np.ndarray:
@@ -141,7 +152,7 @@ def torques(
     """
     ticks = position.shape[1]
     sin, cos = np.sin(position), np.cos(position)
-    parts = tree.fixed_parts
+    parts = fixed_parts(tree)
     base = _with_products(root)
     motions: dict[int, np.ndarray] = {BASE: base}
     wrenches = {BASE: inertial_wrench(tree.base_inertial) @ base}
