@@ -20,15 +20,15 @@ FEWEST_WORDS = 3
 """Words that the first paragraph of a public docstring has at least."""
 NAMES_ALLOWED = {
     "evaluation": 10,
-    "gap": 473,
+    "gap": 458,
     "report": 10,
     "robot": 1,
     "simulation": 8,
-    "sweep": 8,
-    "validation": 60,
+    "sweep": 4,
+    "validation": 52,
 }
 """Bindings of barred names that are left, by package; lower a number when you rename some."""
-DOCSTRINGS_ALLOWED = {"gap": 90, "validation": 10}
+DOCSTRINGS_ALLOWED = {"gap": 6}
 """Public docstrings that are too short, by package; lower a number when you mend some."""
 
 ARGUMENTS_ALLOWED = {"gap": 65}

@@ -56,7 +56,7 @@ class ActuatorBandwidth(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors.
+        """List the motors at which it can sit.
 
         Args:
             subject: the robot.
@@ -67,7 +67,7 @@ class ActuatorBandwidth(Effect):
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -81,7 +81,7 @@ class ActuatorBandwidth(Effect):
         return at_drives(self.identifier, motion, motion.command > BANDWIDTH, good, lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -100,7 +100,7 @@ class ActuatorBandwidth(Effect):
         return before_measurement(signals, {motor: lagged(given, lag, signals.step) - given})
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

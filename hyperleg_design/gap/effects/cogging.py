@@ -79,7 +79,7 @@ class Cogging(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors.
+        """List the motors at which it can sit.
 
         Args:
             subject: the robot.
@@ -90,7 +90,7 @@ class Cogging(Effect):
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -105,7 +105,7 @@ class Cogging(Effect):
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -122,7 +122,7 @@ class Cogging(Effect):
         return at_motor(signals, motor, cosine * np.cos(angle) + sine * np.sin(angle))
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

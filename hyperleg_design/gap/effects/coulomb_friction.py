@@ -56,7 +56,7 @@ class CoulombFriction(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints.
+        """List the joints at which it can sit.
 
         Args:
             subject: the robot.
@@ -67,7 +67,7 @@ class CoulombFriction(Effect):
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -79,7 +79,7 @@ class CoulombFriction(Effect):
         return at_joints(self.identifier, motion, motion.reversing, REVERSES, FEW)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.

@@ -60,7 +60,7 @@ class EncoderOffset(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints.
+        """List the joints at which it can sit.
 
         Args:
             subject: the robot.
@@ -71,7 +71,7 @@ class EncoderOffset(Effect):
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -83,7 +83,7 @@ class EncoderOffset(Effect):
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -110,7 +110,7 @@ class EncoderOffset(Effect):
         return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

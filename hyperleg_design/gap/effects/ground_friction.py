@@ -51,7 +51,7 @@ class GroundFriction(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Feet.
+        """List the feet at which it can sit.
 
         Args:
             subject: the robot.
@@ -62,7 +62,7 @@ class GroundFriction(Effect):
         return subject.feet if subject.floating else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -78,7 +78,7 @@ class GroundFriction(Effect):
         return Excitation(self.identifier, bool(feet), feet, why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -109,7 +109,7 @@ class GroundFriction(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

@@ -64,7 +64,7 @@ class ImuBias(Effect):
         return (IMU,) if subject.floating else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -78,7 +78,7 @@ class ImuBias(Effect):
         return Excitation(self.identifier, bool(known), known, why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -122,7 +122,7 @@ class ImuBias(Effect):
         return {"motion": rows} | ({"base": np.stack(base_rows)} if base_rows else {})
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

@@ -59,7 +59,7 @@ class InertialEffect(Effect):
         return tuple(name for i, name in enumerate(tree.links) if carriers[i] not in carriers[:i])
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -95,7 +95,7 @@ class InertialEffect(Effect):
         """
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -122,7 +122,7 @@ class InertialEffect(Effect):
         return found
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

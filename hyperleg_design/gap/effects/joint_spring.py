@@ -61,7 +61,7 @@ class JointSpring(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints.
+        """List the joints at which it can sit.
 
         Args:
             subject: the robot.
@@ -72,7 +72,7 @@ class JointSpring(Effect):
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -84,7 +84,7 @@ class JointSpring(Effect):
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -104,7 +104,7 @@ class JointSpring(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

@@ -67,7 +67,7 @@ class LoadDependentFriction(Effect):
         )
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -81,7 +81,7 @@ class LoadDependentFriction(Effect):
         return at_joints(self.identifier, motion, loaded, "reverses under different loads", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -105,7 +105,7 @@ class LoadDependentFriction(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

@@ -64,7 +64,7 @@ class StribeckFriction(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints.
+        """List the joints at which it can sit.
 
         Args:
             subject: the robot.
@@ -75,7 +75,7 @@ class StribeckFriction(Effect):
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -89,7 +89,7 @@ class StribeckFriction(Effect):
         return at_joints(self.identifier, motion, slow, "slow and fast motion", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -106,7 +106,7 @@ class StribeckFriction(Effect):
         return at_joint(signals, joint, torque * fall * sliding(signals)[:, joint])
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

@@ -73,7 +73,7 @@ class ThermalDerating(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors.
+        """List the motors at which it can sit.
 
         Args:
             subject: the robot.
@@ -84,7 +84,7 @@ class ThermalDerating(Effect):
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -111,7 +111,7 @@ class ThermalDerating(Effect):
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -129,7 +129,7 @@ class ThermalDerating(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

@@ -62,7 +62,7 @@ class TorqueSaturation(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors.
+        """List the motors at which it can sit.
 
         Args:
             subject: the robot.
@@ -73,7 +73,7 @@ class TorqueSaturation(Effect):
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -91,7 +91,7 @@ class TorqueSaturation(Effect):
         )
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -113,7 +113,7 @@ class TorqueSaturation(Effect):
         )
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.
@@ -196,7 +196,7 @@ class TorqueSaturation(Effect):
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """The limit.
+        """Compute the torque limit of the motor.
 
         Args:
             location: one of `locations`.

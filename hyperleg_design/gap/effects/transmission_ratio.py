@@ -77,7 +77,7 @@ class TransmissionRatio(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Motors.
+        """List the motors at which it can sit.
 
         Args:
             subject: the robot.
@@ -88,7 +88,7 @@ class TransmissionRatio(Effect):
         return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -108,7 +108,7 @@ class TransmissionRatio(Effect):
         return Excitation(self.identifier, bool(passed.any()), tuple(motion.joints[passed]), why)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.

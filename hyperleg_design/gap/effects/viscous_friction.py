@@ -58,7 +58,7 @@ class ViscousFriction(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints.
+        """List the joints at which it can sit.
 
         Args:
             subject: the robot.
@@ -69,7 +69,7 @@ class ViscousFriction(Effect):
         return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -83,7 +83,7 @@ class ViscousFriction(Effect):
         return at_joints(self.identifier, motion, varied, "speeds differ", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.

@@ -108,7 +108,7 @@ class VoltageSag(Effect):
     }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """The battery.
+        """List the battery as the only place.
 
         Args:
             subject: the robot.
@@ -119,7 +119,7 @@ class VoltageSag(Effect):
         return (BATTERY,) if driven_motors(subject) else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """See `Effect.excited`.
+        """Decide whether a log can show it, see `Effect.excited`.
 
         Args:
             log: as it was read.
@@ -159,7 +159,7 @@ class VoltageSag(Effect):
         return super().place(BATTERY if location == "robot" else location, subject)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """See `Effect.trace`.
+        """Compute the residual that it leaves, see `Effect.trace`.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -197,7 +197,7 @@ class VoltageSag(Effect):
         return before_measurement(signals, changes)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`.
+        """Make what adds it to a simulation, see `Effect.alteration`.
 
         Args:
             location: one of `locations`.

@@ -52,7 +52,7 @@ class DriveSet:
 
     @property
     def count(self) -> int:
-        """P."""
+        """Number of parameters P."""
         return len(self.low)
 
     def part(self, values: np.ndarray, kind: str) -> np.ndarray:

@@ -67,7 +67,7 @@ SIZES = {
 
 @dataclass(frozen=True)
 class Plan:
-    """One case."""
+    """One case of a newcomer's robot."""
 
     robot: str
     label: str
@@ -213,7 +213,7 @@ DEVELOPMENT = ("arm", "leg", "coupled", "two_link")
 
 
 def newcomer_cases() -> list[Case]:
-    """All cases."""
+    """List all cases of these robots."""
     return [
         Case(
             plan.name,

@@ -29,7 +29,7 @@ WRONG: dict[str, tuple[str, float]] = {
 
 
 def go2_cases() -> list[Case]:
-    """All cases."""
+    """List all cases of these robots."""
     plan = [("nothing", False), *((fault, True) for fault in WRONG)]
     return [
         Case(

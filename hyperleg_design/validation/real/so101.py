@@ -50,7 +50,7 @@ TESTS, REFERENCES = ("step_response", "triangle_wave"), ("chirp_sweep", "frictio
 
 
 def so101_cases() -> list[Case]:
-    """All cases."""
+    """List all cases of these robots."""
     plan = [(fault, True) for fault in WRONG] + [("nothing", False)]
     return [
         Case(
