@@ -157,7 +157,7 @@ def _merged(findings: list[Finding]) -> list[Finding]:
 
 
 def _required(log: Log, subject: Subject | None) -> list[Finding]:
-    found = []
+    findings = []
     targets = any(log.has("position_target", j) for j in log.joints)
     torques = any(log.has("joint_torque", j) for j in log.joints) or any(
         log.has(kind, m) for kind in ("motor_torque", "motor_torque_command") for m in log.motors
@@ -169,7 +169,7 @@ def _required(log: Log, subject: Subject | None) -> list[Finding]:
     )
     if targets and not gains:
         severity = WARNING if torques or currents else ERROR
-        found.append(
+        findings.append(
             Finding(
                 severity,
                 "position_target",
@@ -179,7 +179,7 @@ def _required(log: Log, subject: Subject | None) -> list[Finding]:
         )
     if currents and not constants:
         severity = WARNING if torques or targets else ERROR
-        found.append(
+        findings.append(
             Finding(
                 severity,
                 "motor_current",
@@ -188,7 +188,7 @@ def _required(log: Log, subject: Subject | None) -> list[Finding]:
             )
         )
     if not targets and not torques and not currents:
-        found.append(
+        findings.append(
             Finding(
                 ERROR,
                 "",
@@ -196,11 +196,11 @@ def _required(log: Log, subject: Subject | None) -> list[Finding]:
                 "log position_target with gains, motor_torque or motor_current",
             )
         )
-    return found
+    return findings
 
 
 def _clock(sampling: Sampling) -> list[Finding]:
-    found = []
+    findings = []
     if not RULES.clock.slowest < sampling.rate < RULES.clock.fastest:
         text = (
             f"rows come every {sampling.step:.3g} s: the time looks like "
@@ -209,7 +209,7 @@ def _clock(sampling: Sampling) -> list[Finding]:
         return [Finding(ERROR, "t", text, "give it in seconds")]
     if sampling.duration < RULES.clock.shortest or sampling.ticks < RULES.clock.few:
         text = f"is short: {sampling.duration:.2g} s, {sampling.ticks} ticks"
-        found.append(
+        findings.append(
             Finding(
                 WARNING,
                 "t",
@@ -219,9 +219,9 @@ def _clock(sampling: Sampling) -> list[Finding]:
         )
     if sampling.rate < RULES.clock.slow:
         text = f"{sampling.rate:.3g} Hz: friction at reversals and delays blur"
-        found.append(Finding(WARNING, "t", text, "log at 100 Hz or more"))
+        findings.append(Finding(WARNING, "t", text, "log at 100 Hz or more"))
     if sampling.jitter > RULES.clock.jitter:
-        found.append(
+        findings.append(
             Finding(
                 NOTE,
                 "t",
@@ -234,21 +234,21 @@ def _clock(sampling: Sampling) -> list[Finding]:
             f"{100 * sampling.dropouts:.1f} % of the time is lost in dropouts, the longest "
             f"{sampling.longest:.3g} s"
         )
-        found.append(Finding(WARNING, "t", text, "the ticks beside them are left out"))
-    return found
+        findings.append(Finding(WARNING, "t", text, "the ticks beside them are left out"))
+    return findings
 
 
 def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
-    found = []
+    findings = []
     for one in columns:
         kind = one.column.partition("/")[0]
         if one.missing == 1.0 and kind == "position":
             continue  # told by `gates`
         if one.missing == 1.0:
-            found.append(Finding(WARNING, one.column, "holds no values", "it counts as missing"))
+            findings.append(Finding(WARNING, one.column, "holds no values", "it counts as missing"))
             continue
         if one.missing > RULES.clock.missing:
-            found.append(
+            findings.append(
                 Finding(
                     WARNING,
                     one.column,
@@ -270,13 +270,13 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
                 )
                 else WARNING
             )
-            found.append(Finding(severity, one.column, text, "it counts at its own rate"))
+            findings.append(Finding(severity, one.column, text, "it counts at its own rate"))
         if kind in BOUNDED and one.saturated > RULES.clock.saturated:
             text = (
                 f"sits at a bound, {one.low:.4g} or {one.high:.4g}, for "
                 f"{100 * one.saturated:.1f} % of the log"
             )
-            found.append(
+            findings.append(
                 Finding(
                     WARNING,
                     one.column,
@@ -292,7 +292,7 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
             "accelerometer",
             "motor_velocity",
         ):
-            found.append(
+            findings.append(
                 Finding(
                     WARNING,
                     one.column,
@@ -300,7 +300,7 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
                     "is the sensor connected?",
                 )
             )
-    return found
+    return findings
 
 
 def _plain(value: Any) -> Any:

@@ -54,7 +54,7 @@ def _positions(log: Log) -> list[Finding]:
 
 
 def _sizes(log: Log, subject: Subject | None) -> list[Finding]:
-    found = []
+    findings = []
     for column, values in log.signals.items():
         kind, _, name = column.partition("/")
         if kind not in ("joint_torque", "motor_torque", "motor_torque_command"):
@@ -67,13 +67,13 @@ def _sizes(log: Log, subject: Subject | None) -> list[Finding]:
         if usual > RULES.unit.largest_torque or usual > RULES.unit.beyond * limit:
             than = f"{usual / limit:.3g} times the drive's {limit:.3g} Nm" if limit < np.inf else ""
             what = f"is {than or f'{usual:.3g} Nm'} for a tenth of the log: no such torque"
-            found.append(Finding(ERROR, column, what, "convert to Nm"))
+            findings.append(Finding(ERROR, column, what, "convert to Nm"))
         elif usual > RULES.unit.doubtful * limit:
             what = f"is {usual / limit:.3g} times the drive's {limit:.3g} Nm for a tenth of the log"
-            found.append(
+            findings.append(
                 Finding(WARNING, column, what, "check its unit, and the limit in the robot's file")
             )
-    return found
+    return findings
 
 
 def _limit(kind: str, name: str, subject: Subject | None) -> float:

@@ -40,7 +40,7 @@ def implausible_motion(log: Log) -> list[Finding]:
         np.nanstd(moved, axis=0)
         > 3 * np.nanmedian(np.abs(np.diff(moved, axis=0)), axis=0) / math.sqrt(len(moved)) + 1e-4
     )
-    found: list[Finding] = []
+    findings: list[Finding] = []
     units = (
         (DEGREES, "velocity in deg/s or position in another unit"),
         (1 / DEGREES, "position in degrees"),
@@ -51,7 +51,7 @@ def implausible_motion(log: Log) -> list[Finding]:
         if not moving[i] or not np.isfinite(fit[i]):
             continue
         if np.nanstd(integral[:, i]) == 0:
-            found.append(
+            findings.append(
                 Finding(
                     ERROR,
                     column,
@@ -76,11 +76,11 @@ def implausible_motion(log: Log) -> list[Finding]:
                 f"follows the motion of {joints[best]} (correlation {rivals[best]:.2f}), not "
                 f"its own ({fit[i]:.2f})"
             )
-            found.append(
+            findings.append(
                 Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
             )
         elif fit[i] < -RULES.unit.fits:
-            found.append(
+            findings.append(
                 Finding(
                     ERROR,
                     column,
@@ -90,10 +90,10 @@ def implausible_motion(log: Log) -> list[Finding]:
             )
         elif fit[i] > RULES.unit.strange and unit:
             text = f"is {slope[i]:.3g} times the rate of its position: {unit}"
-            found.append(Finding(ERROR, column, text, "convert to rad and rad/s"))
+            findings.append(Finding(ERROR, column, text, "convert to rad and rad/s"))
         elif fit[i] > RULES.unit.fits and abs(slope[i] - 1) > RULES.unit.tolerance:
             text = f"is {slope[i]:.3g} times the rate of its position"
-            found.append(
+            findings.append(
                 Finding(
                     WARNING,
                     column,
@@ -103,12 +103,12 @@ def implausible_motion(log: Log) -> list[Finding]:
             )
         elif fit[i] < RULES.unit.strange:
             text = f"hardly follows the rate of its position (correlation {fit[i]:.2f})"
-            found.append(
+            findings.append(
                 Finding(
                     WARNING, column, text, "check clock and filter of the velocity, or leave it out"
                 )
             )
-    return found
+    return findings
 
 
 def _windows(log: Log, joints: list[str]) -> tuple[np.ndarray, np.ndarray]:

@@ -33,18 +33,18 @@ def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
     Returns:
         The findings.
     """
-    found = [
+    findings = [
         *implausible_motion(log),
         *implausible_targets(log, subject),
         *_magnitudes(log),
         *implausible_torques(log, subject),
         *_stuck(log),
     ]
-    return found + (_robot(log, subject) if subject is not None else [])
+    return findings + (_robot(log, subject) if subject is not None else [])
 
 
 def _magnitudes(log: Log) -> list[Finding]:
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for column, values in log.signals.items():
         kind = column.partition("/")[0]
         if not np.isfinite(values).any():
@@ -58,7 +58,7 @@ def _magnitudes(log: Log) -> list[Finding]:
             text = (
                 f"spans {float(np.nanmax(values) - np.nanmin(values)):.3g} rad, two turns or more"
             )
-            found.append(
+            findings.append(
                 Finding(
                     WARNING,
                     column,
@@ -76,7 +76,7 @@ def _magnitudes(log: Log) -> list[Finding]:
             "gyro": (RULES.unit.largest_rate, "deg/s: convert to rad/s"),
         }.get(kind, (math.inf, ""))
         if middle > limit or (kind == "gyro" and largest > 2 * limit):
-            found.append(
+            findings.append(
                 Finding(
                     ERROR,
                     column,
@@ -93,7 +93,7 @@ def _magnitudes(log: Log) -> list[Finding]:
         )
         if not 5 < weight < 20:
             text = f"has a median length of {weight:.3g} m/s^2 where gravity makes 9.8"
-            found.append(
+            findings.append(
                 Finding(
                     ERROR,
                     "accelerometer",
@@ -104,7 +104,7 @@ def _magnitudes(log: Log) -> list[Finding]:
     if all(log.has("base_orientation", axis) for axis in "wxyz"):
         length = np.linalg.norm(log.vector("base_orientation"), axis=1)
         if abs(float(np.nanmedian(length)) - 1) > 0.01:
-            found.append(
+            findings.append(
                 Finding(
                     ERROR,
                     "base_orientation",
@@ -112,11 +112,11 @@ def _magnitudes(log: Log) -> list[Finding]:
                     "give w, x, y, z, world from base",
                 )
             )
-    return found
+    return findings
 
 
 def _stuck(log: Log) -> list[Finding]:
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for joint in log.joints:
         values = log.column(f"position/{joint}")
         target = log.column(f"position_target/{joint}")
@@ -128,7 +128,7 @@ def _stuck(log: Log) -> list[Finding]:
         turned = float(np.nanmax(np.abs(speed))) if np.isfinite(speed).any() else 0.0
         if np.nanmax(values) == np.nanmin(values):
             if driven > 0.05 or turned > 0.1:
-                found.append(
+                findings.append(
                     Finding(
                         ERROR,
                         f"position/{joint}",
@@ -137,7 +137,7 @@ def _stuck(log: Log) -> list[Finding]:
                     )
                 )
             else:
-                found.append(
+                findings.append(
                     Finding(
                         NOTE, f"position/{joint}", "never changes", "move this joint to learn of it"
                     )
@@ -150,7 +150,7 @@ def _stuck(log: Log) -> list[Finding]:
                 f"is frozen for {length:.2g} s from {log.time[stuck.start]:.4g} s while the "
                 f"joint is driven"
             )
-            found.append(
+            findings.append(
                 Finding(
                     WARNING,
                     f"position/{joint}",
@@ -158,7 +158,7 @@ def _stuck(log: Log) -> list[Finding]:
                     "a stuck sensor or a blocked joint: this stretch is left out",
                 )
             )
-    return found
+    return findings
 
 
 def _robot(log: Log, subject: Subject) -> list[Finding]:
@@ -174,13 +174,13 @@ def _robot(log: Log, subject: Subject) -> list[Finding]:
                 "choose the robot of the log, or rename the columns",
             )
         ]
-    found = []
+    findings = []
     if strangers:
         near = [
             f"{s} ({m[0]}?)" if (m := difflib.get_close_matches(s, subject.joints, 1)) else s
             for s in strangers
         ]
-        found.append(
+        findings.append(
             Finding(
                 ERROR,
                 f"position/{strangers[0]}",
@@ -191,7 +191,7 @@ def _robot(log: Log, subject: Subject) -> list[Finding]:
     lacking = [joint for joint in subject.joints if joint not in own]
     if lacking:
         text = f"joints of the robot without positions: {', '.join(lacking[:6])}"
-        found.append(
+        findings.append(
             Finding(WARNING, "", text, "they are taken to stand still; log them if they move")
         )
     lower, upper = (
@@ -211,7 +211,7 @@ def _robot(log: Log, subject: Subject) -> list[Finding]:
             f"{joint} by {beyond:.3g} rad" for joint, beyond, _ in (far or outside)[:4]
         )
         severity = ERROR if far else WARNING
-        found.append(
+        findings.append(
             Finding(
                 severity,
                 f"position/{(far or outside)[0][0]}",
@@ -219,4 +219,4 @@ def _robot(log: Log, subject: Subject) -> list[Finding]:
                 "check unit, zero and sign, and the robot",
             )
         )
-    return found
+    return findings

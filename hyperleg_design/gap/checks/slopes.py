@@ -40,5 +40,5 @@ def fitted_correlations(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     Returns:
         The correlations `(n,)`.
     """
-    found = fitted_slopes(x, np.broadcast_to(y[:, None], x.shape))[1]
-    return np.where(np.isfinite(found), found, -1.0)
+    correlations = fitted_slopes(x, np.broadcast_to(y[:, None], x.shape))[1]
+    return np.where(np.isfinite(correlations), correlations, -1.0)

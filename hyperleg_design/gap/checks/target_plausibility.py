@@ -35,7 +35,7 @@ def implausible_targets(log: Log, subject: Subject | None) -> list[Finding]:
     if lag:
         position, target = position[lag:], target[:-lag]
     _, fit = fitted_slopes(position, target)
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for i, joint in enumerate(joints):
         column = f"position_target/{joint}"
         if not np.isfinite(fit[i]) or np.nanstd(target[:, i]) < 1e-3:
@@ -53,14 +53,14 @@ def implausible_targets(log: Log, subject: Subject | None) -> list[Finding]:
                 f"is followed by {joints[best]} (correlation {rivals[best]:.2f}), not by "
                 f"{joint} ({fit[i]:.2f})"
             )
-            found.append(
+            findings.append(
                 Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
             )
         elif fit[i] < -RULES.unit.fits and ratio < 10 and not _pushed(log, subject, joint):
             # what stands on the ground, and whose torques nobody logged, may be pushed against its
             # targets
             severity = WARNING if log.metadata.base == "floating" else ERROR
-            found.append(
+            findings.append(
                 Finding(
                     severity, column, "runs against its position", "flip the sign of one of the two"
                 )
@@ -80,8 +80,8 @@ def implausible_targets(log: Log, subject: Subject | None) -> list[Finding]:
                 f"moves {ratio:.3g} times as far as its position: one of the two "
                 f"{'is' if severity == ERROR else 'may be'} in degrees"
             )
-            found.append(Finding(severity, column, text, "convert both to rad"))
-    return found
+            findings.append(Finding(severity, column, text, "convert both to rad"))
+    return findings
 
 
 def _pushed(log: Log, subject: Subject | None, joint: str) -> bool:

@@ -27,7 +27,7 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
     Returns:
         The findings.
     """
-    found: list[Finding] = []
+    findings: list[Finding] = []
     told: set[str] = set()
     for column, asked, torque in asked_torque(log, subject):
         place = column.partition("/")[2]
@@ -36,7 +36,7 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
         told.add(place)
         slope, fit = fitted_slopes(asked[:, None], torque[:, None])
         if fit[0] < -RULES.unit.fits:
-            found.append(
+            findings.append(
                 Finding(
                     WARNING, column, "runs against what target and gains ask for", "check its sign"
                 )
@@ -52,7 +52,7 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
             remedy = "declare gains in Nm/rad and Nms/rad" + (
                 ", unless a gear of that ratio lies between" if geared else ""
             )
-            found.append(Finding(WARNING if geared else ERROR, column, text, remedy))
+            findings.append(Finding(WARNING if geared else ERROR, column, text, remedy))
     for motor in log.motors:
         if not log.has("motor_current", motor):
             continue
@@ -68,9 +68,9 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
                         f"makes {slope[0]:.3g} times the torque with the declared torque "
                         f"constant: it is in mA"
                     )
-                    found.append(Finding(ERROR, f"motor_current/{motor}", text, "convert to A"))
+                    findings.append(Finding(ERROR, f"motor_current/{motor}", text, "convert to A"))
                 break
-    return found
+    return findings
 
 
 def asked_torque(log: Log, subject: Subject | None) -> list[tuple[str, np.ndarray, np.ndarray]]:

@@ -249,12 +249,12 @@ def standard_deviations(
     scale = scales_of(one, place[1], subject, blocks.values[blocks.places.index(place)])
     span = blocks.span(place)
     part = gram[np.ix_(span, span)]
-    found = {}
+    deviations = {}
     for at, name in enumerate(blocks.parameters[blocks.places.index(place)]):
         others = np.arange(len(span)) != at
         left = _left(part, at, np.flatnonzero(others))
-        found[name] = float(scale[at] / np.sqrt(left)) if left > RANK else float("inf")
-    return found
+        deviations[name] = float(scale[at] / np.sqrt(left)) if left > RANK else float("inf")
+    return deviations
 
 
 def strength(gram: np.ndarray, blocks: Blocks, place: Place) -> float:

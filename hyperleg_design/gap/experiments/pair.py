@@ -53,17 +53,17 @@ def pairs_of(subject: Subject, blocks: Blocks) -> tuple[Pair, ...]:
     Returns:
         The pairs that can sit on this robot.
     """
-    found: list[Pair] = []
+    pairs: list[Pair] = []
     for first, second, by in LOOK_ALIKES:
         for index, joint in enumerate(subject.joints):
             places = [place_at(name, index, subject, blocks) for name in (first, second)]
             if (
                 places[0] is not None
                 and places[1] is not None
-                and not any((p.first, p.second) == (places[0], places[1]) for p in found)
+                and not any((p.first, p.second) == (places[0], places[1]) for p in pairs)
             ):
-                found.append(Pair(joint, places[0], places[1], by))
-    return tuple(found)
+                pairs.append(Pair(joint, places[0], places[1], by))
+    return tuple(pairs)
 
 
 def place_at(effect: str, joint: int, subject: Subject, blocks: Blocks) -> Place | None:

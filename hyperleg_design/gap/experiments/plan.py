@@ -30,18 +30,18 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
     grams = {m.name: experiment.grams[m.name] for m in experiment.motions}
 
     def effects_of(gram: np.ndarray) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+        effects: dict[str, Any] = {}
         for place in blocks.places:
             deviations = {
                 k: _number(v)
                 for k, v in info.standard_deviations(gram, blocks, place, subject).items()
             }
             clear = info.strength(gram, blocks, place)
-            found.setdefault(place[0], {})[place[1]] = {
+            effects.setdefault(place[0], {})[place[1]] = {
                 "stands_out": _number(clear),
                 "standard_deviation": deviations,
             }
-        return found
+        return effects
 
     return {
         "schema": 1,

@@ -130,7 +130,7 @@ def walked(
     """
     (before,) = evaluate_many([policy], protocol, workers=workers)
     (after,) = evaluate_many([policy], protocol, workers=workers, alterations=overlay.alterations)
-    found = []
+    changes = []
     for name in COMPARED:
         if name not in before.measures[0] or name not in after.measures[0]:
             continue
@@ -139,7 +139,7 @@ def walked(
         nan = float("nan")
         one = statistics.estimate([second[both] - first[both]]) if both.sum() > 1 else None
         mean, low, high = (one.mean, one.low, one.high) if one else (nan, nan, nan)
-        found.append(
+        changes.append(
             Changed(
                 name,
                 measure_of(name).unit,
@@ -151,7 +151,7 @@ def walked(
                 int(both.sum()),
             )
         )
-    return found
+    return changes
 
 
 def _mean(values: np.ndarray) -> float:

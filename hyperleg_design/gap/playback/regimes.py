@@ -35,28 +35,28 @@ def regimes_of(
         Whether each tick is in a regime `(t, k)`, by the regime's name.
     """
     shape = (len(signals.time), len(names))
-    found: dict[str, np.ndarray] = {}
+    regimes: dict[str, np.ndarray] = {}
     if velocity is not None:
         speed = np.abs(velocity)
-        found["still"] = speed < STILL
-        found["forward"], found["backward"] = velocity >= STILL, velocity <= -STILL
-        moving = np.where(found["still"], np.nan, speed)
-        found["slow"], found["fast"] = _halves(moving)
-        found["reversal"] = _near_reversal(velocity, max(round(REVERSAL / signals.step / 2), 1))
+        regimes["still"] = speed < STILL
+        regimes["forward"], regimes["backward"] = velocity >= STILL, velocity <= -STILL
+        moving = np.where(regimes["still"], np.nan, speed)
+        regimes["slow"], regimes["fast"] = _halves(moving)
+        regimes["reversal"] = _near_reversal(velocity, max(round(REVERSAL / signals.step / 2), 1))
     if load is not None:
-        found["light load"], found["heavy load"] = _halves(np.abs(load))
+        regimes["light load"], regimes["heavy load"] = _halves(np.abs(load))
     if position is not None:
-        found["low posture"], found["high posture"] = _halves(position)
+        regimes["low posture"], regimes["high posture"] = _halves(position)
     if signals.voltage is not None and np.ptp(signals.voltage[np.isfinite(signals.voltage)]) > 0:
         low, high = _halves(signals.voltage[:, None])
-        found["low voltage"], found["high voltage"] = (
+        regimes["low voltage"], regimes["high voltage"] = (
             np.broadcast_to(low, shape),
             np.broadcast_to(high, shape),
         )
     if signals.touching is not None and kind == "joint":
         stance, known = _stance(signals, names)
-        found["stance"], found["swing"] = stance & known, ~stance & known
-    return found
+        regimes["stance"], regimes["swing"] = stance & known, ~stance & known
+    return regimes
 
 
 def _halves(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -39,11 +39,11 @@ def repeatability_floors(
     repeats = _repeats(signals, sheets)
     if repeats:
         return repeats, "repeats"
-    found = {}
+    floors = {}
     for key in dict.fromkeys(k for each in sheets for k in each):
         own = [each[key].floor for each in sheets if key in each]
-        found[(*key, "all")] = np.sqrt(np.mean(np.square(own), 0))
-    return found, "split"
+        floors[(*key, "all")] = np.sqrt(np.mean(np.square(own), 0))
+    return floors, "split"
 
 
 def _pooled_floors(
@@ -53,13 +53,13 @@ def _pooled_floors(
     for each in sheets:
         for key, sheet in each.items():
             groups.setdefault(key, []).append(sheet)
-    found = {}
+    floors = {}
     for key, group in groups.items():
         for regime in regime_names(group):
-            found[(*key, regime)] = root_mean_square(
+            floors[(*key, regime)] = root_mean_square(
                 np.concatenate([regime_values(sheet, regime) for sheet in group])
             )
-    return found
+    return floors
 
 
 def _repeats(

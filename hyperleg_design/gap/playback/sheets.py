@@ -140,11 +140,11 @@ def _predictions(signals: Signals, threads: int) -> list[Sheet]:
     follow = best_input(signals)
     if follow == "torque" and not np.isfinite(signals.believed[signals.valid]).all():
         return []
-    found = replay(signals, windows=windows, follow=follow, threads=threads).errors(signals)
+    predictions = replay(signals, windows=windows, follow=follow, threads=threads).errors(signals)
     made, ticks = [], windows.ticks[:, :-1]
     for signal, unit, errors in (
-        ("position", "rad", found[0][0]),
-        ("velocity", "rad/s", found[1][0]),
+        ("position", "rad", predictions[0][0]),
+        ("velocity", "rad/s", predictions[1][0]),
     ):
         values = np.full(signals.position.shape, np.nan)
         values[ticks] = errors[:, :-1]
