@@ -103,7 +103,8 @@ def design_yaml(design: RobotDesign) -> str:
 
 
 def masses_csv(rows: list[MassRow]) -> str:
-    """Write the mass table as CSV, in SI units and full precision.
+    """Write the mass table as CSV, in SI units, to 12 digits: further ones of eigenvalues depend on
+    the processor.
 
     Args:
         rows: of the table.
@@ -120,9 +121,7 @@ def masses_csv(rows: list[MassRow]) -> str:
                 row.kind,
                 row.name,
                 row.count,
-                float(row.mass),
-                *row.com.tolist(),
-                *row.principal.tolist(),
+                *(f"{value:.12g}" for value in (row.mass, *row.com, *row.principal)),
             ]
         )
     return stream.getvalue()
