@@ -7,21 +7,55 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.measures import T_TEST, WALK
+from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import number, text
 from hyperleg_design.simulation.settings import Checked
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 MEASURES = {"walk": WALK, "t_test": T_TEST}
 """Measures of each protocol."""
-ONLY_COMPLETE = ("time", "mean_speed", "energy", "battery_energy")
-"""Measures that a run which ends early makes smaller or cannot give; of arrivals only."""
+ONLY_COMPLETE = (
+    "time",
+    "mean_speed",
+    "energy",
+    "battery_energy",
+    "power",
+    "joule_power",
+    "mechanical_power",
+    "positive_power",
+    "negative_power",
+    "driver_loss",
+    "battery_power",
+    "cost_of_transport",
+    "battery_cost_of_transport",
+)
+"""Measures of a whole run, which one that ends early cannot give: its power is that of a fall. They
+count over arrivals only."""
+
+
+def counted(table: pd.DataFrame, measure: str) -> pd.DataFrame:
+    """Leave out what trials that did not arrive give of a measure of whole runs.
+
+    Args:
+        table: of trials.
+        measure: name of a column.
+
+    Returns:
+        The table; of the measures `ONLY_COMPLETE`, values of arrivals only, NaN elsewhere.
+    """
+    if measure not in ONLY_COMPLETE:
+        return table
+    return table.assign(**{measure: table[measure].where(table["outcome"] == ARRIVED)})
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -8,9 +8,8 @@ from typing import Any
 
 from hyperleg_design.evaluation import paper, statistics
 from hyperleg_design.evaluation.measures import measure_of
-from hyperleg_design.evaluation.plans.analysis_plan import ONLY_COMPLETE
+from hyperleg_design.evaluation.plans.analysis_plan import ONLY_COMPLETE, counted
 from hyperleg_design.evaluation.result import by_checkpoint
-from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.statistics import AGREES, DIFFERS, Estimate
 from hyperleg_design.evaluation.versus_paper import NOT_REPRODUCED, VARIANTS, PaperRow, paper_rows
 from hyperleg_design.report.page import Cell, Details, Table
@@ -234,11 +233,8 @@ def differences(evaluated: Evaluated, group: str, kind: str) -> Details:
     for name in SUMMARY[kind]:
         if name not in table:
             continue
-        complete = name in ONLY_COMPLETE
-        counted = table.assign(
-            **{name: table[name].where(table["outcome"] == ARRIVED)} if complete else {}
-        )
-        first, second = (by_checkpoint(counted[counted["variant"] == v], name) for v in VARIANTS)
+        some = counted(table, name)
+        first, second = (by_checkpoint(some[some["variant"] == v], name) for v in VARIANTS)
         a, b = (statistics.estimate(list(side.values())) for side in (first, second))
         apart = statistics.difference(list(first.values()), list(second.values()))
         common = sorted(set(first) & set(second))
@@ -253,7 +249,7 @@ def differences(evaluated: Evaluated, group: str, kind: str) -> Details:
             [
                 name.replace("_", " "),
                 measure_of(name).unit,
-                "arrived" if complete else "all",
+                "arrived" if name in ONLY_COMPLETE else "all",
                 short(a),
                 short(b),
                 percent(apart.relative, apart.relative_low, apart.relative_high),

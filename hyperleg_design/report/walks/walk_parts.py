@@ -14,6 +14,7 @@ from hyperleg_design.evaluation.believable import walk_findings
 from hyperleg_design.evaluation.foot_pad import heel_mass, pad_of_contact
 from hyperleg_design.evaluation.measures import measure_of
 from hyperleg_design.evaluation.motion.steps import measured_steps
+from hyperleg_design.evaluation.plans.analysis_plan import counted
 from hyperleg_design.evaluation.result import by_checkpoint
 from hyperleg_design.evaluation.robustness import curves
 from hyperleg_design.evaluation.versus_paper import VARIANTS
@@ -188,8 +189,9 @@ def confound(evaluated: Evaluated, draw: Drawer) -> Part:
         rows = []
         shares = {}
         for name in ATTRIBUTED:
+            some = counted(table, name)
             groups = {
-                d: list(by_checkpoint(table[table["variant"] == d], name).values())
+                d: list(by_checkpoint(some[some["variant"] == d], name).values())
                 for d in evaluated.designs(group)
             }
             shares[name.replace("_", " ")] = found_shares = attribution.attribute(groups)

@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import copy
 
+import numpy as np
+import pandas as pd
 import pytest
 import yaml
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.plans.analysis_plan import load_plan, plan_from_mapping
+from hyperleg_design.evaluation.plans.analysis_plan import counted, load_plan, plan_from_mapping
 
 
 @pytest.fixture
@@ -68,3 +70,12 @@ def test_nothing_is_left_open(mapping, key):
     with pytest.raises(InputError) as caught:
         plan_from_mapping(mapping, "plan.yaml")
     assert caught.value.field == key
+
+
+def test_measures_of_whole_runs_count_over_arrivals():
+    table = pd.DataFrame(
+        {"outcome": ["arrived", "fell", "timed_out"], "power": [1.0, 9.0, 2.0], "cadence": 2.0}
+    )
+    assert counted(table, "cadence") is table
+    np.testing.assert_array_equal(counted(table, "power")["power"], [1.0, np.nan, np.nan])
+    assert table["power"].tolist() == [1.0, 9.0, 2.0]  # the table itself stays
