@@ -42,8 +42,8 @@ CRITIC_SHARE = 0.2
 """Share of the iterations in which only the critic learns, at most, where it starts anew; assumed.
 Before it can judge the new design, it would teach the policy noise."""
 DEVIATION = 0.3
-"""Largest standard deviation of the actions at the start; that of `sim/preset_designs_walk.yaml`,
-which starts from walking policies, too."""
+"""Largest standard deviation of the actions at the start; that of `sim/preset_designs.yaml`, which
+starts from walking policies, too."""
 _POLL = 0.5
 """Time between looks at the processes [s]."""
 _STATUS = "status.json"

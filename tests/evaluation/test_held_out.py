@@ -60,7 +60,8 @@ def test_needs_a_policy_for_all_designs(policies: list[str]) -> None:
 
 
 def test_the_shipped_conditioned_policy_was_not_trained_on_held_out_designs() -> None:
-    policy = load_policy(resources.content_folder("sim") / "conditioned/walk-toe-0/policy.onnx")
+    folder = resources.content_folder("sim") / "conditioned"
+    policy = load_policy(folder / "walk_upright-toe-0/policy.onnx")
     spread = load_design_spread("toe")
     assert design_spread(policy.metadata["designs"], "policy") == spread
     held_out = spread.held_out_designs(policy.design)

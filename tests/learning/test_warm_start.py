@@ -198,6 +198,6 @@ def with_goal_paper(tiny: Preset) -> Preset:
 
 
 def test_a_conditioned_policy_is_no_start_yet() -> None:
-    path = resources.content_folder("sim") / "conditioned/walk-toe-0/policy.onnx"
+    path = resources.content_folder("sim") / "conditioned/walk_upright-toe-0/policy.onnx"
     with pytest.raises(InputError, match="conditioned on its design"):
         read_start(path)

@@ -71,11 +71,11 @@ def test_it_trains_under_the_settings_that_the_training_ended_with(name):
 
 def tiny():
     """A preset of few and small steps."""
-    base = load_preset("designs_walk")
-    stages = tuple(dataclasses.replace(s, steps=64) for s in base.stages("walk"))
+    base = load_preset("designs")
+    stages = tuple(dataclasses.replace(s, steps=64) for s in base.stages("walk_upright"))
     network = dataclasses.replace(base.network, hidden=(16, 8))
     return dataclasses.replace(
-        base, simulations=8, rollout=4, network=network, tasks={"walk": stages}
+        base, simulations=8, rollout=4, network=network, tasks={"walk_upright": stages}
     )
 
 
@@ -83,7 +83,7 @@ def tiny():
 def policy(tmp_path_factory):
     """A policy after 64 steps."""
     folder = tmp_path_factory.mktemp("trained") / "walk_upright-toe-1"
-    assert train("walk", "toe", 0, tiny(), folder)
+    assert train("walk_upright", "toe", 0, tiny(), folder)
     return folder / "policy.onnx"
 
 
@@ -180,9 +180,9 @@ time.sleep(60)
 def test_what_cannot_be_a_start_is_one_clear_error(tmp_path, monkeypatch):
     from hyperleg_design import resources
 
-    conditioned = resources.content_folder("sim") / "conditioned" / "walk-toe-0" / "policy.onnx"
+    folder = resources.content_folder("sim") / "conditioned"
     with pytest.raises(InputError, match=r"--finetune.*conditioned on its design"):
-        check_trainable(conditioned)
+        check_trainable(folder / "walk_upright-toe-0" / "policy.onnx")
     monkeypatch.setattr(fine_tuning, "NEEDS", ("torch", "no_such_module"))
     with pytest.raises(InputError, match=r"needs no_such_module.*learning"):
         check_trainable(find_policy("walk_upright-toe-1"))
