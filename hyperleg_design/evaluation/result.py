@@ -248,6 +248,20 @@ def counted(table: pd.DataFrame, measure: str) -> pd.Series:
     return values if measure in OUTCOMES else values.where(~(table["fell"] > 0))
 
 
+def arrivals_only(table: pd.DataFrame, *measures: str) -> pd.DataFrame:
+    """Leave out what trials that did not arrive give of some measures.
+
+    Args:
+        table: as `trial_table` makes it.
+        measures: names of its columns.
+
+    Returns:
+        A copy in which these measures are NaN where the trial did not arrive.
+    """
+    arrived = table["outcome"] == ARRIVED
+    return table.assign(**{name: table[name].where(arrived) for name in measures})
+
+
 def by_checkpoint(table: pd.DataFrame, measure: str) -> dict[str, list[np.ndarray]]:
     """Group a measure of a trial table by training seed and checkpoint, as `statistics` takes it.
 

@@ -18,9 +18,8 @@ from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, WalkProtocol
-from hyperleg_design.evaluation.result import by_checkpoint
+from hyperleg_design.evaluation.result import arrivals_only, by_checkpoint
 from hyperleg_design.evaluation.result_tables import trial_table
-from hyperleg_design.evaluation.rollout import ARRIVED
 from hyperleg_design.evaluation.shipped import check_different, find_policy
 from hyperleg_design.robot.load import walker
 from hyperleg_design.simulation.alteration import Alteration
@@ -240,7 +239,7 @@ def curves(table: pd.DataFrame, kind: str = "walk") -> list[CurvePoint]:
         for measure in SHOWN[kind]:
             values = part
             if measure != "arrived":
-                values = part.assign(**{measure: part[measure].where(part["outcome"] == ARRIVED)})
+                values = arrivals_only(part, measure)
             groups = list(by_checkpoint(values, measure).values())
             estimator = statistics.share if measure == "arrived" else statistics.estimate
             points.append(

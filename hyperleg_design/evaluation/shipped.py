@@ -182,15 +182,16 @@ def policies_for(
     known = shipped_policies(folder, late=False)
     groups = [p.group for p in known if p.design == variant and p.group.startswith(kind)]
     best = PREFERRED.get(kind, (kind,))
-    for group in dict.fromkeys([*(name for name in best if name in groups), *groups]):
-        return [p for p in known if (p.group, p.design) == (group, variant)][:seeds]
-    have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"
-    raise InputError(
-        "policies",
-        "",
-        f"{kind}-{variant}",
-        f"no policy was trained for this task and toe layout; there are {have}",
-    )
+    if not groups:
+        have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"
+        raise InputError(
+            "policies",
+            "",
+            f"{kind}-{variant}",
+            f"no policy was trained for this task and toe layout; there are {have}",
+        )
+    group = next((name for name in best if name in groups), groups[0])
+    return [p for p in known if (p.group, p.design) == (group, variant)][:seeds]
 
 
 def find_policy(name: str | Path) -> Path:

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import resampling, statistics
 from hyperleg_design.evaluation.paper import Printed
-from hyperleg_design.evaluation.result import by_checkpoint
-from hyperleg_design.evaluation.rollout import ARRIVED
+from hyperleg_design.evaluation.result import arrivals_only, by_checkpoint
 from hyperleg_design.evaluation.statistics import (
     AGREES,
     DIFFERS,
@@ -82,10 +81,8 @@ def paper_rows(
                 variant,
                 f"has no trials; there are {', '.join(sorted(set(table['variant'])))}",
             )
-        measures = [item.measure for item in printed if item.measure in part]
-        parts[variant] = part.assign(
-            **{name: part[name].where(part["outcome"] == ARRIVED) for name in measures}
-        )
+        measures = (item.measure for item in printed if item.measure in part)
+        parts[variant] = arrivals_only(part, *measures)
     return [
         _row(
             item,

@@ -110,7 +110,9 @@ def train(
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     task.check_robot(layout_of(task.posed(design)), design.name)
-    check_device(device)
+    if check_device(device) != HOST and preset.algorithm.adapted != "iteration":
+        remedy = f"expects a preset with algorithm.adapted: iteration, not {preset.name}"
+        raise InputError("--device", "", device, remedy)
     folder = check_output_folder(out)
     origin = {
         "start": started and started.source,

@@ -24,3 +24,9 @@ def test_an_update_on_another_device_is_the_same_update(tmp_path):
 def test_a_device_that_is_not_there_is_an_error(device):
     with pytest.raises(InputError, match=r"--device.*no such device"):
         check_device(device)
+
+
+def test_a_preset_that_cannot_learn_elsewhere_says_so(tmp_path):
+    with pytest.raises(InputError, match=r"--device.*adapted: iteration, not paper"):
+        train("walk_paper", "toe", 0, "paper", tmp_path / "run", device="cpu:0")
+    assert not (tmp_path / "run").exists()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.measures import T_TEST, WALK
-from hyperleg_design.evaluation.rollout import ARRIVED
+from hyperleg_design.evaluation.result import arrivals_only
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
@@ -53,9 +53,7 @@ def counted(table: pd.DataFrame, measure: str) -> pd.DataFrame:
     Returns:
         The table; of the measures `ONLY_COMPLETE`, values of arrivals only, NaN elsewhere.
     """
-    if measure not in ONLY_COMPLETE:
-        return table
-    return table.assign(**{measure: table[measure].where(table["outcome"] == ARRIVED)})
+    return arrivals_only(table, measure) if measure in ONLY_COMPLETE else table
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

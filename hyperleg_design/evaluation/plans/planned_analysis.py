@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.evaluation.plans import planned_tests
-from hyperleg_design.evaluation.result import by_checkpoint
-from hyperleg_design.evaluation.rollout import ARRIVED
+from hyperleg_design.evaluation.result import arrivals_only, by_checkpoint
 from hyperleg_design.evaluation.statistics import FEWEST_SEEDS
 
 if TYPE_CHECKING:
@@ -79,9 +78,7 @@ def training_means(
     part = table[table["variant"] == design]
     if not len(part) or measure not in part:
         return np.empty(0), 0
-    values = part.assign(
-        **{measure: part[measure].where(part["outcome"] == ARRIVED)} if trials == "arrived" else {}
-    )
+    values = arrivals_only(part, measure) if trials == "arrived" else part
     seeds = [
         [own[~np.isnan(own)] for own in policies]
         for policies in by_checkpoint(values, measure).values()
