@@ -64,7 +64,10 @@ def _with_base(
         return data
     if not isinstance(base, str) or base in before:
         raise InputError(where, "base", base, "expects the name of a preset that has other bases")
-    path = resources.find_sim("preset", base)
+    try:
+        path = resources.find_sim("preset", base)
+    except InputError as error:
+        raise InputError(where, "base", base, error.remedy) from None
     below = _with_base(read_yaml(path), short_name(path), (*before, base))
     merged = {key: value for key, value in below.items() if key not in OWN}
     for key, value in data.items():

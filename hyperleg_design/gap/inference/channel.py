@@ -70,7 +70,7 @@ class Channel:
 
     @property
     def columns(self) -> int:
-        """K."""
+        """Number K of columns of the discrepancy model."""
         return self.products.shape[1] - 1
 
     @cached_property

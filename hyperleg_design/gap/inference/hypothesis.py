@@ -76,7 +76,7 @@ class Hypothesis:
 
     @property
     def causes(self) -> tuple[Cause, ...]:
-        """Of all candidates."""
+        """Causes of all candidates of the hypothesis."""
         return tuple(cause for one in self.candidates for cause in one.causes)
 
     @property

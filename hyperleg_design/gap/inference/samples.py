@@ -57,17 +57,17 @@ class Samples:
 
     @property
     def groups(self) -> int:
-        """G."""
+        """Number G of groups of samples."""
         return len(self.group_band)
 
     @property
     def folds(self) -> int:
-        """Number of folds."""
+        """Number of folds of the cross-validation."""
         return int(self.fold.max()) + 1
 
     @property
     def sessions(self) -> int:
-        """Number of sessions."""
+        """Number of sessions of recording."""
         return int(self.session.max()) + 1
 
     @property

@@ -107,7 +107,15 @@ class _Answer:
         self.counts = self._counts()
 
     def diagnosis(self, checks: Sequence[Check], sensitivity: Any) -> Diagnosis:
-        """All of it."""
+        """Collect the whole answer from the parts that were computed.
+
+        Args:
+            checks: of the logs, which the answer carries along.
+            sensitivity: smallest faults that the logs would have shown.
+
+        Returns:
+            The diagnosis.
+        """
         told = self.posterior
         naming = told.verdict in NAMING
         causes = self.causes(told.order)
