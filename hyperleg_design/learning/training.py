@@ -98,7 +98,7 @@ class Training:
         columns = list(self.environment.observation_columns["critic"])
         self._critic = (
             start.critic
-            if start and fits_critic(self.algorithm.critic, start, task.name, columns)
+            if start and fits_critic(self.algorithm.critic, start, columns)
             else None
         )
         fresh = start is not None and self._critic is None

@@ -6,9 +6,11 @@ policy begins by doing what the old one did under that command. So does a gait c
 task no longer showed, where the new task does not observe it. Columns that only the new task has
 begin without weight. The critic starts anew, alone for some iterations.
 
-A finished training writes its critic beside its policy. A training of the same task that starts
-from this policy takes over that critic and the deviation of the actions, and so goes on where the
-first one ended, but for the optimiser's moments and the simulations' states.
+Layers may become wider: the policy then still begins by doing what the old one did.
+
+A finished training writes its critic beside its policy. A training whose critic observes the same
+and has the same layers takes over that critic and the deviation of the actions, and so goes on
+where the first one ended, but for the optimiser's moments and the simulations' states.
 """
 
 from __future__ import annotations
@@ -205,10 +207,10 @@ def start_actor(
         )
     linear = [layer for layer in plain_layers(actor.mlp) if isinstance(layer, torch.nn.Linear)]
     shapes = [tuple(layer.weight.shape) for layer in linear]
-    if [w.shape[0] for w in start.weights] != [s[0] for s in shapes]:
-        widths = [int(w.shape[0]) for w in start.weights]
+    widths, wanted = [int(w.shape[0]) for w in start.weights], [s[0] for s in shapes]
+    if len(widths) != len(wanted) or any(w > n for w, n in zip(widths, wanted, strict=True)):
         raise InputError(
-            "start", "layers", widths, f"expects a policy with layers of {[s[0] for s in shapes]}"
+            "start", "layers", widths, f"expects a policy with layers of at most {wanted}"
         )
     old = {name: i for i, name in enumerate(start.columns)}
     folded = [i for name, i in old.items() if command is not None and name.startswith(COMMAND)]
@@ -230,7 +232,8 @@ def start_actor(
             f"expects a policy with {len(command)} numbers of a command",
         )
     mean, scale = np.zeros(len(columns)), np.maximum(observation.std(0), 0.1)
-    first, to, of = np.zeros(shapes[0]), [n for n, _ in shared], [o for _, o in shared]
+    to, of = [n for n, _ in shared], [o for _, o in shared]
+    first = np.zeros((widths[0], len(columns)))
     first[:, to], mean[to], scale[to] = start.weights[0][:, of], start.mean[of], start.deviation[of]
     unseen = [o for o in old.values() if o not in {*of, *folded, *hidden}]
     if unseen:
@@ -247,26 +250,38 @@ def start_actor(
         bias = bias + start.weights[0][:, folded] @ (
             (command - start.mean[folded]) / start.deviation[folded]
         )
-    values = [(first, bias), *zip(start.weights[1:], start.biases[1:], strict=True)]
-    _put(actor, values, mean, scale)
+    layers = [(first, bias), *zip(start.weights[1:], start.biases[1:], strict=True)]
+    _put(actor, [_widened(*pair) for pair in zip(linear, layers, strict=True)], mean, scale)
     with torch.no_grad():
         actor.distribution.log_std_param.fill_(float(np.log(deviation)))
 
 
-def fits_critic(critic: MLPModel, start: StartPolicy, task: str, columns: list[str]) -> bool:
+def _widened(
+    layer: torch.nn.Linear, old: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Weights and bias of a layer that is as wide as the old one or wider, and of which the old
+    units do what they did: they take nothing from new units, which begin as drawn.
+    """
+    weight = layer.weight.detach().numpy().astype(float)
+    bias = layer.bias.detach().numpy().astype(float)
+    rows, columns = old[0].shape
+    weight[:rows], weight[:rows, :columns], bias[:rows] = 0.0, *old
+    return weight, bias
+
+
+def fits_critic(critic: MLPModel, start: StartPolicy, columns: list[str]) -> bool:
     """Whether a training can take over the critic that judged a policy.
 
     Args:
         critic: of the new training.
         start: the policy.
-        task: name of the new training's task.
         columns: names of the critic's observation's numbers.
 
     Returns:
-        Whether there is one, of the same task, observation and layers.
+        Whether there is one, of the same observation and layers.
     """
     old = start.critic
-    if old is None or start.source["task"] != task or list(old.columns) != columns:
+    if old is None or list(old.columns) != columns:
         return False
     linear = [layer for layer in plain_layers(critic.mlp) if isinstance(layer, torch.nn.Linear)]
     return [w.shape for w in old.weights] == [tuple(layer.weight.shape) for layer in linear]

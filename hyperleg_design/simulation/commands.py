@@ -84,19 +84,24 @@ class Commander(Protocol):
             The command, `(n, 3)`.
         """
 
-    def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
-        """Compute where the robots should go.
+    turns: bool
+    """Whether the robots have to turn; an assist then leaves their yaw to them."""
+
+    def wanted(self, goal: Goal | None) -> np.ndarray:
+        """Compute how fast the robots should go straight ahead.
 
         Args:
             goal: of all simulations.
 
         Returns:
-            Direction in the yaw frame, `(n, 2)`, and speed [m/s], `(n,)`.
+            Speed [m/s], `(n,)`.
         """
 
 
 class VelocityCommander:
     """Velocity commands in the yaw frame."""
+
+    turns = False
 
     def __init__(self, settings: VelocityCommands, count: int) -> None:
         self.settings = settings
@@ -155,16 +160,16 @@ class VelocityCommander:
         """
         return self.values.copy() if ids is None else self.values[ids]
 
-    def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
+    def wanted(self, goal: Goal | None) -> np.ndarray:
         """Go straight on at the forward speed.
 
         Args:
             goal: None.
 
         Returns:
-            Direction in the yaw frame, `(n, 2)`, and speed [m/s], `(n,)`.
+            Speed [m/s], `(n,)`.
         """
-        return np.broadcast_to(np.array([1.0, 0.0]), (len(self.values), 2)), self.values[:, 0]
+        return self.values[:, 0]
 
 
 def commander(

@@ -64,6 +64,8 @@ class WaypointCommands(Checked):
 class WaypointCommander:
     """Commands that lead each robot through waypoints in the world."""
 
+    turns = True
+
     def __init__(self, settings: WaypointCommands, count: int) -> None:
         self.settings = settings
         self.last, self.target, self.following = (
@@ -160,17 +162,18 @@ class WaypointCommander:
         assert goal is not None
         return np.column_stack([clipped(goal.offset), goal.heading_error])
 
-    def wanted(self, goal: Goal | None) -> tuple[np.ndarray, np.ndarray]:
-        """Go toward the waypoint at the speed cap.
+    def wanted(self, goal: Goal | None) -> np.ndarray:
+        """Go ahead at the speed cap where the waypoint lies ahead, slower where it lies aside, and
+        not at all where it lies behind.
 
         Args:
             goal: of all simulations.
 
         Returns:
-            Direction in the yaw frame, `(n, 2)`, and speed [m/s], `(n,)`.
+            Speed [m/s], `(n,)`.
         """
         assert goal is not None
-        return goal.offset / np.maximum(goal.distance, 1e-9)[:, None], goal.speed_cap
+        return goal.speed_cap * np.maximum(np.cos(goal.heading_error), 0.0)
 
     def _seen(self, ids: Any, here: np.ndarray, heading: np.ndarray) -> Goal:
         offset = to_yaw_frame(heading, self.target[ids] - here)

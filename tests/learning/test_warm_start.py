@@ -93,6 +93,26 @@ def test_it_begins_by_doing_what_the_walk_did(tiny: Preset, walker: Path, tmp_pa
     training.environment.close()
 
 
+def test_wider_layers_begin_by_doing_the_same(tiny: Preset, tmp_path: Path) -> None:
+    assert train("walk", "toe", 0, tiny, tmp_path / "narrow")
+    policy = tmp_path / "narrow" / "policy.onnx"
+    network = dataclasses.replace(tiny.network, hidden=(24, 8))
+    training = begun(
+        dataclasses.replace(tiny, network=network), policy, tmp_path / "wide", task="walk"
+    )
+    columns = training.environment.observation_columns["policy"]
+    observation = np.random.default_rng(1).normal(0.0, 1.0, (20, len(columns)))
+    observation = observation.astype(np.float32)
+    (expected,) = ort.InferenceSession(policy).run(["action"], {"observation": observation})
+    np.testing.assert_allclose(
+        training.policy(observation), expected, atol=2e-4 * (1 + np.abs(expected).max())
+    )
+    first = next(training.algorithm.actor.mlp.parameters())
+    assert first.shape[0] == 24
+    assert torch.all(first[16:].abs().amax(1) > 0)  # new units can learn
+    training.environment.close()
+
+
 @pytest.mark.parametrize("task", ["walk", "goal"])
 def test_from_a_policy_of_the_same_task_it_goes_on_as_it_was(
     tiny: Preset, tmp_path: Path, task: str
@@ -184,6 +204,9 @@ def test_a_start_is_told_and_resumes(tiny: Preset, walker: Path, tmp_path: Path)
 def test_bad_starts(tiny: Preset, walker: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="expects a policy for"):
         begun(tiny, walker, tmp_path, design="toe_removed")
+    narrow = dataclasses.replace(tiny, network=dataclasses.replace(tiny.network, hidden=(8, 8)))
+    with pytest.raises(InputError, match=r"at most \[8, 8"):
+        begun(narrow, walker, tmp_path)
     with pytest.raises(InputError, match="would miss it"):
         train("goal_paper", "toe", 0, with_goal_paper(tiny), tmp_path / "b", start=walker)
     with pytest.raises(InputError, match="cannot be read"):

@@ -62,6 +62,14 @@ def test_a_course_is_run_in_order_from_where_and_how_the_robot_stands():
     )
 
 
+@pytest.mark.parametrize(("yaw", "share"), [(0.0, 1.0), (np.pi / 3, 0.5), (np.pi, 0.0)])
+def test_an_assist_goes_ahead_only_where_the_waypoint_lies_ahead(yaw, share):
+    keeper = commander(WaypointCommands(course_share=1.0, courses=(T_TEST,), speed_cap=3.0), 1)
+    keeper.reset(np.array([0]), at([0.0, 0.0]), np.random.default_rng(0))
+    goal = keeper.judge(at([0.0, 0.0], yaw))
+    np.testing.assert_allclose(keeper.wanted(goal), 3.0 * share, atol=1e-9)
+
+
 def test_progress_is_counted_once():
     keeper, rng = (
         commander(WaypointCommands(course_share=1.0, courses=(((5.0, 0.0),),)), 1),

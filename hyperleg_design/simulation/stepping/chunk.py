@@ -295,8 +295,9 @@ class Chunk:
     def _help(self) -> None:
         assert self.assist is not None
         motion = read_motion(self.drive.qpos, self.drive.qvel)
-        direction, speed = self.commander.wanted(self.goal)
-        self._push[:, self._pelvis] = self.assist.wrench(motion, direction, speed)
+        self._push[:, self._pelvis] = self.assist.wrench(
+            motion, self.commander.wanted(self.goal), self.commander.turns
+        )
 
     def _pushes(self, duration: float) -> None:
         settings = self.task.randomisation

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.simulation.state import Motion, to_world
+from hyperleg_design.simulation.state import Motion
 
 FORCE = 120.0
 """Horizontal force over the error of the velocity [N s/m]; assumed. Twice as much throws a
@@ -54,18 +54,18 @@ class Assist:
         if self.gain < OFF_BELOW:
             self.gain = 0.0
 
-    def wrench(self, motion: Motion, direction: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    def wrench(self, motion: Motion, speed: np.ndarray, turns: bool) -> np.ndarray:
         """Compute the helping force and torque on the pelvis.
 
         Args:
             motion: of the robots.
-            direction: unit vector to go, in the yaw frame, `(n, 2)`.
-            speed: wanted that way [m/s], `(n,)`.
+            speed: wanted straight ahead [m/s], `(n,)`.
+            turns: whether the robots have to turn, so that their yaw is left to them.
 
         Returns:
             Force [N] and torque [Nm] in the world, `(n, 6)`.
         """
-        ahead = to_world(motion.heading, direction)
+        ahead = motion.heading
         error = speed - np.einsum("ni,ni->n", ahead, motion.velocity[:, :2])
         up = motion.rotation[:, :, 2]
         turning = np.einsum("nij,nj->ni", motion.rotation, motion.angular_velocity)
@@ -75,6 +75,7 @@ class Assist:
         wrench[:, :2] = FORCE * (error[:, None] * ahead - drift[:, None] * aside)
         wrench[:, 3] = TORQUE * up[:, 1] - DAMPING * turning[:, 0]
         wrench[:, 4] = -TORQUE * up[:, 0] - DAMPING * turning[:, 1]
-        wrench[:, 5] = -DAMPING * turning[:, 2]
+        if not turns:
+            wrench[:, 5] = -DAMPING * turning[:, 2]
         share = np.linspace(0.0, 1.0, len(error)) if len(error) > 1 else np.ones(1)
         return self.gain * share[:, None] * wrench
