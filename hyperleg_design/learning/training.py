@@ -97,9 +97,7 @@ class Training:
         self._stop = False
         columns = list(self.environment.observation_columns["critic"])
         self._critic = (
-            start.critic
-            if start and fits_critic(self.algorithm.critic, start, columns)
-            else None
+            start.critic if start and fits_critic(self.algorithm.critic, start, columns) else None
         )
         fresh = start is not None and self._critic is None
         self._critic_only = int(preset.warm_start.critic_iterations) if fresh else 0
