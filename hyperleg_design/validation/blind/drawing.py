@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import Chain
+from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.wrong import Wrong
 
 SIGNED = (

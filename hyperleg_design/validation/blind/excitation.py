@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import Chain
+from hyperleg_design.validation.blind.robots.chain import Chain
 
 RIG = ("chirp", "ramps", "holds", "reversals")
 """Motions of the first plant's operator."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import Chain
+from hyperleg_design.validation.blind.robots.chain import Chain
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

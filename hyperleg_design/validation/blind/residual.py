@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import Chain
+from hyperleg_design.validation.blind.robots.chain import Chain
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

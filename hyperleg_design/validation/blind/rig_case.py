@@ -15,16 +15,17 @@ import numpy as np
 from hyperleg_design.validation.blind import excitation
 from hyperleg_design.validation.blind.case import Case
 from hyperleg_design.validation.blind.case import describe as describe
-from hyperleg_design.validation.blind.chain import Chain, chain
 from hyperleg_design.validation.blind.drawing import draw
-from hyperleg_design.validation.blind.nuisance import Nuisance, of_day, of_robot
 from hyperleg_design.validation.blind.plan import Plan
-from hyperleg_design.validation.blind.plant import Trace
-from hyperleg_design.validation.blind.plant_other import BELT_STIFFNESS, simulate_other
-from hyperleg_design.validation.blind.plant_rig import simulate
+from hyperleg_design.validation.blind.plants.nuisance import Nuisance, of_day, of_robot
+from hyperleg_design.validation.blind.plants.other_rig import BELT_STIFFNESS, simulate_other
+from hyperleg_design.validation.blind.plants.plant import Trace
+from hyperleg_design.validation.blind.plants.rig import simulate
+from hyperleg_design.validation.blind.plants.rig_build import Reach, build_rig
 from hyperleg_design.validation.blind.recorder import Recorder, record
 from hyperleg_design.validation.blind.residual import multiple, residual
-from hyperleg_design.validation.blind.rig_build import Reach, build_rig
+from hyperleg_design.validation.blind.robots.catalogue import chain
+from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.wrong import SIZES, Wrong
 
 if TYPE_CHECKING:

@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import Chain
-from hyperleg_design.validation.blind.nuisance import Nuisance
-from hyperleg_design.validation.blind.rig_build import Reach
+from hyperleg_design.validation.blind.plants.nuisance import Nuisance
+from hyperleg_design.validation.blind.plants.rig_build import Reach
+from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.wrong import Wrong
 
 KIND = {

@@ -5,35 +5,26 @@ base, an IMU and loaded soles.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.validation.blind.case import Case
-from hyperleg_design.validation.blind.chain import GRAVITY, Chain, chain
 from hyperleg_design.validation.blind.drawing import draw
-from hyperleg_design.validation.blind.nuisance import Nuisance, built, of_day, of_robot
 from hyperleg_design.validation.blind.plan import Plan
-from hyperleg_design.validation.blind.plant_walking import (
-    Ground,
-    Stand,
-    WalkingPlant,
-    WalkingTrace,
-    simulate_walking,
-    walking_model,
-)
-from hyperleg_design.validation.blind.recorder import Recorder
-from hyperleg_design.validation.blind.rig_build import build_rig, tilted
+from hyperleg_design.validation.blind.plants.nuisance import of_day, of_robot
+from hyperleg_design.validation.blind.plants.stand import Stand
 from hyperleg_design.validation.blind.rig_case import size_at
-from hyperleg_design.validation.blind.walking_record import walking_log
+from hyperleg_design.validation.blind.robots.catalogue import chain
+from hyperleg_design.validation.blind.robots.chain import Chain
+from hyperleg_design.validation.blind.walker import BASE, Floor, Walker
 from hyperleg_design.validation.blind.walking_residual import shown
 from hyperleg_design.validation.blind.wrong import SIZES, WALKING_ONLY, Size, Wrong
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
 
-BASE = "pelvis"
 RECORDINGS = 2
 """Logs of a case."""
 PROBE = 4.0
@@ -51,9 +42,6 @@ GROUND_SIZES = {
     "ground_compliance": Size("nominal stiffness over true", 3.0, 60.0),
 }
 """As `wrong.SIZES`, of the effects that only a robot on its feet shows."""
-NOMINAL_GROUND = (2.5e4, 230.0)
-"""Stiffness [1/s^2] and damping [1/s] of the plant's own contact; about as deep as the simulator's
-at rest."""
 
 
 def walking_case(plan: Plan) -> Case:
@@ -75,7 +63,7 @@ def walking_case(plan: Plan) -> Case:
         float(rng.uniform(0.8, 1.25)),
         float(rng.uniform(0.98, 1.02)),
     )
-    walker = _Walker(robot, of_day(robot, life, rng), floor, plan.recorder)
+    walker = Walker(robot, of_day(robot, life, rng), floor, plan.recorder)
     wrongs: list[Wrong] = []
     for effect, wanted in zip(plan.effects, plan.multiples, strict=True):
         wrongs.append(_sized(walker, effect, wanted, rng, [w.location for w in wrongs]))
@@ -124,7 +112,7 @@ def walking_case(plan: Plan) -> Case:
 
 
 def _recorded(
-    walker: _Walker, plan: Plan, wrongs: Sequence[Wrong], rng: np.random.Generator
+    walker: Walker, plan: Plan, wrongs: Sequence[Wrong], rng: np.random.Generator
 ) -> tuple[list[Log], list[Wrong], tuple[float, ...]] | None:
     """Logs of motions in which the robot stands, without and with the effects, these as large as
     that allows, and their multiples.
@@ -193,133 +181,6 @@ def _milder(wrong: Wrong) -> float:
     )
 
 
-@dataclass(frozen=True)
-class Floor:
-    """What stays with one place and one pelvis."""
-
-    friction: float
-    stiffness: float
-    """Over the nominal [-]."""
-    pelvis: float
-    """True mass of the pelvis over the drawing's [-]."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Walker:
-    chain: Chain
-    day: Nuisance
-    floor: Floor
-    recorder: Recorder
-
-    def plant(self, wrongs: Sequence[Wrong]) -> WalkingPlant:
-        gravity, masses, push, loads = GRAVITY.copy(), built(self.chain, self.day), np.zeros(3), []
-        friction, stiffness = self.floor.friction, self.floor.stiffness
-        gyro, accelerometer, frequency = np.zeros(3), np.zeros(3), 1.0
-        drives: list[Wrong] = []
-        for w in wrongs:
-            axis = np.array([w.shape.get(a, 0.0) for a in "xyz"])
-            if w.effect == "tilted_gravity":
-                gravity = tilted(w.size, w.shape["heading"])
-            elif w.effect == "periodic_push":
-                push, frequency = 400.0 * w.size * np.array([0.5, 1.0, 0.0]), w.shape["frequency"]
-            elif w.effect == "imu_bias":
-                gyro, accelerometer = (
-                    w.shape["gyro"] * w.size * axis,
-                    (1 - w.shape["gyro"]) * 10.0 * w.size * axis,
-                )
-            elif w.effect == "ground_friction":
-                friction *= 1.0 - w.size
-            elif w.effect == "ground_compliance":
-                stiffness /= w.size
-            elif w.effect == "payload":
-                loads.append((w.size, axis))
-            elif w.effect == "link_mass":
-                link = next(link for link in self.chain.links if link.name == w.location)
-                own = next(link for link in masses.links if link.name == w.location)
-                masses = masses.with_link(
-                    link.name,
-                    mass=own.mass + w.size * link.mass,
-                    inertia=own.inertia * (1 + w.size),
-                )
-            else:
-                drives.append(w)
-        ground = Ground(
-            friction, NOMINAL_GROUND[0] * stiffness, NOMINAL_GROUND[1] * np.sqrt(stiffness)
-        )
-        model = walking_model(self.chain, masses, ground, self.floor.pelvis, gravity)
-        for mass, place in loads:
-            _hang(model, mass, place)
-        return WalkingPlant(
-            model,
-            replace(build_rig(self.chain, self.day, drives), push_frequency=frequency),
-            gyro,
-            accelerometer,
-            push,
-        )
-
-    def trace(
-        self, wrongs: Sequence[Wrong], stand: Stand, duration: float, seed: int
-    ) -> tuple[WalkingPlant, WalkingTrace]:
-        plant = self.plant(wrongs)
-        return plant, simulate_walking(plant, self.chain, stand, duration, self.recorder.rate, seed)
-
-    def log(
-        self, made: tuple[WalkingPlant, WalkingTrace], seed: int, name: str, **metadata: Any
-    ) -> Log | None:
-        """A log, or None where the robot fell.
-
-        Args:
-            made: the plant and the trace of its run.
-            seed: of the recording.
-            name: of the log.
-            metadata: of the log.
-
-        Returns:
-            The log, or None.
-        """
-        plant, trace = made
-        return (
-            None
-            if trace.fell
-            else walking_log(
-                plant, trace, self.chain, self.recorder, np.random.default_rng(seed), name, metadata
-            )
-        )
-
-
-def _hang(model: Any, mass: float, place: np.ndarray) -> None:
-    """Put a point mass on the pelvis of a compiled model."""
-    import mujoco
-
-    from hyperleg_design.validation.blind.chain import matrix, steiner
-
-    body = model.body(BASE).id
-    own, com, axes = (
-        float(model.body_mass[body]),
-        model.body_ipos[body].copy(),
-        matrix(model.body_iquat[body]),
-    )
-    total = own + mass
-    middle = (own * com + mass * place) / total
-    inertia = (
-        axes @ np.diag(model.body_inertia[body]) @ axes.T
-        + steiner(own, com - middle)
-        + steiner(mass, place - middle)
-    )
-    values, turned = np.linalg.eigh(inertia)
-    if np.linalg.det(turned) < 0:
-        turned[:, 0] *= -1
-    quaternion = np.empty(4)
-    mujoco.mju_mat2Quat(quaternion, turned.ravel())
-    (
-        model.body_mass[body],
-        model.body_ipos[body],
-        model.body_inertia[body],
-        model.body_iquat[body],
-    ) = total, middle, values, quaternion
-    mujoco.mj_setConst(model, mujoco.MjData(model))
-
-
 def drawn_stand(rng: np.random.Generator) -> Stand:
     """A motion on both feet.
 
@@ -342,7 +203,7 @@ def drawn_stand(rng: np.random.Generator) -> Stand:
 
 
 def _sized(
-    walker: _Walker, effect: str, wanted: float, rng: np.random.Generator, taken: Sequence[str]
+    walker: Walker, effect: str, wanted: float, rng: np.random.Generator, taken: Sequence[str]
 ) -> Wrong:
     limits = {**SIZES, **GROUND_SIZES}[effect]
     best: tuple[float, Wrong] | None = None

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import Chain
-from hyperleg_design.validation.blind.plant_walking import (
+from hyperleg_design.validation.blind.plants.walking import (
     WalkingPlant,
     WalkingTrace,
     pad_names,
 )
 from hyperleg_design.validation.blind.recorder import Recorder
+from hyperleg_design.validation.blind.robots.chain import Chain
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import Chain
-from hyperleg_design.validation.blind.plant_walking import (
+from hyperleg_design.validation.blind.plants.walking import (
     pad_names,
 )
 from hyperleg_design.validation.blind.residual import CUTOFF, EDGE, SLOW, SOFT, multiple
+from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.walking_record import ESTIMATE
 
 if TYPE_CHECKING:

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.validation.blind.chain import ROBOTS, chain
 from hyperleg_design.validation.blind.drawing import draw
-from hyperleg_design.validation.blind.nuisance import of_day, of_robot
-from hyperleg_design.validation.blind.rig_build import Reach, build_rig
+from hyperleg_design.validation.blind.plants.nuisance import of_day, of_robot
+from hyperleg_design.validation.blind.plants.rig_build import Reach, build_rig
+from hyperleg_design.validation.blind.robots.catalogue import ROBOTS, chain
 from hyperleg_design.validation.blind.truth import parameters, places
 from hyperleg_design.validation.blind.wrong import SIZES, Wrong
 

@@ -3,10 +3,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from hyperleg_design.validation.blind.chain import chain
-from hyperleg_design.validation.blind.nuisance import perfect
+from hyperleg_design.validation.blind.plants.nuisance import perfect
+from hyperleg_design.validation.blind.plants.rig_build import Reach, build_rig
 from hyperleg_design.validation.blind.recorder import Recorder
-from hyperleg_design.validation.blind.rig_build import Reach, build_rig
 from hyperleg_design.validation.blind.rig_case import (
     ATTEMPTS,
     CALMED,
@@ -15,6 +14,7 @@ from hyperleg_design.validation.blind.rig_case import (
     calm,
     size_at,
 )
+from hyperleg_design.validation.blind.robots.catalogue import chain
 from hyperleg_design.validation.blind.wrong import SIZES
 
 

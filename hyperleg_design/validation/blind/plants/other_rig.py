@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.plant import RigPlant, Trace
-from hyperleg_design.validation.blind.plant_rig import SETTLING
+from hyperleg_design.validation.blind.plants.plant import RigPlant, Trace
+from hyperleg_design.validation.blind.plants.rig import SETTLING
 
 STEP = 0.2e-3
 """Of the integrator [s]."""
@@ -41,7 +41,7 @@ _HISTORY = 64
 def simulate_other(
     plants: Sequence[RigPlant], targets: np.ndarray, rate: float, *, seeds: Sequence[int]
 ) -> list[Trace]:
-    """Run rigs side by side; arguments and result as `plant_rig.simulate`.
+    """Run rigs side by side; arguments and result as `rig.simulate`.
 
     `position` and `velocity` are the joints' own; `encoder` is what the rotors' encoders say of
     them.

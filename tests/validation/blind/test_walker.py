@@ -1,21 +1,12 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from hyperleg_design.validation.blind.chain import GRAVITY, chain
-from hyperleg_design.validation.blind.nuisance import perfect
-from hyperleg_design.validation.blind.plant_walking import (
-    Ground,
-    Stand,
-    WalkingPlant,
-    simulate_walking,
-    walking_model,
-)
+from hyperleg_design.validation.blind.plants.nuisance import perfect
+from hyperleg_design.validation.blind.plants.stand import Stand
 from hyperleg_design.validation.blind.recorder import Recorder
 from hyperleg_design.validation.blind.residual import rms
-from hyperleg_design.validation.blind.rig_build import build_rig
-from hyperleg_design.validation.blind.walking_case import NOMINAL_GROUND, Floor, _Walker
+from hyperleg_design.validation.blind.robots.catalogue import chain
+from hyperleg_design.validation.blind.walker import Floor, Walker
 from hyperleg_design.validation.blind.walking_residual import walking_residual
 from hyperleg_design.validation.blind.wrong import Wrong
 
@@ -28,27 +19,8 @@ def robot():
     return chain("hyperleg")
 
 
-def plant(robot, **changes):
-    model = walking_model(robot, robot, Ground(1.0, *NOMINAL_GROUND), 1.0, GRAVITY)
-    return replace(
-        WalkingPlant(
-            model, build_rig(robot, perfect(robot)), np.zeros(3), np.zeros(3), np.zeros(3)
-        ),
-        **changes,
-    )
-
-
-def test_a_robot_that_stands_weighs_what_it_weighs(robot):
-    made = plant(robot)
-    trace = simulate_walking(made, robot, STILL, 1.0, 200.0, 0)
-    assert not trace.fell
-    weight = made.model.body_mass.sum() * 9.81
-    np.testing.assert_allclose(trace.contact[500:, :, 2].sum(1).mean(), weight, rtol=0.005)
-    assert np.linalg.norm(trace.accelerometer[500:].mean(0)) == pytest.approx(9.81, rel=0.005)
-
-
 def test_motion_on_both_feet_balances_with_the_nominal_robot(robot):
-    walker = _Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
+    walker = Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
     log = walker.log(walker.trace((), MOVING, 2.0, 0), 0, "x")
     assert log is not None
     left = walking_residual(log, robot)
@@ -59,7 +31,7 @@ def test_motion_on_both_feet_balances_with_the_nominal_robot(robot):
 
 
 def test_a_load_on_the_pelvis_is_felt_by_the_ground(robot):
-    walker = _Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
+    walker = Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
     weights = []
     for wrongs in ((), (Wrong("payload", "pelvis", 3.0, {"x": 0.0, "y": 0.0, "z": 0.1}),)):
         log = walker.log(walker.trace(wrongs, STILL, 1.0, 0), 0, "x")
@@ -75,7 +47,7 @@ def test_a_load_on_the_pelvis_is_felt_by_the_ground(robot):
 
 
 def test_smooth_ground_lets_feet_slip(robot):
-    walker = _Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
+    walker = Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
     _, firm = walker.trace((), MOVING, 2.0, 0)
     _, slick = walker.trace((Wrong("ground_friction", "ground", 0.93, {}),), MOVING, 2.0, 0)
     hips = [np.ptp(t.encoder[:, 1] - t.encoder[:, 8]) for t in (firm, slick)]

@@ -4,13 +4,13 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from hyperleg_design.validation.blind.chain import chain
 from hyperleg_design.validation.blind.excitation import motion
-from hyperleg_design.validation.blind.nuisance import perfect
-from hyperleg_design.validation.blind.plant_rig import simulate
+from hyperleg_design.validation.blind.plants.nuisance import perfect
+from hyperleg_design.validation.blind.plants.rig import simulate
+from hyperleg_design.validation.blind.plants.rig_build import build_rig
 from hyperleg_design.validation.blind.recorder import Recorder, record
 from hyperleg_design.validation.blind.residual import residual, rms
-from hyperleg_design.validation.blind.rig_build import build_rig
+from hyperleg_design.validation.blind.robots.catalogue import chain
 from hyperleg_design.validation.blind.wrong import Wrong
 
 SILENT = Recorder(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import Chain
+from hyperleg_design.validation.blind.robots.chain import Chain
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.chain import GRAVITY, Chain
-from hyperleg_design.validation.blind.nuisance import Nuisance, built
-from hyperleg_design.validation.blind.plant import RigPlant
+from hyperleg_design.validation.blind.plants.nuisance import Nuisance, built
+from hyperleg_design.validation.blind.plants.plant import RigPlant
+from hyperleg_design.validation.blind.robots.chain import GRAVITY, Chain
 from hyperleg_design.validation.blind.wrong import Wrong
 
 BELT_DAMPING = 0.05

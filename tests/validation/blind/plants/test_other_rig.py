@@ -3,12 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hyperleg_design.validation.blind.chain import chain
 from hyperleg_design.validation.blind.excitation import motion
-from hyperleg_design.validation.blind.nuisance import perfect
-from hyperleg_design.validation.blind.plant_other import simulate_other
-from hyperleg_design.validation.blind.plant_rig import simulate
-from hyperleg_design.validation.blind.rig_build import build_rig
+from hyperleg_design.validation.blind.plants.nuisance import perfect
+from hyperleg_design.validation.blind.plants.other_rig import simulate_other
+from hyperleg_design.validation.blind.plants.rig import simulate
+from hyperleg_design.validation.blind.plants.rig_build import build_rig
+from hyperleg_design.validation.blind.robots.catalogue import chain
 from hyperleg_design.validation.blind.wrong import Wrong
 
 

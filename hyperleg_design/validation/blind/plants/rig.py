@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hyperleg_design.validation.blind.plant import RigPlant, Trace
+from hyperleg_design.validation.blind.plants.plant import RigPlant, Trace
 
 STEP = 0.25e-3
 """Of the integrator [s]."""
