@@ -12,7 +12,6 @@ others are in MuJoCo. The same seed gives the same bytes with any number of thre
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import os
 import threading
 from collections.abc import Mapping
@@ -23,12 +22,13 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.simulation.alteration import Alterations, made
-from hyperleg_design.simulation.layout import GRAVITY, layout_of, stacked
-from hyperleg_design.simulation.model import simulated_robots, simulation_model
+from hyperleg_design.simulation.layout import stacked
+from hyperleg_design.simulation.stepping.action import checked_action
 from hyperleg_design.simulation.stepping.chunk import Chunk
+from hyperleg_design.simulation.stepping.partition import partition
+from hyperleg_design.simulation.stepping.robots import robots_of
 from hyperleg_design.simulation.stepping.standing import check_all_standing
 from hyperleg_design.simulation.stepping.step import Divergence, Step, joined, merged
-from hyperleg_design.simulation.stepping.streams import RowStreams
 from hyperleg_design.simulation.tasks import Reward, Task, check_reward
 from hyperleg_design.simulation.terms import mirror, observations
 from hyperleg_design.simulation.terms.assist import Assist
@@ -40,10 +40,6 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.layout import Layout
 
-CHUNK = 512
-"""Most simulations in a chunk: fewer and larger ones waste less time in Python."""
-SMALLEST_SPLIT = 32
-"""Simulations from which there are two chunks at least."""
 DIVERGENCES_KEPT = 100
 """Most divergences that an environment remembers; all are counted."""
 
@@ -98,32 +94,11 @@ class Environment:
         """The robots, one each."""
         self.alterations = made(alterations, self.designs[0])
         """Of each of the simulated robots."""
-        robots = (
-            [
-                (simulation_model(robot, task.physics, self.alterations), layout_of(robot))
-                for robot in self.designs
-            ]
-            if self.alterations
-            else simulated_robots(self.designs, task.physics)
-        )
+        robots = robots_of(self.designs, task, self.alterations)
         self.models: list[mujoco.MjModel] = [model for model, _ in robots]
         """MuJoCo model of each design; shared, not to be written into."""
         self.layouts: list[Layout] = [layout for _, layout in robots]
         """Names, order and numbers of joints, motors and pads of each design."""
-        if any(alteration.edits for alteration in self.alterations):
-            self.layouts = [
-                dataclasses.replace(layout, weight=float(model.body_mass.sum()) * GRAVITY)
-                for layout, model in zip(self.layouts, self.models, strict=True)
-            ]
-        if task.designs is not None:
-            self.layouts = [
-                dataclasses.replace(
-                    layout,
-                    observed=task.designs.numbers(robot),
-                    observed_names=tuple(task.designs.columns),
-                )
-                for layout, robot in zip(self.layouts, self.designs, strict=True)
-            ]
         self.design_index: np.ndarray = np.arange(simulations) // (simulations // number)
         """Design of each simulation, `(n,)`."""
         task.check_robot(self.layouts[0], self.designs[0].name)
@@ -132,46 +107,31 @@ class Environment:
             stacked(self.layouts).take(self.design_index) if number > 1 else self.layouts[0]
         )
         """The same of each simulation, with the batch in front; of a single design without."""
-        # A trajectory depends on the blocks through their random streams, so they follow from the
-        # number of simulations alone, or that of each design.
-        alone = simulations // number if common_random_numbers else simulations
-        inside = np.linspace(0, alone, _parts(alone) + 1).astype(int)
-        streams = np.random.SeedSequence(seed).spawn(len(inside) - 1)
-        blocks = [
-            (start + int(low), start + int(high), stream)
-            for start in range(0, simulations, alone)
-            for low, high, stream in zip(inside[:-1], inside[1:], streams, strict=True)
-        ]
         threads = threads or os.cpu_count() or 1
-        # With one thread a second chunk only costs time. Where designs have streams of their own, a
-        # trajectory does not depend on how they are shared out, and no snapshot is taken.
-        alone_in_python = common_random_numbers and threads == 1
-        parts = -(-simulations // CHUNK) if alone_in_python else _parts(simulations)
-        count = min(parts, len(blocks))
-        workers = min(threads, count)
+        parts = partition(
+            simulations,
+            seed,
+            threads,
+            designs=number if common_random_numbers else None,
+        )
+        workers = min(threads, len(parts))
         # Twice as many threads in MuJoCo as workers: while one chunk is in Python, another's
         # physics has the whole machine.
         each_threads = min(threads, -(-2 * threads // workers))
         self._turn = threading.Lock()
         self.chunks = []
-        bounds = np.linspace(0, len(blocks), count + 1).astype(int)
-        for begin, end in itertools.pairwise(bounds):
-            own = blocks[begin:end]
-            low, high = own[0][0], own[-1][1]
-            rows = self.design_index[low:high]
+        for part in parts:
+            rows = self.design_index[part.first : part.end]
             each = design.batch_shape or common_random_numbers
             self.chunks.append(
                 Chunk(
                     design.rows(rows) if each else design,
                     task,
-                    self.layout.take(slice(low, high)),
+                    self.layout.take(slice(part.first, part.end)),
                     [self.models[i] for i in rows] if number > 1 else self.models,
-                    low,
-                    high - low,
-                    RowStreams(
-                        [np.random.default_rng(stream) for _, _, stream in own],
-                        [b - a for a, b, _ in own],
-                    ),
+                    part.first,
+                    part.end - part.first,
+                    part.streams(),
                     self._turn,
                     each_threads,
                     self.alterations,
@@ -332,24 +292,7 @@ class Environment:
         Raises:
             InputError: wrong shape, or values that are not finite.
         """
-        action = np.asarray(action)
-        if action.shape != (self.simulations, self.action_size):
-            expected = (self.simulations, self.action_size)
-            raise InputError(
-                "policy",
-                "action",
-                action.shape,
-                f"must have the shape {expected}; is the policy made for another robot?",
-            )
-        if not np.isfinite(action.sum()) and not np.all(np.isfinite(action)):
-            bad = np.flatnonzero(~np.isfinite(action).all(1))
-            raise InputError(
-                "policy",
-                "action",
-                action[bad[0]].tolist(),
-                f"is not finite in {len(bad)} simulations, first in {bad[0]}",
-            )
-        action = action.astype(float)
+        action = checked_action(action, (self.simulations, self.action_size))
         parts = self._each(
             Chunk.step, [(action[c.first : c.first + c.count],) for c in self.chunks]
         )
@@ -470,8 +413,3 @@ class Environment:
             for chunk, a in zip(self.chunks, arguments, strict=True)
         ]
         return [w.result() for w in waiting]
-
-
-def _parts(simulations: int) -> int:
-    """Number of parts into which the simulations are divided for the threads."""
-    return max(-(-simulations // CHUNK), 2 if simulations >= SMALLEST_SPLIT else 1)

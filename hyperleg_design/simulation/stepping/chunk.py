@@ -18,14 +18,16 @@ import numpy as np
 from hyperleg_design.simulation import model as models
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.commands import commander
-from hyperleg_design.simulation.drives.actuation import applied, smoothed_action
+from hyperleg_design.simulation.drives.actuation import smoothed_action
 from hyperleg_design.simulation.drives.drive import Drive
 from hyperleg_design.simulation.drives.thermal import ThermalState
-from hyperleg_design.simulation.drives.told import Told
-from hyperleg_design.simulation.layout import GRAVITY, Layout
+from hyperleg_design.simulation.layout import Layout
 from hyperleg_design.simulation.model import PAD_SENSOR_SIZE
-from hyperleg_design.simulation.state import Goal, Motion, Sensed, State, read_motion
+from hyperleg_design.simulation.state import Goal, Motion, State, read_motion
 from hyperleg_design.simulation.stepping.batch_models import give_models, vary_models
+from hyperleg_design.simulation.stepping.divergence import all_sound, broken
+from hyperleg_design.simulation.stepping.record import Record
+from hyperleg_design.simulation.stepping.sensing import sensed
 from hyperleg_design.simulation.stepping.start import Starter
 from hyperleg_design.simulation.stepping.step import Divergence, Step
 from hyperleg_design.simulation.stepping.streams import RowStreams
@@ -39,13 +41,6 @@ if TYPE_CHECKING:
     import mujoco
 
     from hyperleg_design.robot.described import RobotDesign
-
-FASTEST = 1e4
-"""Speed of a coordinate past which a simulation counts as diverged [m/s or rad/s]."""
-_ROTORS_BEFORE = 6
-_BROKEN = slice(1, 6)
-"""MuJoCo's warnings that mark a step as wrong: contacts or constraints left out, bad position,
-velocity, acceleration."""
 
 
 class Chunk:
@@ -109,17 +104,11 @@ class Chunk:
             np.zeros((substeps, count, motors)),
         )
         self.sensors = np.zeros((substeps, count, self._sensors.shape[-1]))
-        self.states = np.zeros((substeps, count, 13 + 2 * joints))
-        """MuJoCo's position and velocity before each substep, kept while `recording`."""
-        self.stops = np.zeros((substeps, count, joints))
-        """Size of the stops' torque at each joint in each substep [Nm], kept while `recording`."""
-        self.altered = None if self.drive.chain is None else np.zeros((substeps, 2, count, joints))
-        """Torque through the transmission and friction that alterations make of them, kept while
-        `recording`."""
-        self.told = None if self.drive.chain is None else Told(self.drive.chain, substeps)
         self.target = np.zeros((count, joints))
         """Joint angles that the controller was asked for in the last policy step [rad]."""
+        self.record = Record(self.drive, layout, substeps)
         self.recording = False
+        """Whether the record of each policy step is kept."""
         self.rewarded = True
         """Whether steps give rewards and the observations of all groups, or those of the policy
         alone."""
@@ -235,45 +224,23 @@ class Chunk:
         return np.asarray((self._clock_start + elapsed) % 1.0)
 
     def _physics(self) -> None:
-        joints = len(self.layout.joints)
         self.target = self.layout.default + self.task.control.scale * self.smoothed
         target = self.target.reshape(self.count, len(self.layout.limbs), -1)
         assisted = self.assist is not None and self.assist.active
         for substep in range(len(self.sensors)):
             if self.recording:
-                self.states[substep, :, : 7 + joints], self.states[substep, :, 7 + joints :] = (
-                    self.drive.qpos,
-                    self.drive.qvel,
-                )
+                self.record.keep_state(substep)
             self.drive.apply(target, self.motor_torque[substep], self.motor_velocity[substep])
-            if self.told is not None and self.recording:
-                self._keep_altered(self.told, substep)
+            if self.recording:
+                self.record.keep_altered(substep)
             if assisted:
                 self._help()
             self._advance()
             self.sensors[substep] = self._sensors
             if self.recording:
-                self.stops[substep] = self._stops
+                self.record.stops[substep] = self._stops
         if assisted:
             self._push[:, self._pelvis] = 0.0
-
-    def _keep_altered(self, told: Told, substep: int) -> None:
-        driven, altered = self.drive.driven, self.altered
-        assert driven is not None
-        assert altered is not None
-        matrix, velocity, kept = (
-            told.chain.machine.joint_from_motor,
-            self.drive.qvel[:, 6:],
-            altered[substep],
-        )
-        told.keep(substep, driven, self.drive.qpos[:, 7:], velocity, self.drive.qvel[:, 3:6])
-        kept[0], kept[1] = applied(matrix, driven.transmitted), 0.0
-        if driven.joint_damping is not None:
-            kept[1] = driven.joint_damping * velocity
-        if driven.motor_damping is not None:
-            kept[1] += applied(
-                matrix, driven.motor_damping * applied(np.swapaxes(matrix, -1, -2), velocity)
-            )
 
     def _advance(self) -> None:
         from mujoco.batch import SimulationError
@@ -325,32 +292,7 @@ class Chunk:
             phase=self.phase,
             terminated=terminated,
             goal=self.goal,
-            sensed=self._sensed(self.motion),
-        )
-
-    def _sensed(self, motion: Motion, ids: np.ndarray | None = None) -> Sensed | None:
-        """What alterations make of a motion on its way to the policy; of some simulations' rows."""
-        chain = self.drive.chain
-        if chain is None:
-            return None
-        rows = slice(None) if ids is None else ids
-        given = (
-            motion.joint_position,
-            motion.joint_velocity,
-            motion.angular_velocity,
-            motion.gravity if self._vertical is None else -(self._vertical @ motion.rotation),
-        )
-        whole = [np.zeros((self.count, values.shape[-1])) for values in given]
-        for place, values in zip(whole, given, strict=True):
-            place[rows] = values
-        position, velocity = chain.measured(*whole[:2])
-        angular_velocity, force = chain.imu(whole[2], -GRAVITY * whole[3])
-        down = -force[rows]
-        return Sensed(
-            angular_velocity[rows],
-            down / np.linalg.norm(down, axis=-1, keepdims=True),
-            position[rows],
-            velocity[rows],
+            sensed=sensed(self.drive.chain, self.motion, self._vertical),
         )
 
     def _started(self, ids: np.ndarray) -> State:
@@ -378,7 +320,7 @@ class Chunk:
             phase=self.phase[ids],
             terminated=np.zeros(count, bool),
             goal=goal,
-            sensed=self._sensed(motion, ids),
+            sensed=sensed(self.drive.chain, motion, self._vertical, ids),
         )
 
     def _rewards(self, state: State) -> np.ndarray:
@@ -396,23 +338,18 @@ class Chunk:
         """Simulations gone wrong in this step; they are put back to standing so that the others can
         go on.
         """
-        if self._sound():
+        warnings = self.batch.warning
+        if all_sound(self.drive.qpos, self.drive.qvel, warnings):
             return []
-        with np.errstate(invalid="ignore"):
-            moving = np.abs(self.drive.qvel).max(-1)
-        lost = ~np.isfinite(self.drive.qpos.sum(-1)) | ~(moving < FASTEST)
-        warned = self.batch.warning[:, _BROKEN, 1].any(-1)
-        ids = np.flatnonzero(lost | warned)
+        reasons = broken(self.drive.qpos, self.drive.qvel, warnings)
+        ids = np.array(list(reasons), int)
         parts = []
-        for i in ids:
-            reason = self.batch.error(int(i)) or (
-                "speed or position without bounds" if lost[i] else "warning of MuJoCo"
-            )
+        for i, reason in reasons.items():
             parts.append(
                 Divergence(
-                    self.first + int(i),
+                    self.first + i,
                     int(self.episode_step[i]),
-                    reason,
+                    self.batch.error(i) or reason,
                     position[i],
                     velocity[i],
                     self.action[i].copy(),
@@ -420,27 +357,10 @@ class Chunk:
             )
         if len(ids):
             self._start(ids)
-            for values in (
-                self.motor_torque,
-                self.motor_velocity,
-                self.sensors,
-                self.states,
-                self.stops,
-            ):
+            for values in (self.motor_torque, self.motor_velocity, self.sensors):
                 values[:, ids] = 0.0
-            if self.told is not None:
-                self.told.forget(ids)
+            self.record.forget(ids)
         return parts
-
-    def _sound(self) -> bool:
-        """Whether all simulations are well."""
-        speed, position = self.drive.qvel, self.drive.qpos
-        bounded = np.einsum("nj,nj->", speed, speed) < FASTEST**2  # false for what is not a number
-        return bool(
-            bounded
-            and np.isfinite(np.einsum("nj->", position))
-            and not self.batch.warning[:, _BROKEN, 1].any()
-        )
 
     def _start(self, ids: np.ndarray) -> Motion:
         """Put robots on the floor near their default posture; motion of these rows."""
@@ -457,13 +377,6 @@ class Chunk:
         self.smoothed[ids] = start.smoothed
         return read_motion(start.position, start.velocity)
 
-    def _stop_torque(self, position: np.ndarray) -> np.ndarray:
-        """Torque of the stops on the joints, toward the middle of the range of motion [Nm],
-        `(substeps, n, J)`.
-        """
-        middle = (self.layout.lower + self.layout.upper) / 2
-        return np.where(position < middle, self.stops, -self.stops)
-
     def signals(self, *, friction: bool = True) -> Mapping[str, Any]:
         """Collect what happened within the last policy step; see `Environment.signals`.
 
@@ -473,35 +386,11 @@ class Chunk:
         Returns:
             Arrays by name.
         """
-        joints, substeps = len(self.layout.joints), len(self.sensors)
-        position, velocity = self.states[..., : 7 + joints], self.states[..., 7 + joints :]
-        legs = (substeps, self.count, len(self.layout.limbs), -1)
-        matrix = self.drive.model.joint_from_motor
-        torque = np.einsum("...jm,...m->...j", matrix, self.motor_torque.reshape(legs))
-        signals = {"driven_joint_torque": torque.reshape(substeps, self.count, -1)}
-        if self.altered is not None:
-            signals["driven_joint_torque"] = self.altered[:, 0].copy()
-        if friction:
-            resistance = self.drive.friction(
-                velocity[..., 6:].reshape(legs), self.motor_velocity.reshape(legs)
-            ).reshape(substeps, self.count, -1)
-            signals["joint_friction"] = (
-                resistance if self.altered is None else resistance + self.altered[:, 1]
-            )
-        signals |= {
-            "base_position": position[..., :3],
-            "base_orientation": position[..., 3:7],
-            "base_velocity": velocity[..., :3],
-            "base_angular_velocity": velocity[..., 3:_ROTORS_BEFORE],
-            "joint_target": np.broadcast_to(self.target, (substeps, *self.target.shape)),
-            "joint_position": position[..., 7:],
-            "joint_velocity": velocity[..., _ROTORS_BEFORE:],
-            "stop_torque": self._stop_torque(position[..., 7:]),
+        signals = self.record.signals(self.motor_torque, self.motor_velocity, friction=friction) | {
+            "joint_target": np.broadcast_to(self.target, (len(self.sensors), *self.target.shape)),
             "motor_torque": self.motor_torque,
             "motor_velocity": self.motor_velocity,
             "pad_force": models.pad_forces(self.sensors),
             "pad_slip": models.pad_slip(self.sensors),
         }
-        if self.told is not None:
-            signals |= self.told.signals
         return {name: np.moveaxis(values, 0, 1) for name, values in signals.items()}
