@@ -1,9 +1,11 @@
-"""Records of a training's progress: a line of JSON for each iteration, and TensorBoard's events."""
+"""Records of a training's progress: a line of JSON for each iteration, TensorBoard's events, and a
+line of text.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +49,41 @@ def log_measures(folder: Path, writer: Any, measures: dict[str, Any]) -> None:
         writer.add_scalar(name, value, measures["steps"])
     with (folder / PROGRESS).open("a") as stream:
         stream.write(json.dumps(finite(measures)) + "\n")
+
+
+def progress_line(
+    task: str,
+    robot: str,
+    measures: Mapping[str, Any],
+    trial: Mapping[str, float],
+    left: float,
+) -> str:
+    """Describe the latest iteration in one line of text.
+
+    Args:
+        task: name of the task.
+        robot: name of the design, and the seed.
+        measures: of the iteration.
+        trial: measures of the latest trial; empty before the first.
+        left: time that is left [s].
+
+    Returns:
+        The line.
+    """
+    terms = " ".join(f"{name} {value:+.2f}" for name, value in measures["terms"].items() if value)
+    parts = [
+        f"{task} {robot}",
+        f"{measures['steps'] / 1e6:.2f}/{measures['total'] / 1e6:.1f} M steps, "
+        f"{measures['rate']:.0f}/s",
+        f"stage {measures['stage']}, assist {measures['assist']:.2f}",
+        f"reward {measures['reward']:.2f} ({terms})",
+        f"speed {measures['speed']:.2f} m/s, falls {measures['falls']:.1f}/min, CoT "
+        f"{measures['cost_of_transport']:.2f}",
+        f"rate {measures['learning_rate']:.1e}",
+    ]
+    if trial:
+        parts.append("trial " + " ".join(f"{name} {value:.2f}" for name, value in trial.items()))
+    return " | ".join([*parts, f"left {left / 60:.0f} min"])
 
 
 def finite(value: Any) -> Any:

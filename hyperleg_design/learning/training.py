@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import signal
-import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +18,9 @@ from hyperleg_design.learning.checkpoint import load_checkpoint, save_checkpoint
 from hyperleg_design.learning.design_sampler import DesignSampler
 from hyperleg_design.learning.export import CRITIC_FORMAT, export_policy
 from hyperleg_design.learning.meter import Meter
+from hyperleg_design.learning.policy_metadata import policy_metadata
 from hyperleg_design.learning.preset import Preset
-from hyperleg_design.learning.progress import finite, log_measures, open_writer
+from hyperleg_design.learning.progress import finite, log_measures, open_writer, progress_line
 from hyperleg_design.learning.resolved import task_mapping
 from hyperleg_design.learning.schedule import Schedule
 from hyperleg_design.learning.status import (
@@ -31,6 +29,7 @@ from hyperleg_design.learning.status import (
     POLICY,
     STATUS,
 )
+from hyperleg_design.learning.stop_requests import stop_requests
 from hyperleg_design.learning.trial import trial
 from hyperleg_design.learning.warm_start import (
     StartPolicy,
@@ -94,7 +93,6 @@ class Training:
         """Spent on training so far, trials left out [s]."""
         self.processor_seconds = 0.0
         """Processor time of the same [s]: the clock that other work on the machine leaves alone."""
-        self._stop = False
         columns = list(self.environment.observation_columns["critic"])
         self._critic = (
             start.critic if start and fits_critic(self.algorithm.critic, start, columns) else None
@@ -123,8 +121,8 @@ class Training:
         writer = open_writer(self.folder, first, self.preset.steps_per_iteration)
         shown, began = 0.0, time.monotonic()
         measures: dict[str, Any] = {}
-        with self._stoppable():
-            while schedule.iteration < last and not self._stop:
+        with stop_requests() as stop:
+            while schedule.iteration < last and not stop.is_set():
                 started, worked = time.monotonic(), time.process_time()
                 measures = self._iterate()
                 self.seconds += time.monotonic() - started
@@ -153,7 +151,16 @@ class Training:
                         self.folder / STATUS,
                         finite({**measures, "left": left, "pid": os.getpid(), "done": False}),
                     )
-                    show(self.line(measures, left))
+                    show(
+                        progress_line(
+                            self.task.name,
+                            f"{self.design.variant or self.design.name}"
+                            f" seed {self.description['seed']}",
+                            measures,
+                            self.latest_trial,
+                            left,
+                        )
+                    )
         done = schedule.iteration >= schedule.total
         self.save()
         if done:
@@ -240,34 +247,6 @@ class Training:
                 "random": torch.get_rng_state().numpy(),
             },
         )
-
-    def line(self, measures: dict[str, Any], left: float) -> str:
-        """Describe the latest iteration in one line of text.
-
-        Args:
-            measures: of the iteration.
-            left: time that is left [s].
-
-        Returns:
-            The line.
-        """
-        total = self.schedule.total * self.preset.steps_per_iteration
-        terms = " ".join(
-            f"{name} {value:+.2f}" for name, value in measures["terms"].items() if value
-        )
-        parts = [
-            f"{self.task.name} {self.design.variant or self.design.name}"
-            f" seed {self.description['seed']}",
-            f"{measures['steps'] / 1e6:.2f}/{total / 1e6:.1f} M steps, {measures['rate']:.0f}/s",
-            f"stage {measures['stage']}, assist {measures['assist']:.2f}",
-            f"reward {measures['reward']:.2f} ({terms})",
-            f"speed {measures['speed']:.2f} m/s, falls {measures['falls']:.1f}/min, CoT "
-            f"{measures['cost_of_transport']:.2f}",
-            f"rate {measures['learning_rate']:.1e}",
-        ]
-        if self.latest_trial:
-            parts.append("trial " + " ".join(f"{k} {v:.2f}" for k, v in self.latest_trial.items()))
-        return " | ".join([*parts, f"left {left / 60:.0f} min"])
 
     def _iterate(self) -> dict[str, Any]:
         """Roll out, learn, and go on in the schedule."""
@@ -387,30 +366,14 @@ class Training:
         return left > 0 and left % apart == 0 and left // apart < int(self.preset.late)
 
     def _export(self, name: str) -> None:
-        chosen: tuple[str, ...] = (
-            "variant",
-            "seed",
-            "task",
-            "design",
-            "preset",
-            "deviations",
-            "start",
-            "command",
-            "commit",
-            "versions",
+        environment = self.environment
+        metadata = policy_metadata(
+            self.description,
+            steps=self.schedule.iteration * self.preset.steps_per_iteration,
+            columns=environment.observation_columns["policy"],
+            joints=environment.layout.joints,
+            designs=self.task.designs,
         )
-        chosen += tuple(key for key in ("overlay", "designs") if self.description.get(key))
-        metadata = {key: self.description[key] for key in chosen}
-        metadata |= {
-            "seed": str(self.description["seed"]),
-            "steps": str(self.schedule.iteration * self.preset.steps_per_iteration),
-        }
-        metadata |= {
-            "columns": self.environment.observation_columns["policy"],
-            "joints": list(self.environment.layout.joints),
-        }
-        if self.task.designs is not None:
-            metadata["design_ranges"] = self.task.designs.to_mapping()
         export_policy(self.folder / name, self.algorithm.get_policy(), metadata)
 
     def _export_critic(self) -> None:
@@ -444,20 +407,3 @@ class Training:
         self.latest_trial, self.seconds = content["trial"], content["seconds"]
         self.processor_seconds = content["processor_seconds"]
         torch.set_rng_state(torch.from_numpy(content["random"]))
-
-    @contextlib.contextmanager
-    def _stoppable(self) -> Iterator[None]:
-        """Finish the iteration and write a checkpoint on an interrupt or a request to end."""
-        if threading.current_thread() is not threading.main_thread():
-            yield
-            return
-
-        def stop(*_: Any) -> None:
-            self._stop = True
-
-        old = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
-        try:
-            yield
-        finally:
-            for number, handler in old.items():
-                signal.signal(number, handler)
