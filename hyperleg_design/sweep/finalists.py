@@ -22,7 +22,8 @@ from hyperleg_design.evaluation.protocol import MOST_TRIALS, Protocol, protocol_
 from hyperleg_design.robot.load import walker
 from hyperleg_design.sweep.fine_tuning import FineTuning, check_trainable, fine_tune
 from hyperleg_design.sweep.pareto import nondominated
-from hyperleg_design.sweep.search import ROW, Search, plain_values
+from hyperleg_design.sweep.plain_values import plain_values
+from hyperleg_design.sweep.search import ROW, Search
 from hyperleg_design.sweep.trial_plan import kind_of
 from hyperleg_design.sweep.trial_runs import evaluate_values
 from hyperleg_design.sweep.trial_table import design_table

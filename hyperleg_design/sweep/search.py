@@ -12,12 +12,8 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-import re
-import uuid
-import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -32,7 +28,16 @@ from hyperleg_design.sweep.constraint import Constraint, read_constraint, usual_
 from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.evaluate import evaluate_samples
 from hyperleg_design.sweep.jobs import completed
+from hyperleg_design.sweep.plain_values import plain_values
 from hyperleg_design.sweep.space import with_columns
+from hyperleg_design.sweep.study_database import (
+    DATABASE,
+    OWN,
+    clear_errors,
+    open_study,
+    owner_of,
+    take_up,
+)
 from hyperleg_design.sweep.trial_plan import Plan, kind_of
 from hyperleg_design.sweep.trial_runs import BATCH, evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
@@ -41,11 +46,10 @@ if TYPE_CHECKING:
     import optuna
     import pandas as pd
 
-DATABASE, OWNER = "study.db", "search.json"
 VARIANT = "variant"
 """Parameter that chooses the toe, where there are several."""
-REASON, ROW, OWN = "reason", "row", "owner"
-"""Attributes of a trial: why it failed, all that was measured, and who runs it."""
+REASON, ROW = "reason", "row"
+"""Attributes of a trial: why it failed, and all that was measured."""
 
 
 @dataclass(frozen=True)
@@ -117,63 +121,6 @@ def search_of(
     return Search(space, plan, chosen, bounds)
 
 
-@contextmanager
-def _database(url: str) -> Iterator[None]:
-    """Errors of the database as one clear error."""
-    from sqlalchemy.exc import SQLAlchemyError
-
-    try:
-        yield
-    except (SQLAlchemyError, ImportError) as error:
-        reason = " ".join(str(error).split())[:160]
-        raise InputError(
-            "--storage", "", re.sub(r"//[^@/]*@", "//...@", url), f"does not serve: {reason}"
-        ) from None
-
-
-def open_study(search: Search, storage: str, name: str) -> optuna.Study:
-    """The study of a search in a database, made where it is not there.
-
-    Args:
-        search: what is searched.
-        storage: address of the database.
-        name: of the study.
-
-    Returns:
-        The study.
-
-    Raises:
-        InputError: Optuna is not installed, or the database refuses or is corrupt.
-        OutputError: the database holds another search under this name.
-    """
-    try:
-        import optuna
-    except ImportError:
-        raise InputError("search", "", None, "needs hyperleg-design[search] (optuna)") from None
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
-    warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
-    with _database(storage):
-        try:
-            study = optuna.create_study(
-                storage=storage,
-                study_name=name,
-                load_if_exists=True,
-                directions=search.directions,
-                sampler=optuna.samplers.TPESampler(seed=search.sweep.seed),
-            )
-        except ValueError:  # other directions
-            study = None
-        if study is not None and "digest" not in study.user_attrs:
-            study.set_metric_names(list(search.objectives))
-            study.set_user_attr("digest", search.digest())
-        if study is None or study.user_attrs["digest"] != search.digest():
-            raise OutputError(
-                f"the study {name} in this database is of another space, plan, objective or "
-                f"constraint; choose another --name"
-            )
-    return study
-
-
 def run_search(
     search: Search,
     out: str | Path,
@@ -217,11 +164,18 @@ def run_search(
             f"{folder}: cannot be made ({error.strerror}); choose another --out"
         ) from None
     url = storage or f"sqlite:///{(folder / DATABASE).resolve()}"
-    study = open_study(search, url, name or search.sweep.name)
-    owner = _owner(folder)
+    study = open_study(
+        url,
+        name or search.sweep.name,
+        objectives=search.objectives,
+        directions=search.directions,
+        seed=search.sweep.seed,
+        digest=search.digest(),
+    )
+    owner = owner_of(folder)
     done = (optuna.trial.TrialState.COMPLETE, optuna.trial.TrialState.FAIL)
-    with _database(url):
-        _take_up(study, owner)
+    with clear_errors(url):
+        take_up(study, owner)
         finished = len(study.get_trials(deepcopy=False, states=done))
         with tqdm(
             total=trials, initial=min(finished, trials), disable=not progress, unit="design"
@@ -235,28 +189,6 @@ def run_search(
                 finished = len(study.get_trials(deepcopy=False, states=done))
                 bar.update(finished - before)
     return study
-
-
-def _owner(folder: Path) -> str:
-    """Name of those who search into a folder, by which a later run knows its own trials."""
-    path = folder / OWNER
-    if not path.exists():
-        path.write_text(json.dumps({OWN: uuid.uuid4().hex}))
-    try:
-        return str(json.loads(path.read_text())[OWN])
-    except (ValueError, KeyError, TypeError):
-        raise OutputError(f"{path}: is damaged; delete it") from None
-
-
-def _take_up(study: optuna.Study, owner: str) -> None:
-    """Run again what a killed run of the same folder left unfinished."""
-    import optuna
-
-    running = (optuna.trial.TrialState.RUNNING,)
-    for trial in study.get_trials(deepcopy=False, states=running):
-        if trial.user_attrs.get(OWN) == owner:
-            study.tell(trial.number, state=optuna.trial.TrialState.PRUNED)
-            study.enqueue_trial(trial.params)
 
 
 def _suggested(search: Search, trial: optuna.Trial) -> tuple[str, dict[str, Any]]:
@@ -346,23 +278,6 @@ def _tell(
         study.tell(trial, state=optuna.trial.TrialState.FAIL)
     else:
         study.tell(trial, values)
-
-
-def plain_values(row: Mapping[str, Any]) -> dict[str, Any]:
-    """A row as JSON takes it: plain values, None for numbers that are not finite.
-
-    Args:
-        row: what was measured of a design.
-
-    Returns:
-        The plain row.
-    """
-    return {str(name): _plain(value) for name, value in row.items()}
-
-
-def _plain(value: Any) -> Any:
-    plain = value.item() if hasattr(value, "item") else value
-    return None if isinstance(plain, float) and not np.isfinite(plain) else plain
 
 
 def found_designs(search: Search, study: optuna.Study) -> list[dict[str, Any]]:
