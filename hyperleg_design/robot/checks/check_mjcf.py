@@ -32,18 +32,9 @@ def check_mjcf(source: str | Path) -> list[Finding]:
     """
     import mujoco
 
-    root, findings = parse_xml(source)
+    root, findings = parse_xml(source, "mujoco", "an MJCF file starts with <mujoco>")
     if root is None:
         return findings
-    if root.tag != "mujoco":
-        return [
-            Finding(
-                "error",
-                f"line {root.sourceline}",
-                f"the root element is <{root.tag}>",
-                "an MJCF file starts with <mujoco>",
-            )
-        ]
     is_text = isinstance(source, str) and source.lstrip().startswith("<")
     try:
         spec = (

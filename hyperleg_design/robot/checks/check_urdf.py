@@ -30,18 +30,9 @@ def check_urdf(source: str | Path) -> list[Finding]:
     Raises:
         InputError: the file cannot be read.
     """
-    root, findings = parse_xml(source)
+    root, findings = parse_xml(source, "robot", "a URDF starts with <robot name=...>")
     if root is None:
         return findings
-    if root.tag != "robot":
-        return [
-            Finding(
-                "error",
-                f"line {root.sourceline}",
-                f"the root element is <{root.tag}>",
-                "a URDF starts with <robot name=...>",
-            )
-        ]
     if not root.get("name"):
         findings.append(Finding("error", "<robot>", "has no name", "add name="))
     if any("}" in str(e.tag) for e in root.iter()):

@@ -11,14 +11,18 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.checks.finding import Finding
 
 
-def parse_xml(source: str | Path) -> tuple[Any, list[Finding]]:
+def parse_xml(
+    source: str | Path, root: str | None = None, remedy: str = ""
+) -> tuple[Any, list[Finding]]:
     """Parse an XML file or text.
 
     Args:
         source: path of the file, or the text itself, which begins with `<`.
+        root: tag that the root element must have; None for any.
+        remedy: what to do about another root element, for the finding.
 
     Returns:
-        The root element and no findings, or None and the error of its syntax.
+        The root element and no findings, or None and the error of its syntax or of its root.
 
     Raises:
         InputError: the file cannot be read.
@@ -40,7 +44,7 @@ def parse_xml(source: str | Path) -> tuple[Any, list[Finding]]:
         parser = etree.XMLParser(
             resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True
         )
-        return etree.fromstring(content, parser), []
+        element = etree.fromstring(content, parser)
     except etree.XMLSyntaxError as error:
         return None, [
             Finding(
@@ -50,6 +54,10 @@ def parse_xml(source: str | Path) -> tuple[Any, list[Finding]]:
                 "close and quote every element there",
             )
         ]
+    if root is not None and element.tag != root:
+        line, tag = element.sourceline, element.tag
+        return None, [Finding("error", f"line {line}", f"the root element is <{tag}>", remedy)]
+    return element, []
 
 
 def place_of(element: Any) -> str:
