@@ -22,8 +22,8 @@ from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.learning.status import CHECKPOINT, POLICY, RUN, read_status
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.robot.parameters.fields import Rule
-from hyperleg_design.robot.parameters.values import checked, unknown
+from hyperleg_design.robot.parameters.entries import checked_mapping, checked_whole_number
+from hyperleg_design.robot.parameters.values import unknown
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.writing import MARKER, check_output_folder, write_text
 
@@ -105,17 +105,15 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
     path = resources.find("sim", name)
     data, where = read_yaml(path), short_name(path)
     _check_keys(data, ("name", "preset", "processes", "groups"), where, "", ("processes",))
-    processes = _whole(data.get("processes", 2), where, "processes")
+    processes = checked_whole_number(data.get("processes", 2), where, "processes", 1, 1000)
     groups = data["groups"]
     if not isinstance(groups, list) or not groups:
         raise InputError(where, "groups", groups, "expects a list of groups")
     runs: list[tuple[int, int, int, Run]] = []
     names = set()
     for g, group in enumerate(groups):
-        if not isinstance(group, Mapping):
-            raise InputError(where, f"groups.{g}", group, "expects a mapping")
         _check_keys(
-            group,
+            checked_mapping(group, where, f"groups.{g}"),
             ("name", "task", "designs", "seeds", "start", "preset", "compared"),
             where,
             f"groups.{g}.",
@@ -138,7 +136,9 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
             )
         for d, design in enumerate(group["designs"]):
             load_robot(str(design))
-            for seed in range(_whole(group["seeds"], where, f"groups.{g}.seeds")):
+            for seed in range(
+                checked_whole_number(group["seeds"], where, f"groups.{g}.seeds", 1, 1000)
+            ):
                 if start and (str(design), seed) not in before:
                     raise InputError(
                         where,
@@ -378,10 +378,3 @@ def _check_keys(
     for key in known:
         if key not in data and key not in optional:
             raise InputError(where, f"{path}{key}", None, "is missing")
-
-
-def _whole(value: Any, where: str, path: str) -> int:
-    number = checked(value, Rule("number", low=1, high=1000), where, path)
-    if number != int(number):
-        raise InputError(where, path, value, "expects a whole number")
-    return int(number)

@@ -20,12 +20,18 @@ from hyperleg_design.learning.preset import (
     WarmStart,
 )
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.entries import (
+    checked_mapping,
+    checked_number,
+    checked_whole_number,
+)
 from hyperleg_design.simulation.terms.rewards import TERMS
 
 OWN = ("name", "description", "tasks", "final_share")
 """What a preset does not take from its base."""
+FINITE = (-1e12, 1e12)
+"""Range of numbers that are taken for meant."""
 
 
 def preset_names() -> list[str]:
@@ -98,7 +104,7 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
     name, tasks = rest.pop("name", None), rest.pop("tasks", None)
     if not isinstance(name, str):
         raise InputError(where, "name", name, "expects a text")
-    given = {str(t): s for t, s in _mapping(tasks, where, "tasks").items()}
+    given = {str(t): s for t, s in checked_mapping(tasks, where, "tasks").items()}
     for task, entry in given.items():
         if isinstance(entry, str) and not isinstance(given.get(entry), list):
             raise InputError(
@@ -108,7 +114,7 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
         t: _stages(given[s] if isinstance(s, str) else s, where, f"tasks.{t}")
         for t, s in given.items()
     }
-    network = dict(_mapping(rest.pop("network", {}), where, "network"))
+    network = dict(checked_mapping(rest.pop("network", {}), where, "network"))
     hidden = network.pop("hidden", [512, 256, 128])
     if (
         not isinstance(hidden, list)
@@ -129,7 +135,7 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
             f"with mirror: {algorithm.mirror} would judge mirrored samples",
         )
     sizes = ("simulations", "rollout", "checkpoint_every", "trial_every", "late", "late_apart")
-    least = _number(rest.pop("final_share", 0.0), where, "final_share", 0, 1)
+    least = checked_number(rest.pop("final_share", 0.0), where, "final_share", 0, 1)
     for task, parts in stages.items():
         check_final_share(parts, least, where, f"tasks.{task}")
     for key in rest:
@@ -145,7 +151,7 @@ def preset_from_mapping(data: Mapping[str, Any], where: str) -> Preset:
                 "tasks",
             ]
             raise InputError(where, str(key), rest[key], parameters.unknown(str(key), known))
-    values = {key: _whole(rest[key], where, key) for key in rest}
+    values = {key: float(checked_whole_number(rest[key], where, key, *FINITE)) for key in rest}
     try:
         shape = dataclasses.replace(settings, hidden=tuple(hidden))
         return Preset(
@@ -169,7 +175,7 @@ def _stages(data: Any, where: str, path: str) -> tuple[Stage, ...]:
 
 def _stage(data: Any, where: str, path: str) -> Stage:
     known = ("name", "steps", "assist", "assist_gone_by", "rewards", "commands", "ramps")
-    data = _mapping(data, where, path)
+    data = checked_mapping(data, where, path)
     for key in data:
         if key not in known:
             raise InputError(
@@ -179,26 +185,27 @@ def _stage(data: Any, where: str, path: str) -> Stage:
         if key not in data:
             raise InputError(where, f"{path}.{key}", None, "is missing")
     rewards: dict[str, Mapping[str, float]] = {}
-    for term, entry in _mapping(data.get("rewards", {}), where, f"{path}.rewards").items():
+    for term, entry in checked_mapping(data.get("rewards", {}), where, f"{path}.rewards").items():
         values = entry if isinstance(entry, Mapping) else {"weight": entry}
         _check_term(str(term), [str(k) for k in values], where, f"{path}.rewards.{term}")
         rewards[str(term)] = {
-            str(k): _number(v, where, f"{path}.rewards.{term}.{k}") for k, v in values.items()
+            str(k): checked_number(v, where, f"{path}.rewards.{term}.{k}", *FINITE)
+            for k, v in values.items()
         }
     commands = {
-        str(k): _number(v, where, f"{path}.commands.{k}")
-        for k, v in _mapping(data.get("commands", {}), where, f"{path}.commands").items()
+        str(k): checked_number(v, where, f"{path}.commands.{k}", *FINITE)
+        for k, v in checked_mapping(data.get("commands", {}), where, f"{path}.commands").items()
     }
     ramps = data.get("ramps", [])
     if not isinstance(ramps, list):
         raise InputError(where, f"{path}.ramps", ramps, "expects a list of ramps")
     return Stage(
         name=str(data["name"]),
-        steps=_number(data["steps"], where, f"{path}.steps", 1, 1e12),
+        steps=checked_number(data["steps"], where, f"{path}.steps", 1, FINITE[1]),
         assist=None
         if data.get("assist") is None
-        else _number(data["assist"], where, f"{path}.assist", 0, 1),
-        assist_gone_by=_number(
+        else checked_number(data["assist"], where, f"{path}.assist", 0, 1),
+        assist_gone_by=checked_number(
             data.get("assist_gone_by", 1.0), where, f"{path}.assist_gone_by", 0, 1
         ),
         rewards=rewards,
@@ -208,7 +215,7 @@ def _stage(data: Any, where: str, path: str) -> Stage:
 
 
 def _ramp(data: Any, where: str, path: str) -> Ramp:
-    data = _mapping(data, where, path)
+    data = checked_mapping(data, where, path)
     for key in data:
         if key not in ("set", "from", "to", "steps", "begins"):
             raise InputError(
@@ -238,13 +245,16 @@ def _ramp(data: Any, where: str, path: str) -> Ramp:
     begins = data.get("begins", "stage")
     if begins not in BEGINS:
         raise InputError(where, f"{path}.begins", begins, f"expects one of {', '.join(BEGINS)}")
-    least = 1e-3 if kind == "policy" else -1e12
-    low, high = (_number(data[key], where, f"{path}.{key}", least) for key in ("from", "to"))
+    least = 1e-3 if kind == "policy" else FINITE[0]
+    low, high = (
+        checked_number(data[key], where, f"{path}.{key}", least, FINITE[1])
+        for key in ("from", "to")
+    )
     return Ramp(
         (kind, name, parameter),
         low,
         high,
-        _number(data["steps"], where, f"{path}.steps", 1, 1e12),
+        checked_number(data["steps"], where, f"{path}.steps", 1, FINITE[1]),
         begins,
     )
 
@@ -259,22 +269,3 @@ def _check_term(term: str, settings: list[str], where: str, path: str) -> None:
             raise InputError(
                 where, path, name, parameters.unknown(name, ["weight", *TERMS[term].parameters])
             )
-
-
-def _number(value: Any, where: str, path: str, low: float = -1e12, high: float = 1e12) -> float:
-    return float(
-        parameters.checked(value, parameter_fields.Rule("number", low=low, high=high), where, path)
-    )
-
-
-def _whole(value: Any, where: str, path: str) -> float:
-    number = _number(value, where, path)
-    if number != int(number):
-        raise InputError(where, path, value, "expects a whole number")
-    return number
-
-
-def _mapping(data: Any, where: str, path: str) -> Mapping[str, Any]:
-    if not isinstance(data, Mapping):
-        raise InputError(where, path, data, "expects a mapping")
-    return data

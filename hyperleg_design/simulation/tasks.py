@@ -17,6 +17,7 @@ from hyperleg_design.robot.mjcf import TIME_STEP
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.entries import checked_mapping
 from hyperleg_design.simulation import human_gait
 from hyperleg_design.simulation.commands import VelocityCommands
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
@@ -267,18 +268,20 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
         if key in data
     }
     observations = {}
-    for group, parts in _mapping(data["observations"], where, "observations").items():
+    for group, parts in checked_mapping(data["observations"], where, "observations").items():
         if not isinstance(parts, list):
             raise InputError(where, f"observations.{group}", parts, "expects a list of parts")
         observations[str(group)] = tuple(str(part) for part in parts)
     rewards = {
         str(term): _reward(entry, where, f"rewards.{term}")
-        for term, entry in _mapping(data["rewards"], where, "rewards").items()
+        for term, entry in checked_mapping(data["rewards"], where, "rewards").items()
     }
     rule = parameter_fields.Rule("number", unit="deg", low=-180, high=180)
     posture = {
         str(joint): float(parameters.checked(angle, rule, where, f"posture_deg.{joint}"))
-        for joint, angle in _mapping(data.get("posture_deg", {}), where, "posture_deg").items()
+        for joint, angle in checked_mapping(
+            data.get("posture_deg", {}), where, "posture_deg"
+        ).items()
     }
     try:
         return Task(
@@ -295,7 +298,7 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
 
 
 def _commands(data: Any, where: str) -> VelocityCommands | WaypointCommands:
-    rest = dict(_mapping(data, where, "commands"))
+    rest = dict(checked_mapping(data, where, "commands"))
     kind = rest.pop("kind", None)
     if kind not in _COMMANDS:
         raise InputError(where, "commands.kind", kind, f"expects one of {', '.join(_COMMANDS)}")
@@ -361,9 +364,3 @@ def check_reward(where: str, name: str, reward: Reward, goal: bool) -> None:
         raise InputError(
             where, f"rewards.{name}", reward.weight, "needs commands of kind waypoints"
         )
-
-
-def _mapping(data: Any, where: str, path: str) -> Mapping[str, Any]:
-    if not isinstance(data, Mapping):
-        raise InputError(where, path, data, "expects a mapping")
-    return data

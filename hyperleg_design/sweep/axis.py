@@ -13,8 +13,8 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.motors import catalogue, find_motor
-from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.entries import checked_number
 
 _KEYS = ("paths", "values", "low", "high", "steps", "log", "scale")
 _RANGE_KEYS = ("low", "high", "steps", "log")
@@ -232,12 +232,12 @@ def _listed(
     levels: list[Any] = []
     for value in values:
         if scaled:
-            levels.append(_number(value, where, f"{place}.values"))
+            levels.append(checked_number(value, where, f"{place}.values"))
         elif _is_motor(paths[0]):
             find_motor(str(value), where, f"{place}.values")
             levels.append(str(value))
         else:
-            levels.append(_number(value, where, f"{place}.values"))
+            levels.append(checked_number(value, where, f"{place}.values"))
     return Axis(name, paths, tuple(levels), scaled=scaled)
 
 
@@ -256,8 +256,8 @@ def _range(
                 where, f"{place}.{key}", None, "is missing; give values, or low and high"
             )
     low, high = (
-        _number(data["low"], where, f"{place}.low"),
-        _number(data["high"], where, f"{place}.high"),
+        checked_number(data["low"], where, f"{place}.low"),
+        checked_number(data["high"], where, f"{place}.high"),
     )
     if not low < high:
         raise InputError(where, f"{place}.low", low, f"must lie below high, {high:g}")
@@ -282,11 +282,6 @@ def _range(
         )
     levels = np.geomspace(low, high, steps) if log else np.linspace(low, high, steps)
     return Axis(name, paths, tuple(float(v) for v in levels), log=log, scaled=scaled)
-
-
-def _number(value: Any, where: str, place: str) -> float:
-    number: float = parameters.checked(value, parameter_fields.Rule("number"), where, place)
-    return number
 
 
 def _checked(axis: Axis, base: RobotDesign, where: str, place: str) -> Axis:

@@ -14,8 +14,12 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.measures import T_TEST, WALK
 from hyperleg_design.evaluation.result import arrivals_only
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.entries import (
+    checked_mapping,
+    checked_number,
+    checked_whole_number,
+)
 from hyperleg_design.robot.parameters.fields import number, text
 from hyperleg_design.simulation.settings import Checked
 
@@ -178,9 +182,12 @@ def plan_from_mapping(data: Mapping[str, Any], where: str) -> AnalysisPlan:
         active=str(arms["active"]),
         compared=str(arms["compared"]),
         attribution=tuple(str(design) for design in data["attribution"]),
-        seeds={key: _count(value, where, f"seeds.{key}") for key, value in seeds.items()},
-        level=parameters.checked(data["level"], parameter_fields.Rule("number"), where, "level"),
-        power=parameters.checked(data["power"], parameter_fields.Rule("number"), where, "power"),
+        seeds={
+            key: checked_whole_number(value, where, f"seeds.{key}", 2, 1000)
+            for key, value in seeds.items()
+        },
+        level=checked_number(data["level"], where, "level"),
+        power=checked_number(data["power"], where, "power"),
         primary=primary,
         secondary=secondary,
         plateau=parameters.from_mapping(PlateauRule, data.get("plateau", {}), where, "plateau"),
@@ -191,8 +198,7 @@ def plan_from_mapping(data: Mapping[str, Any], where: str) -> AnalysisPlan:
 
 
 def _outcome(data: Any, where: str, path: str, *, primary: bool) -> Outcome:
-    if not isinstance(data, Mapping):
-        raise InputError(where, path, data, "expects a mapping")
+    data = checked_mapping(data, where, path)
     if primary != ("margin" in data):
         remedy = "is missing" if primary else "stands with primary outcomes only"
         raise InputError(where, f"{path}.margin", data.get("margin"), remedy)
@@ -218,12 +224,3 @@ def _list(value: Any, where: str, path: str) -> list[Any]:
     if not isinstance(value, list) or not value:
         raise InputError(where, path, value, "expects a list of outcomes")
     return value
-
-
-def _count(value: Any, where: str, path: str) -> int:
-    number = parameters.checked(
-        value, parameter_fields.Rule("number", low=2, high=1000), where, path
-    )
-    if number != int(number):
-        raise InputError(where, path, value, "expects a whole number")
-    return int(number)

@@ -13,6 +13,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.entries import checked_mapping
 from hyperleg_design.robot.parameters.values import Origin
 from hyperleg_design.robot.trees.tree_check import check_tree_design, ordered
 from hyperleg_design.robot.trees.tree_design import NAMED, TreeDesign, named_class, ratios_class
@@ -132,14 +133,19 @@ def tree_design_from_mapping(data: Mapping[str, Any], name: str, where: str) -> 
     for key in known:
         if key not in rest and key not in OPTIONAL:
             raise InputError(where, key, None, "is missing")
-    sections = {key: dict(_mapping(rest.get(key, {}), where, key)) for key in NAMED}
+    sections = {
+        key: dict(checked_mapping(rest.get(key, {}), where, key, SECTIONS)) for key in NAMED
+    }
     for key, held in sections.items():
         for item in held:
             _check_identifier(item, where, f"{key}.{item}")
     _check_trunk(rest["trunk"], where)
     joints = sections["joints"]
     ends = {
-        n: tuple(str(_plain(_mapping(j, where, f"joints.{n}").get(e, ""))) for e in _ENDS)
+        n: tuple(
+            str(_plain(checked_mapping(j, where, f"joints.{n}", SECTIONS).get(e, "")))
+            for e in _ENDS
+        )
         for n, j in joints.items()
     }
     root = str(_plain(rest["trunk"].get("link", "")))
@@ -149,7 +155,7 @@ def tree_design_from_mapping(data: Mapping[str, Any], name: str, where: str) -> 
         sections["reference"] = {
             motor: {
                 k: v
-                for k, v in _mapping(held, where, f"actuators.{motor}").items()
+                for k, v in checked_mapping(held, where, f"actuators.{motor}", SECTIONS).items()
                 if k in ("motor", "gear")
             }
             for motor, held in sections["actuators"].items()
@@ -180,16 +186,12 @@ def tree_design_from_mapping(data: Mapping[str, Any], name: str, where: str) -> 
 
 
 _ENDS = ("parent", "child")
+SECTIONS = "of names to sections"
+"""What the parts of a file are, for error messages."""
 
 
 def _plain(value: Any) -> Any:
     return value.get("value") if isinstance(value, Mapping) else value
-
-
-def _mapping(data: Any, where: str, path: str) -> Mapping[str, Any]:
-    if not isinstance(data, Mapping):
-        raise InputError(where, path, data, "expects a mapping of names to sections")
-    return data
 
 
 def _check_trunk(trunk: Any, where: str) -> None:
@@ -215,7 +217,7 @@ def _transmission(
     joints = [
         n for n, j in sections["joints"].items() if _plain(j.get("type", "revolute")) != "fixed"
     ]
-    given = dict(_mapping(data or {}, where, "transmission"))
+    given = dict(checked_mapping(data or {}, where, "transmission", SECTIONS))
     if "joint_from_motor" in given:
         given = _from_matrix(given, motors, joints, sections, where)
     for motor in given:

@@ -1,0 +1,76 @@
+"""Single entries of a user's file: numbers and mappings that are no fields of a section."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot.parameters.fields import Rule
+from hyperleg_design.robot.parameters.values import checked
+
+
+def checked_number(
+    value: Any, where: str, path: str, low: float = -math.inf, high: float = math.inf
+) -> float:
+    """Check a number.
+
+    Args:
+        value: as the file gives it.
+        where: file, for error messages.
+        path: dotted path of the entry.
+        low: smallest value that makes sense.
+        high: largest value that makes sense.
+
+    Returns:
+        The number.
+
+    Raises:
+        InputError: no number, not finite, or outside the range.
+    """
+    return float(checked(value, Rule("number", low=low, high=high), where, path))
+
+
+def checked_whole_number(
+    value: Any, where: str, path: str, low: float = -math.inf, high: float = math.inf
+) -> int:
+    """Check a whole number.
+
+    Args:
+        value: as the file gives it.
+        where: file, for error messages.
+        path: dotted path of the entry.
+        low: smallest value that makes sense.
+        high: largest value that makes sense.
+
+    Returns:
+        The number.
+
+    Raises:
+        InputError: no whole number, or outside the range.
+    """
+    found = checked_number(value, where, path, low, high)
+    if found != int(found):
+        raise InputError(where, path, value, "expects a whole number")
+    return int(found)
+
+
+def checked_mapping(data: Any, where: str, path: str, of: str = "") -> Mapping[str, Any]:
+    """Check that an entry is a mapping.
+
+    Args:
+        data: as the file gives it.
+        where: file, for error messages.
+        path: dotted path of the entry.
+        of: what it maps, for the error message, such as `of names to sections`.
+
+    Returns:
+        The mapping.
+
+    Raises:
+        InputError: no mapping.
+    """
+    if not isinstance(data, Mapping):
+        raise InputError(where, path, data, f"expects a mapping {of}".rstrip())
+    return data
