@@ -10,9 +10,15 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import rollout
 from hyperleg_design.evaluation.motion import bearing
+from hyperleg_design.evaluation.motion.loads import LOADS, load_measures
 from hyperleg_design.evaluation.motion.motor_use import MotorUse, motor_use
 from hyperleg_design.evaluation.motion.power import flows, ledger
-from hyperleg_design.evaluation.motion.steps import impact_measures, measured_steps, step_measures
+from hyperleg_design.evaluation.motion.steps import (
+    IMPACTS,
+    impact_measures,
+    measured_steps,
+    step_measures,
+)
 from hyperleg_design.evaluation.protocol import TTestProtocol
 from hyperleg_design.evaluation.protocols import course
 from hyperleg_design.evaluation.protocols.protocol_run import ProtocolRun
@@ -145,20 +151,7 @@ def measure_t_test(
         **impact_measures(trial, steps, protocol.impact),
         **{name: stepped[name] for name in _OF_STEPS},
         "largest_tilt": float(bearing.tilt(trial.base_orientation).max()),
-        "stop_share": float(
-            bearing.stop_share(trial.joint_position, trial.layout.lower, trial.layout.upper).max()
-        ),
-        **bearing.stop_measures(
-            trial.joint_position,
-            trial.joint_velocity,
-            trial.stop_torque,
-            trial.layout.lower,
-            trial.layout.upper,
-        ),
-        "vibration": float(bearing.vibration(trial.joint_velocity, trial.time_step).max()),
-        "limit_share": float(use.limit_share.max()),
-        "continuous_use": float(use.continuous_use.max()),
-        "thermal_peak": float(use.thermal_peak.max()),
+        **load_measures(trial, use),
         **dict(zip(waypoints, times, strict=True)),
     }
     return measures, use
@@ -212,19 +205,8 @@ _MEASURES = (
     "battery_power",
     "energy",
     "cost_of_transport",
-    "grf_peak",
-    "grf_peak_body_weights",
-    "grf_raw_peak",
-    "grf_loading_rate",
-    "grf_impulse",
+    *IMPACTS,
     *_OF_STEPS,
     "largest_tilt",
-    "stop_share",
-    "stop_overshoot",
-    "stop_absorbed_power",
-    "stop_returned_power",
-    "vibration",
-    "limit_share",
-    "continuous_use",
-    "thermal_peak",
+    *LOADS,
 )

@@ -11,9 +11,15 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import rollout
 from hyperleg_design.evaluation.motion import bearing, gait
 from hyperleg_design.evaluation.motion.landmarks import LANDMARKS, landmark_measures
+from hyperleg_design.evaluation.motion.loads import LOADS, load_measures
 from hyperleg_design.evaluation.motion.motor_use import MotorUse, motor_use
 from hyperleg_design.evaluation.motion.power import LEG_MEANS, cycle_power, flows, ledger
-from hyperleg_design.evaluation.motion.steps import impact_measures, measured_steps, step_measures
+from hyperleg_design.evaluation.motion.steps import (
+    IMPACTS,
+    impact_measures,
+    measured_steps,
+    step_measures,
+)
 from hyperleg_design.evaluation.protocol import WalkProtocol
 from hyperleg_design.evaluation.protocols import course
 from hyperleg_design.evaluation.protocols.protocol_run import Measured, ProtocolRun
@@ -183,11 +189,7 @@ _STEADY = (
     "steady_battery_power",
     "steady_cost_of_transport",
     "steady_battery_cost_of_transport",
-    "grf_peak",
-    "grf_peak_body_weights",
-    "grf_raw_peak",
-    "grf_loading_rate",
-    "grf_impulse",
+    *IMPACTS,
     "cadence",
     "step_length",
     "step_width",
@@ -204,14 +206,7 @@ _STEADY = (
     "largest_slip",
     *LANDMARKS,
     "mean_tilt",
-    "stop_share",
-    "stop_overshoot",
-    "stop_absorbed_power",
-    "stop_returned_power",
-    "vibration",
-    "limit_share",
-    "continuous_use",
-    "thermal_peak",
+    *LOADS,
     *(f"right_{name}_power" for name in LEG_MEANS),
 )
 
@@ -273,7 +268,6 @@ def _steady_measures(
         for flow in ("motor_side", "battery")
     }
     steps = measured_steps(trial, protocol.events).within(first, last + 1)
-    layout = trial.layout
     measures = {
         "steady_speed": way / duration,
         "steady_power": power["motor_side"],
@@ -288,20 +282,7 @@ def _steady_measures(
         **step_measures(trial, steps, window, protocol.events),
         **landmark_measures(trial, steps, protocol.events),
         "mean_tilt": float(bearing.tilt(trial.base_orientation[part]).mean()),
-        "stop_share": float(
-            bearing.stop_share(trial.joint_position[part], layout.lower, layout.upper).max()
-        ),
-        **bearing.stop_measures(
-            trial.joint_position[part],
-            trial.joint_velocity[part],
-            None if trial.stop_torque is None else trial.stop_torque[part],
-            layout.lower,
-            layout.upper,
-        ),
-        "vibration": float(bearing.vibration(trial.joint_velocity[part], trial.time_step).max()),
-        "limit_share": float(use.limit_share.max()),
-        "continuous_use": float(use.continuous_use.max()),
-        "thermal_peak": float(use.thermal_peak.max()),
+        **load_measures(trial, use, part),
     }
     return measures, steps
 

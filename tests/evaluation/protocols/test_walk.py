@@ -16,9 +16,10 @@ from hyperleg_design.evaluation.motion.steps import foot_contacts
 from hyperleg_design.evaluation.policy import Scripted, standing
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.evaluation.protocols.walk import measure_walk, walk_task
-from hyperleg_design.simulation.environment import SMALLEST_SPLIT, Environment
+from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.settings import Start
+from hyperleg_design.simulation.stepping.partition import SMALLEST_SPLIT
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.simulation.terms.assist import Assist
 from hyperleg_design.sizing.motions.walk import WalkPlan
