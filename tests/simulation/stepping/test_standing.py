@@ -1,0 +1,47 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.model import simulation_model
+from hyperleg_design.simulation.settings import Limits
+from hyperleg_design.simulation.stepping.standing import check_all_standing, check_standing
+from hyperleg_design.simulation.tasks import load_task
+
+
+@pytest.fixture(scope="module")
+def robot(design):
+    task = load_task("walk")
+    own = task.posed(design)
+    return own, simulation_model(own, task.physics), layout_of(own), task.limits
+
+
+def test_a_robot_whose_pelvis_stands_lower_than_a_fall_is_refused(robot) -> None:
+    own, model, layout, limits = robot
+    check_standing(model, layout, limits, own.name)
+    with pytest.raises(InputError, match=r"stands lower than a fall, 2\.5 m"):
+        check_standing(model, layout, Limits(height=2.5), own.name)
+
+
+def test_a_weight_beside_the_soles_is_refused(robot) -> None:
+    import copy
+
+    own, model, layout, limits = robot
+    leaning = copy.deepcopy(model)
+    body = leaning.body(layout.base).id
+    leaning.body_ipos[body, 0] += 1.0
+    with pytest.raises(InputError, match="beside the soles"):
+        check_standing(leaning, layout, limits, own.name)
+
+
+def test_a_batch_says_which_robots_cannot_stand(robot) -> None:
+    import copy
+
+    own, model, layout, limits = robot
+    leaning = copy.deepcopy(model)
+    leaning.body_ipos[leaning.body(layout.base).id, 0] -= 1.0
+    with pytest.raises(InputError, match="beside the soles") as caught:
+        check_all_standing([own] * 3, [model, leaning, model], [layout] * 3, limits)
+    np.testing.assert_array_equal(caught.value.bad, [False, True, False])
