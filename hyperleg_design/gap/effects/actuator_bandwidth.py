@@ -19,12 +19,14 @@ from hyperleg_design.gap.effects.placing import (
     limited,
 )
 from hyperleg_design.gap.effects.series import lagged
+from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
+
 BANDWIDTH = 10.0
 """Content of the command that tells a motor's bandwidth from delay [Hz]."""
 
@@ -37,6 +39,7 @@ class ActuatorBandwidth(Effect):
     """
 
     identifier: ClassVar[str] = "actuator_bandwidth"
+    nuisance_rank: ClassVar[int] = 2
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a drive's torque follows its command through a first-order lag"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -54,6 +57,18 @@ class ActuatorBandwidth(Effect):
         "log torque or current": BEYOND_COMMANDS,
         "chirp past 8 Hz": frozenset({"controller_gain", "rotor_inertia", "viscous_friction"}),
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Half as late as all drives together.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        return dict.fromkeys(self.locations(subject), np.array([0.5 * lateness(step)]))
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the motors at which it can sit.

@@ -22,6 +22,7 @@ from hyperleg_design.gap.effects.placing import (
     moved_joints,
 )
 from hyperleg_design.gap.effects.series import delayed
+from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
@@ -61,6 +62,18 @@ class CommandDelay(Effect):
     look_alikes: ClassVar[Mapping[str, str]] = {
         "actuator_bandwidth": "gain and phase at high frequency",
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Of all drives together.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        return {ROBOT: np.append(lateness(step), np.zeros(len(self.parameters) - 1))}
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """The robot, and where it has several motors, each of them.

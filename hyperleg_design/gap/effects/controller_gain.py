@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.effect import STEERED, Effect, Parameter
 from hyperleg_design.gap.effects.excitation import STILL, Excitation, Motion, at_drives
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS, FRICTION, WITH_LOAD, WITHOUT_DRIVE
 from hyperleg_design.gap.effects.placing import (
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
+USUAL = 0.015
+"""Usual error of a gain over it."""
+
 
 class ControllerGain(Effect):
     """A joint's controller is stiffer or more damped than its declared gains.
@@ -40,6 +43,8 @@ class ControllerGain(Effect):
     identifier: ClassVar[str] = "controller_gain"
     scales: ClassVar[str] = "joint"
     scales_measured: ClassVar[bool] = False
+    nuisance_rank: ClassVar[int] = 6
+    nuisance_torque: ClassVar[str] = STEERED
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint controller is stiffer or more damped than declared"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -63,6 +68,18 @@ class ControllerGain(Effect):
     look_alikes: ClassVar[Mapping[str, str]] = {
         "torque_saturation": "several amplitudes",
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of both gains.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        return dict.fromkeys(self.locations(subject), np.array([USUAL, USUAL]))
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints with known gains.

@@ -12,6 +12,7 @@ from hyperleg_design.gap.effects.excitation import FEW, REVERSES, Excitation, Mo
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+from hyperleg_design.gap.effects.usual import least_friction
 from hyperleg_design.gap.signals.sliding import WIDTH, sliding
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 SHARE = 0.04
 """Usual Coulomb friction over the torque that a joint is made for: 4-5 Nm on harmonic drives of 100
 Nm (BAM)."""
+OF_FRICTION = 0.08
+"""Usual error of the model's friction, over it."""
 
 
 class CoulombFriction(Effect):
@@ -54,6 +57,19 @@ class CoulombFriction(Effect):
     look_alikes: ClassVar[Mapping[str, str]] = {
         "backlash": "preload",
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the model's friction, and of what the joint is made for.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        spreads = OF_FRICTION * subject.coulomb + least_friction(subject)
+        return {joint: np.array([s]) for joint, s in zip(subject.joints, spreads, strict=True)}
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the joints at which it can sit.

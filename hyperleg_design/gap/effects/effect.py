@@ -26,6 +26,17 @@ KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 RESIDUALS = ("motion", "drive", "control", "base", "ground")
 """Rows that a trace can fill; `gap/signals/signals.py` says what each compares."""
 
+LOGGED, NEEDED, STEERED, CALIBRATED = NUISANCE_TORQUES = (
+    "logged",
+    "needed",
+    "steered",
+    "calibrated",
+)
+"""Torques that a trace of a nuisance parameter rests on: those of the log; those that the motion
+needs; the log's with targets by which controllers ask for what the motion needs, where nobody
+measured torques; those that the motion needs where reference logs calibrate friction that the model
+does not have."""
+
 PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "imu": "IMU"}
 """Words of identifiers that have a spelling of their own."""
 Change = Mapping[tuple[str, str], Mapping[str, float]]
@@ -90,6 +101,11 @@ class Effect(ABC):
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {}
     """By name of an experiment of `gap/experiments/experiment.py`, effects that it tells apart from
     this one; that one of two effects says so is enough."""
+    nuisance_rank: ClassVar[int] = 0
+    """Order of its nuisance parameters among those of other effects at the same place; sums over
+    them keep it, so that answers are the same to the last digit."""
+    nuisance_torque: ClassVar[str] = LOGGED
+    """One of `NUISANCE_TORQUES`: by which torques its nuisance parameters leave their traces."""
     look_alikes: ClassVar[Mapping[str, str]] = {}
     """Effects that are taken for this one most, and what separates them; that one of two says so is
     enough."""
@@ -251,6 +267,50 @@ class Effect(ABC):
             The log odds [nat]; none by default.
         """
         return 0.0
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """State how far a healthy robot usually is from its model: its nuisance parameters.
+
+        Widths are assumed, of the order that data sheets and drawings are wrong by.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`, zero for a parameter
+            that is no nuisance; nothing by default.
+        """
+        return {}
+
+    def nuisance_trace(
+        self, signals: Signals, location: str, parameter: int, spread: float
+    ) -> dict[str, np.ndarray] | None:
+        """Compute what a nuisance parameter leaves, where that is not `trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            parameter: index of the parameter.
+            spread: its distance from the null.
+
+        Returns:
+            By name of the residual `(t, rows)`; None by default, for that of `trace`.
+        """
+        return None
+
+    def noise_inertia(self, location: str, subject: Subject, values: np.ndarray) -> float | None:
+        """Compute the inertia through which its trace takes noise of accelerations along.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            The inertia over the first parameter [kg m^2]; None where its trace takes none along.
+        """
+        return None
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Values from which a search for the best fit to a log is worth while `(s, parameters)`,

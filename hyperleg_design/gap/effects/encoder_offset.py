@@ -26,6 +26,8 @@ one joint's angle."""
 
 Basis = dict[str, tuple[np.ndarray, np.ndarray]]
 _BASES: WeakKeyDictionary[Signals, dict[int, Basis]] = WeakKeyDictionary()
+USUAL = 0.003
+"""Usual error of an encoder's zero [rad]."""
 
 
 class EncoderOffset(Effect):
@@ -39,6 +41,7 @@ class EncoderOffset(Effect):
     """
 
     identifier: ClassVar[str] = "encoder_offset"
+    nuisance_rank: ClassVar[int] = 4
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint's encoder reads a constant angle too much"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -58,6 +61,20 @@ class EncoderOffset(Effect):
     look_alikes: ClassVar[Mapping[str, str]] = {
         "link_com": "several postures",
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """An angle, at every joint.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        spreads = np.zeros(len(self.parameters))
+        spreads[0] = USUAL
+        return dict.fromkeys(self.locations(subject), spreads)
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the joints at which it can sit.

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
 
+USUAL = 0.5
+"""Usual error of how the ground gives and damps, over it."""
+
 
 class GroundCompliance(Effect):
     """Compliance of sole and ground under one foot [m/N], and how well it is damped, over the
@@ -28,6 +31,7 @@ class GroundCompliance(Effect):
     """
 
     identifier: ClassVar[str] = "ground_compliance"
+    nuisance_rank: ClassVar[int] = 1
     kind: ClassVar[str] = "foot"
     summary: ClassVar[str] = "the ground or the sole is softer or harder under a foot"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -54,6 +58,18 @@ class GroundCompliance(Effect):
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "push on the ground": FRICTION | INERTIAL | {"ground_friction"},
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Of how the ground gives and damps, which no simulator has from a measurement.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        return dict.fromkeys(self.locations(subject), np.array([USUAL, USUAL]))
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the feet at which it can sit.

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 ICE = 2.7
 """Usual differences by which a ground is slippery enough for a standing robot's feet to slide:
 friction 0.2 instead of 1 (assumed)."""
+USUAL = 0.1
+"""Usual error of the ground's friction over it."""
 
 
 class GroundFriction(Effect):
@@ -49,6 +51,18 @@ class GroundFriction(Effect):
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "push on the ground": FRICTION | INERTIAL | {"ground_compliance"},
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the ground's friction.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        return dict.fromkeys(self.locations(subject), np.array([USUAL]))
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the feet at which it can sit.

@@ -28,6 +28,8 @@ _GYRO = (
 _ACCELEROMETER = (
     "0.2 m/s^2, 20 mg zero-g offset of consumer MEMS accelerometers (BMI088, ICM-42688 data sheets)"
 )
+GYRO, ACCELEROMETER = 0.003, 0.05
+"""Usual biases [rad/s], [m/s^2]."""
 
 
 class ImuBias(Effect):
@@ -51,6 +53,18 @@ class ImuBias(Effect):
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "rest level": INERTIAL | {"encoder_offset", "joint_spring"},
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Of gyro and accelerometer.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        return dict.fromkeys(self.locations(subject), np.repeat([GYRO, ACCELEROMETER], 3))
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """The sensor, on a floating base.

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 SHARE = 0.05
 """Usual stiffness a radian, and preload, over the torque that a joint is made for (assumed: cables
 and seals)."""
+STIFFNESS, TORQUE = 0.002, 0.002
+"""Usual error of the torque a radian, and at rest, over the torque that the joint is made for."""
 
 
 class JointSpring(Effect):
@@ -32,6 +34,7 @@ class JointSpring(Effect):
     """
 
     identifier: ClassVar[str] = "joint_spring"
+    nuisance_rank: ClassVar[int] = 5
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a cable or a spring pulls a joint towards some angle"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -59,6 +62,22 @@ class JointSpring(Effect):
         "several amplitudes": frozenset({"backlash", "coulomb_friction"}),
         "several postures": INERTIAL,
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Shares of what the joint is made for.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        shares = np.array([STIFFNESS, TORQUE])
+        return {
+            joint: shares * s
+            for joint, s in zip(subject.joints, joint_strength(subject), strict=True)
+        }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the joints at which it can sit.

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
+OF_ARM, SHORTEST = 0.03, 0.03
+"""Usual error over the distance of a link's centre of mass from its joint, at least of so many
+metres."""
+
 
 class LinkCom(InertialEffect):
     """A link's mass moved as a whole in the link's frame; inertia about the centre of mass
@@ -23,6 +27,7 @@ class LinkCom(InertialEffect):
     """
 
     identifier: ClassVar[str] = "link_com"
+    nuisance_rank: ClassVar[int] = 1
     rare: ClassVar[float] = -1.0
     """Assumed: links are made as drawn, while zeros of encoders slip."""
     summary: ClassVar[str] = "a link's centre of mass is elsewhere than modelled"
@@ -41,6 +46,23 @@ class LinkCom(InertialEffect):
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "several postures": INERTIAL,
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the distance of the centre of mass from the joint.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        found = {}
+        for link in self.locations(subject):
+            own = subject.tree.link_inertial[subject.tree.link(link)]
+            arm = max(float(np.linalg.norm(own[1:4] / own[0])), SHORTEST)
+            found[link] = np.full(3, OF_ARM * arm)
+        return found
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass.

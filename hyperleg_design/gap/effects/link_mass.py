@@ -19,6 +19,8 @@ out)."""
 LARGEST_ERROR, HEAVIER = 0.8, 5.0
 """Error over a link's own mass from which it is rather something that hangs there; log odds against
 it for as much again [nat]."""
+DRAWN = 0.03
+"""Usual error of a link that is drawn as it is built, over its mass."""
 
 
 class LinkMass(InertialEffect):
@@ -44,6 +46,22 @@ class LinkMass(InertialEffect):
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "several postures": frozenset({"payload"}),
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the link's mass.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        tree = subject.tree
+        return {
+            link: np.array([DRAWN * tree.link_inertial[tree.link(link), 0]])
+            for link in self.locations(subject)
+        }
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass.

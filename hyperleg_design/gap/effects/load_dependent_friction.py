@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.effect import CALIBRATED, Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.friction import JointFriction
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
 
+USUAL = 0.006
+"""Usual share that a model leaves out."""
+
 
 class LoadDependentFriction(Effect):
     """A joint resists sliding with a share of the torque that reaches it: its drive's, less what
@@ -32,6 +35,8 @@ class LoadDependentFriction(Effect):
 
     identifier: ClassVar[str] = "load_dependent_friction"
     scales: ClassVar[str] = "joint"
+    nuisance_rank: ClassVar[int] = 3
+    nuisance_torque: ClassVar[str] = CALIBRATED
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -50,6 +55,18 @@ class LoadDependentFriction(Effect):
         "preload": FRICTION,
         "known payload": FRICTION,
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the torque, at every joint.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        return dict.fromkeys(self.locations(subject), np.array([USUAL]))
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints that some motor moves.

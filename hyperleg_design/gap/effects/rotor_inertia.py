@@ -25,6 +25,8 @@ SHARE = 0.3
 (assumed)."""
 CONTENT = 1.0
 """Content of the motion from which a rotor's inertia shows [Hz]."""
+OF_ROTOR, OF_JOINT = 0.06, 0.01
+"""Usual error over the rotor's inertia and over that of its joint."""
 
 
 class RotorInertia(Effect):
@@ -35,6 +37,7 @@ class RotorInertia(Effect):
     """
 
     identifier: ClassVar[str] = "rotor_inertia"
+    nuisance_rank: ClassVar[int] = 1
     kind: ClassVar[str] = "motor"
     described: ClassVar[bool] = True
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
@@ -57,6 +60,29 @@ class RotorInertia(Effect):
     look_alikes: ClassVar[Mapping[str, str]] = {
         "link_mass": "several postures",
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the rotor, and of its joint.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        inertia, found = joint_inertia(subject), {}
+        for location in self.locations(subject):
+            motor = subject.motors.index(location)
+            column = np.abs(subject.joint_from_motor[:, motor])
+            main = int(np.argmax(column))
+            found[location] = np.array(
+                [
+                    OF_ROTOR * subject.rotor_inertia[motor]
+                    + OF_JOINT * inertia[main] / max(float(column[main]), 1e-9) ** 2
+                ]
+            )
+        return found
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the motors at which it can sit.

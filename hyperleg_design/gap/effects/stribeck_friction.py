@@ -11,6 +11,7 @@ from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+from hyperleg_design.gap.effects.usual import COULOMB_LEAST
 from hyperleg_design.gap.signals.sliding import sliding
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 SHARE = 0.04
 """Usual excess over the torque that a joint is made for: RMD-X8, 2 Nm of 40 Nm."""
+OF_FRICTION = 0.08
+"""Usual error of the breakaway torque over the model's Coulomb friction."""
 
 
 class StribeckFriction(Effect):
@@ -32,6 +35,7 @@ class StribeckFriction(Effect):
     """
 
     identifier: ClassVar[str] = "stribeck_friction"
+    nuisance_rank: ClassVar[int] = 2
     kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = (
         "a joint sticks: friction is larger at rest and at low speed than in fast motion"
@@ -62,6 +66,20 @@ class StribeckFriction(Effect):
             {"backlash", "cogging", "load_dependent_friction", "viscous_friction"}
         ),
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the model's friction, and of what the joint is made for.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        spreads = OF_FRICTION * subject.coulomb + 0.3 * COULOMB_LEAST * joint_strength(subject)
+        rest = np.zeros(len(self.parameters) - 1)
+        return {joint: np.append(s, rest) for joint, s in zip(subject.joints, spreads, strict=True)}
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the joints at which it can sit.

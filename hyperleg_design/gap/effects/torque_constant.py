@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.effect import NEEDED, Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, WITH_LOAD, WITHOUT_DRIVE
 from hyperleg_design.gap.effects.placing import (
@@ -26,6 +26,12 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
+CONSTANT, TELLS = 0.03, 0.005
+"""Usual error of a torque constant over it, and of the torque that a drive says that it gives,
+apart from its motor's."""
+READING = 1
+"""Parameter by which currents are read wrongly."""
+
 
 class TorqueConstant(Effect):
     """A motor's torque is `scale` times the one believed, from its current and the declared
@@ -39,6 +45,7 @@ class TorqueConstant(Effect):
 
     identifier: ClassVar[str] = "torque_constant"
     scales: ClassVar[str] = "motor"
+    nuisance_torque: ClassVar[str] = NEEDED
     kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = (
         "a motor gives more or less torque than its current and its data sheet say"
@@ -66,6 +73,42 @@ class TorqueConstant(Effect):
     look_alikes: ClassVar[Mapping[str, str]] = {
         "payload": "a known payload, or several loads",
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Of the constant, and of what a drive says that it gives.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        return dict.fromkeys(self.locations(subject), np.array([CONSTANT, TELLS]))
+
+    def nuisance_trace(
+        self, signals: Signals, location: str, parameter: int, spread: float
+    ) -> dict[str, np.ndarray] | None:
+        """A reading that is off alone: a share of what a motor was asked for, where it is also
+        measured.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            parameter: index of the parameter.
+            spread: the share.
+
+        Returns:
+            By name of the residual `(t, rows)`; None for the constant.
+        """
+        if parameter != READING:
+            return None
+        if signals.measured is None or "drive" not in signals.residual:
+            return {}
+        motor = signals.subject.motors.index(location)
+        rows = np.zeros_like(signals.measured)
+        rows[:, motor] = spread * (signals.measured - signals.residual["drive"])[:, motor]
+        return {"drive": rows}
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the motors at which it can sit.

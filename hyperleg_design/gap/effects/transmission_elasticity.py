@@ -29,6 +29,8 @@ SLOWEST = 0.5
 """Lowest frequency of a rotor on its belt that is searched [Hz]."""
 STIFFER = 30.0
 """Usual stiffening [1/rad], twice as stiff at 2 degrees; that a search starts from, too."""
+SIDE = 2
+"""Parameter that tells where encoders are."""
 TELLING = 8.0
 """Content of the motion that tells elasticity from delay [Hz]."""
 
@@ -86,6 +88,22 @@ class TransmissionElasticity(Effect):
     look_alikes: ClassVar[Mapping[str, str]] = {
         "command_delay": "a chirp past 8 Hz",
     }
+
+    def noise_inertia(self, location: str, subject: Subject, values: np.ndarray) -> float | None:
+        """The rotor's, where encoders are at the joints, see `Effect.noise_inertia`.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            The inertia [kg m^2]; None where encoders are at the rotors.
+        """
+        side = float(values[SIDE])
+        if side >= belt.CHOSEN:
+            return None
+        return machine.rotor(subject, subject.motors.index(location)) * (1 - side)
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the motors at which it can sit.

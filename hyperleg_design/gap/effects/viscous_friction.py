@@ -24,6 +24,8 @@ SHARE = 0.02
 harmonic drives of 100 Nm (BAM)."""
 SPEED_SPREAD = 3.0
 """Fastest tenth over slowest tenth of the moving time, that tells viscous from Coulomb friction."""
+OF_FRICTION, OF_STRENGTH = 0.12, 0.0007
+"""Usual error of the model's friction, over it, and over the torque that the joint is made for."""
 
 
 class ViscousFriction(Effect):
@@ -32,6 +34,7 @@ class ViscousFriction(Effect):
     """
 
     identifier: ClassVar[str] = "viscous_friction"
+    nuisance_rank: ClassVar[int] = 1
     kind: ClassVar[str] = "joint"
     described: ClassVar[bool] = True
     summary: ClassVar[str] = "a joint resists motion in proportion to its velocity"
@@ -56,6 +59,19 @@ class ViscousFriction(Effect):
         "voltage_sag": "drives off: no back-EMF, no damping gain",
         "controller_gain": "drives off: no back-EMF, no damping gain",
     }
+
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the model's friction, and of what the joint is made for.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        spreads = OF_FRICTION * subject.viscous + OF_STRENGTH * joint_strength(subject)
+        return {joint: np.array([s]) for joint, s in zip(subject.joints, spreads, strict=True)}
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the joints at which it can sit.

@@ -21,18 +21,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS, belt
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import is_measured
 from hyperleg_design.gap.inference import noise_model
-from hyperleg_design.gap.model import machine
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Effect
     from hyperleg_design.gap.inference.samples import Samples
     from hyperleg_design.gap.signals.signals import Signals
 
-BELT, SIDE = "transmission_elasticity", 2
-"""Effect of belts that stretch, and its parameter that tells where encoders are."""
 FAINT = 0.5
 """Believed torque over the floor, root mean square, up to which a larger torque gains nothing; from
 the floor on all of it."""
@@ -110,9 +107,10 @@ def factor(
     the residual trusts.
     """
     subject = samples.filtered_logs[0].signals.subject
-    if effect == BELT and values is not None:
-        return _shrinking(samples, subject.motors.index(location), usual, values)
     scaling = EFFECTS[effect]
+    inertia = None if values is None else scaling.noise_inertia(location, subject, values)
+    if inertia is not None:
+        return _shrinking(samples, subject.motors.index(location), usual, inertia)
     if scaling.scales == "motor":
         motor = subject.motors.index(location)
         joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
@@ -138,17 +136,15 @@ def factor(
     return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint), rows[0])
 
 
-def _shrinking(
-    samples: Samples, motor: int, usual: np.ndarray, values: np.ndarray
-) -> Shrinking | None:
-    """Of a belt; None where encoders are at the rotors, or its joint has no row."""
+def _shrinking(samples: Samples, motor: int, usual: np.ndarray, inertia: float) -> Shrinking | None:
+    """Of a belt with an inertia on it [kg m^2]; None where its joint has no row."""
     subject = samples.filtered_logs[0].signals.subject
     moves = subject.joint_from_motor[:, motor]
     joint = int(np.argmax(np.abs(moves)))
     rows = [
         i for i, r in enumerate(samples.rows) if r.residual_name == "motion" and r.column == joint
     ]
-    if not rows or values[SIDE] >= belt.CHOSEN:
+    if not rows:
         return None
     own = np.flatnonzero(samples.row == rows[0])
     part, slope = np.zeros(len(samples.row)), np.zeros(len(samples.row))
@@ -159,7 +155,7 @@ def _shrinking(
                 part[places[place]] = feigned
                 slope[places[place]] = rate * _carried(one.signals, motor, joint)
     part = np.minimum(part / samples.floor**2, 1.0)
-    slope *= machine.rotor(subject, motor) * (1 - values[SIDE]) * usual[0]
+    slope *= inertia * usual[0]
     return Shrinking(0, slope[own], part[own], samples.share[own], rows[0])
 
 

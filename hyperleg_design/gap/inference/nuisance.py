@@ -1,57 +1,26 @@
 """The usual small nuisance parameters, which are no causes: priors of each, fitted anew for every
 recording session.
 
-Each is one parameter of an effect of the catalogue at one place, so that its trace is the effect's
-own. Widths are assumed, of the order that data sheets and drawings are wrong by.
+Most are parameters of effects of the catalogue at one place, so that their traces and widths are
+the effects' own; the rest are listed here. Widths are assumed, of the order that data sheets and
+drawings are wrong by.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.effects.placing import (
-    ROBOT,
-    driven_motors,
-    joint_inertia,
-    joint_strength,
-    motor_strength,
-)
+from hyperleg_design.gap.effects.placing import ROBOT, driven_motors, motor_strength
+from hyperleg_design.gap.effects.usual import lateness, least_friction
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
 
-TORQUE_CONSTANT = 0.03
-COULOMB, COULOMB_LEAST = 0.08, 0.0008
-"""Of the model's friction, and of the torque that the joint is made for."""
-VISCOUS, VISCOUS_LEAST = 0.12, 0.0007
-BREAKAWAY = 0.08
-"""Of the model's Coulomb friction."""
-LOAD_FRICTION = 0.006
-OFFSET = 0.003
-"""[rad]"""
-MASS, CENTRE, SHORTEST = 0.03, 0.03, 0.03
-"""Of the link's mass; of the distance of its centre of mass from its joint, at least of so many
-metres."""
-ROTOR, OWN_INERTIA = 0.06, 0.01
-"""Of the rotor's inertia and of that of its joint."""
-TORQUE_OFFSET, SPRING = 0.002, 0.002
-"""Of the torque that the joint is made for, and that a radian."""
-LATE, LATE_TICKS = 0.001, 0.15
-"""[s] and ticks of the log, of all drives; a lag of one of them is half."""
-READING = 1
-"""Parameter of a torque constant by which currents are read wrongly."""
-CURRENT = 0.005
-"""Of the torque that a drive says that it gives, apart from its motor's."""
-GAIN = 0.015
-GYRO, ACCELEROMETER = 0.003, 0.05
-"""[rad/s], [m/s^2]"""
-GROUND, BEARING = 0.1, 0.5
-"""Of the ground's friction; of how it gives and damps, which no simulator has from a
-measurement."""
 FORCES_SCALED, OF_FORCES = "contact_scale", 0.01
 """Share by which the forces under a foot are told too large or too small (assumed: load cells in
 feet)."""
@@ -126,7 +95,7 @@ def nuisance_parameters(
         calibrated: whether reference logs tell of friction that the model does not have, which
             turns over as the model's does.
     """
-    strength, inertia = joint_strength(subject), joint_inertia(subject)
+    usual = _Usual(subject, step)
     found: list[NuisanceParameter] = []
     for j, joint in enumerate(subject.joints):
         if subject.coulomb[j] > 0:
@@ -137,36 +106,13 @@ def nuisance_parameters(
             found += [NuisanceParameter(SWUNG, joint, i, OF_SWING) for i in range(len(SWINGS))]
         elif calibrated:  # what is calibrated turns over at once already
             found += [NuisanceParameter(TURNOVER, joint, 1 + i, OF_WAY) for i in range(len(WAYS))]
-        coulomb = COULOMB * subject.coulomb[j] + COULOMB_LEAST * strength[j]
-        found += [
-            NuisanceParameter("coulomb_friction", joint, 0, coulomb),
-            NuisanceParameter(
-                "viscous_friction",
-                joint,
-                0,
-                VISCOUS * subject.viscous[j] + VISCOUS_LEAST * strength[j],
-            ),
-            NuisanceParameter(
-                "stribeck_friction",
-                joint,
-                0,
-                BREAKAWAY * subject.coulomb[j] + 0.3 * COULOMB_LEAST * strength[j],
-            ),
-            NuisanceParameter("load_dependent_friction", joint, 0, LOAD_FRICTION),
-            NuisanceParameter("encoder_offset", joint, 0, OFFSET),
-            NuisanceParameter("joint_spring", joint, 0, SPRING * strength[j]),
-            NuisanceParameter("joint_spring", joint, 1, TORQUE_OFFSET * strength[j]),
-            NuisanceParameter("controller_gain", joint, 0, GAIN),
-            NuisanceParameter("controller_gain", joint, 1, GAIN),
-        ]
-    late, driven = LATE + LATE_TICKS * step, set(driven_motors(subject))
+        found += usual.at("joint", joint)
+    late, driven = lateness(step), set(driven_motors(subject))
+    found += usual.of("robot")
+    found += [NuisanceParameter(effect, ROBOT, 0, late) for effect in (TORQUES_LATE, FORCES_LATE)]
     found += [
-        NuisanceParameter(effect, "robot", 0, late)
-        for effect in ("command_delay", TORQUES_LATE, FORCES_LATE)
-    ]
-    found += [
-        NuisanceParameter(STEPPED, "robot", 0, OF_STEPPED),
-        NuisanceParameter(FILTERED, "robot", 0, OF_FILTER),
+        NuisanceParameter(STEPPED, ROBOT, 0, OF_STEPPED),
+        NuisanceParameter(FILTERED, ROBOT, 0, OF_FILTER),
     ]
     found += [
         NuisanceParameter(effect, foot, 0, SOLES)
@@ -175,45 +121,39 @@ def nuisance_parameters(
     ]
     found += [NuisanceParameter(FORCES_SCALED, foot, 0, OF_FORCES) for foot in subject.feet]
     for m, motor in enumerate(subject.motors):
-        column = np.abs(subject.joint_from_motor[:, m])
-        main = int(np.argmax(column))
-        rotor = (
-            ROTOR * subject.rotor_inertia[m]
-            + OWN_INERTIA * inertia[main] / max(float(column[main]), 1e-9) ** 2
-        )
-        found += [
-            NuisanceParameter("torque_constant", motor, 0, TORQUE_CONSTANT),
-            NuisanceParameter("torque_constant", motor, READING, CURRENT),
-            NuisanceParameter("rotor_inertia", motor, 0, rotor),
-            NuisanceParameter("actuator_bandwidth", motor, 0, 0.5 * late),
-            NuisanceParameter(GEARED, motor, 0, OF_SPEED),
-            NuisanceParameter(TOLD_LATE, motor, 0, late),
-        ]
+        found += usual.at("motor", motor)
         if motor in driven:
-            found.append(NuisanceParameter(GIVING, motor, 0, _give(subject, m)))
-    for link in EFFECTS["link_mass"].locations(subject):
-        own = subject.tree.link_inertial[subject.tree.link(link)]
-        arm = max(float(np.linalg.norm(own[1:4] / own[0])), SHORTEST)
-        found.append(NuisanceParameter("link_mass", link, 0, MASS * own[0]))
-        found += [NuisanceParameter("link_com", link, axis, CENTRE * arm) for axis in range(3)]
-    if subject.floating:
-        found += [
-            NuisanceParameter("imu_bias", "imu", i, GYRO if i < 3 else ACCELEROMETER)
-            for i in range(6)
-        ]
-        for foot in subject.feet:
             found += [
-                NuisanceParameter("ground_friction", foot, 0, GROUND),
-                NuisanceParameter("ground_compliance", foot, 0, BEARING),
+                NuisanceParameter(GEARED, motor, 0, OF_SPEED),
+                NuisanceParameter(TOLD_LATE, motor, 0, late),
+                NuisanceParameter(GIVING, motor, 0, _give(subject, m)),
             ]
-            found.append(NuisanceParameter("ground_compliance", foot, 1, BEARING))
-    places = {name: set(one.locations(subject)) for name, one in EFFECTS.items()}
-    places |= {name: set(subject.feet) for name in (SOLE, SOLE_GIVES, FORCES_SCALED)}
-    places |= {name: {ROBOT} for name in (FORCES_LATE, TORQUES_LATE, STEPPED, FILTERED)}
-    places |= {name: set(subject.joints) for name in (TURNOVER, SWUNG)} | dict.fromkeys(
-        SPEEDS, driven
-    )
-    return [one for one in found if one.location in places[one.effect] and one.spread > 0]
+    found += usual.of("link") + usual.of("sensor") + usual.of("foot")
+    return [one for one in found if one.spread > 0]
+
+
+class _Usual:
+    """Nuisance parameters that are parameters of effects, by kind and place."""
+
+    def __init__(self, subject: Subject, step: float) -> None:
+        self.by_kind: dict[str, list[tuple[str, Mapping[str, np.ndarray]]]] = {}
+        for effect in sorted(EFFECTS.values(), key=lambda one: one.nuisance_rank):
+            own = self.by_kind.setdefault(effect.kind, [])
+            own.append((effect.identifier, effect.nuisance_spreads(subject, step)))
+
+    def of(self, kind: str) -> list[NuisanceParameter]:
+        """Those of all places of a kind, place by place."""
+        places = dict.fromkeys(place for _, by_place in self.by_kind[kind] for place in by_place)
+        return [one for place in places for one in self.at(kind, place)]
+
+    def at(self, kind: str, place: str) -> list[NuisanceParameter]:
+        """Those of one place, in the order of the effects' ranks."""
+        return [
+            NuisanceParameter(effect, place, parameter, float(spread))
+            for effect, by_place in self.by_kind[kind]
+            if place in by_place
+            for parameter, spread in enumerate(by_place[place].tolist())
+        ]
 
 
 def _give(subject: Subject, motor: int) -> float:
@@ -232,4 +172,4 @@ def turning(subject: Subject) -> np.ndarray:
     """Friction whose turning over is a nuisance parameter `(n,)` [Nm]: the model's, or a usual
     error where it has none.
     """
-    return np.where(subject.coulomb > 0, subject.coulomb, COULOMB_LEAST * joint_strength(subject))
+    return np.where(subject.coulomb > 0, subject.coulomb, least_friction(subject))

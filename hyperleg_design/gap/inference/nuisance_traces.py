@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS, belt
+from hyperleg_design.gap.effects.effect import CALIBRATED, LOGGED, NEEDED, STEERED
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     is_commanded,
@@ -20,7 +21,6 @@ from hyperleg_design.gap.inference.nuisance import (
     FORCES_LATE,
     FORCES_SCALED,
     GEARED,
-    READING,
     SOLE_GIVES,
     SPEEDS,
     STEPPED,
@@ -63,7 +63,12 @@ def traces(
     modelled = replace(
         signals, believed=np.where(np.isfinite(needed), needed, signals.believed), target=None
     )
-    steered = _steered(signals)
+    sources = {
+        LOGGED: signals,
+        NEEDED: modelled,
+        STEERED: _steered(signals),
+        CALIBRATED: modelled,
+    }
     bare = {
         joint
         for joint, coulomb in zip(signals.subject.joints, signals.subject.coulomb, strict=True)
@@ -78,22 +83,23 @@ def traces(
             found.append({b: v * one.spread for b, v in trace.items()})
             continue
         if one.effect in UNLISTED:
-            alone = {STEPPED: _stepped, FILTERED: _filtered}.get(
+            unlisted = {STEPPED: _stepped, FILTERED: _filtered}.get(
                 one.effect, _speeds if one.effect in SPEEDS else _told
             )
-            found.append(alone(signals, one))
+            found.append(unlisted(signals, one))
             continue
         effect = EFFECTS[one.effect]
-        if one.effect == "torque_constant" and one.parameter == READING:
-            found.append(_read(signals, one.location, one.spread))
+        alone = effect.nuisance_trace(signals, one.location, one.parameter, one.spread)
+        if alone is not None:
+            found.append(alone)
             continue
         values = effect.nulls
         low, high = effect.bounds(one.location, signals.subject)[:, one.parameter]
         sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
         values[one.parameter] = np.clip(values[one.parameter] + sign * one.spread, low, high)
-        source = {"torque_constant": modelled, "controller_gain": steered}.get(one.effect, signals)
-        if one.effect == "load_dependent_friction" and one.location in bare:
-            source = modelled
+        source = sources[effect.nuisance_torque]
+        if effect.nuisance_torque == CALIBRATED and one.location not in bare:
+            source = signals
         moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
         found.append(
             {b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()}
@@ -113,16 +119,6 @@ def _steered(signals: Signals) -> Signals:
     with np.errstate(divide="ignore", invalid="ignore"):
         target = signals.position + (signals.rigid + damping * signals.velocity) / stiffness
     return replace(signals, target=np.where(np.isfinite(target), target, signals.target))
-
-
-def _read(signals: Signals, motor: str, share: float) -> dict[str, np.ndarray]:
-    """A share of what a motor was asked for, where it is also measured."""
-    place = signals.subject.motors.index(motor)
-    if signals.measured is None or "drive" not in signals.residual:
-        return {}
-    rows = np.zeros_like(signals.measured)
-    rows[:, place] = share * (signals.measured - signals.residual["drive"])[:, place]
-    return {"drive": rows}
 
 
 def _speeds(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:

@@ -6,7 +6,8 @@ from pendulum import Wrong, low_passed
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import EFFECTS, effect
-from hyperleg_design.gap.effects.effect import KINDS, RESIDUALS
+from hyperleg_design.gap.effects.effect import KINDS, NUISANCE_TORQUES, RESIDUALS
+from hyperleg_design.gap.signals.loading import load_subject
 
 FIXED = [name for name, one in EFFECTS.items() if one.kind not in ("foot", "sensor")]
 EVERYTHING = ("motor_torque", "motor_torque_command", "temperature", "voltage")
@@ -15,6 +16,11 @@ EVERYTHING = ("motor_torque", "motor_torque_command", "temperature", "voltage")
 @pytest.fixture(params=["measured", "commanded"])
 def signals(request, pendulum):
     return pendulum(Wrong(), duration=4.0, sees=EVERYTHING if request.param == "measured" else ())
+
+
+@pytest.fixture(scope="module")
+def biped(biped_runs):
+    return load_subject(None, [biped_runs["standing"]])
 
 
 def test_catalogue_has_the_interface_identifiers():
@@ -175,3 +181,18 @@ def test_low_pass_of_these_tests_has_no_delay():
     time = np.arange(2000) * 0.005
     wave = np.sin(2 * np.pi * time)
     assert np.abs(low_passed(wave, 0.005) - wave)[200:-200].max() < 1e-3
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_nuisance_parameters_lie_at_places_of_the_robot_and_within_what_is_possible(name, biped):
+    one, subject = effect(name), biped
+    for location, spreads in one.nuisance_spreads(subject, 0.005).items():
+        assert location in one.locations(subject)
+        assert spreads.shape == (len(one.parameters),)
+        assert np.all(spreads >= 0)
+        assert np.all(spreads <= np.ptp(one.bounds(location, subject), axis=0))
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_nuisance_parameters_rest_on_torques_that_are_known(name):
+    assert effect(name).nuisance_torque in NUISANCE_TORQUES

@@ -55,3 +55,13 @@ def test_torque_that_targets_alone_tell_is_scaled_as_both_gains_would(pendulum):
         )
     measured = pendulum(Wrong(constant=0.85), sees=("motor_torque",))
     assert np.array_equal(given(measured, 0), measured.believed[:, 0])
+
+
+def test_what_a_drive_says_of_its_torque_is_off_by_a_share_of_what_it_was_asked_for(pendulum):
+    signals = pendulum(Wrong())
+    trace = CONSTANT.nuisance_trace(signals, "swing", 1, 0.02)
+    asked = signals.measured - signals.residual["drive"]
+    assert set(trace) == {"drive"}
+    np.testing.assert_array_equal(trace["drive"], 0.02 * asked)
+    assert CONSTANT.nuisance_trace(signals, "swing", 0, 0.02) is None
+    assert CONSTANT.nuisance_trace(pendulum(Wrong(), sees=()), "swing", 1, 0.02) == {}

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.ground_compliance import GroundCompliance
+from hyperleg_design.gap.effects.ground_compliance import USUAL, GroundCompliance
 from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
-from hyperleg_design.gap.inference.nuisance import BEARING
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, Footing, footings
 from hyperleg_design.gap.signals.nominal_ground import Law
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 EFFECT = GroundCompliance.identifier
 SINKS = "sinks"
 UNUSUAL = 1.5
-"""Usual errors of how the ground bears (`nuisance`), from which one is a finding."""
+"""Usual errors of how the ground bears (`ground_compliance.USUAL`), from which one is a finding."""
 CERTAIN = 3.0
 """Its standard errors beyond that of no finding, at least."""
 PADS = 0.1
@@ -101,7 +100,7 @@ def _sink(
             scale / healthy[0],
             float(np.hypot(error, scale * healthy[1] / healthy[0])) / healthy[0],
         )
-    if scale - CERTAIN * error < 1 or scale < 1 + UNUSUAL * BEARING:
+    if scale - CERTAIN * error < 1 or scale < 1 + UNUSUAL * USUAL:
         return None
     nominal = float(
         np.average([pad.nominal_slope for pad in pads], weights=[pad.weight for pad in pads])

@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.ground_friction import GroundFriction
+from hyperleg_design.gap.effects.ground_friction import USUAL, GroundFriction
 from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
-from hyperleg_design.gap.inference.nuisance import GROUND
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, footings
 
@@ -28,7 +27,8 @@ if TYPE_CHECKING:
 EFFECT = GroundFriction.identifier
 SLIPS = "slips"
 DAY = 0.7
-"""Change of a ground's friction from one session to the next, over `GROUND` [-] (assumed)."""
+"""Change of a ground's friction from one session to the next, over `ground_friction.USUAL` [-]
+(assumed)."""
 FAST = 0.015
 """Speed against the force from which a contact may slide [m/s] (assumed: above what encoders' noise
 makes)."""
@@ -44,7 +44,7 @@ VARIED = 1.5
 """Faster over slower slides (90 and 10 % of the time), at least: at one speed what creeps has one
 ratio, too."""
 UNUSUAL = 2.0
-"""Usual errors of the ground (`nuisance`), from which one is a finding."""
+"""Usual errors of the ground (`ground_friction.USUAL`), from which one is a finding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +90,12 @@ def _slip(
         np.concatenate([getattr(one, name) for one in logs]) for name in ("along_edges", "ratio")
     )
     as_simulated = ground.law.weakest < 1 and _spread(edges) <= _spread(ratios)
-    if as_simulated and abs(float(np.median(edges)) / ground.friction - 1) <= UNUSUAL * GROUND:
+    if as_simulated and abs(float(np.median(edges)) / ground.friction - 1) <= UNUSUAL * USUAL:
         return None
     healthy = _coefficient([one for s in references if (one := _sliding(s, place)) is not None])
-    usual, unsure = (ground.friction, GROUND) if healthy is None else (healthy, DAY * GROUND)
+    usual, unsure = (ground.friction, USUAL) if healthy is None else (healthy, DAY * USUAL)
     scale = ratio / usual
-    if abs(scale - 1) < UNUSUAL * GROUND:
+    if abs(scale - 1) < UNUSUAL * USUAL:
         return None
     parts = [(one.load, one.ratio) for one in logs if one.time >= LEAST_TIME]
     if len(parts) < 2:
