@@ -1,4 +1,6 @@
-"""The catalogue of effects; each module of this package that has an `Effect` is one more."""
+"""The catalogue of effects; each module of this package, and of the packages in it, that has an
+`Effect` is one more.
+"""
 
 from __future__ import annotations
 
@@ -13,16 +15,16 @@ from hyperleg_design.gap.effects.effect import Effect
 
 def _found() -> dict[str, Effect]:
     found = {}
-    for module in sorted(m.name for m in pkgutil.iter_modules(__path__)):
-        for kind in vars(importlib.import_module(f"{__name__}.{module}")).values():
+    for place in pkgutil.walk_packages(__path__, f"{__name__}."):
+        for kind in vars(importlib.import_module(place.name)).values():
             if (
                 inspect.isclass(kind)
                 and issubclass(kind, Effect)
                 and not inspect.isabstract(kind)
-                and kind.__module__.endswith(f".{module}")
+                and kind.__module__ == place.name
             ):
                 found[kind.identifier] = kind()
-    return found
+    return dict(sorted(found.items()))
 
 
 EFFECTS: dict[str, Effect] = _found()

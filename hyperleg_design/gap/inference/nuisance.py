@@ -53,7 +53,7 @@ SOLES = 0.004
 UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, FORCES_SCALED, TORQUES_LATE, STEPPED, FILTERED)
 """Usual errors that are no effects of the catalogue, each with one parameter."""
 WAYS = (0.0015, 0.006)
-"""On which it turns over, half of each [rad]; assumed, beside that of `effects.friction`."""
+"""On which it turns over, half of each [rad]; assumed, beside that of `effects.joints.friction`."""
 SWINGS, OF_SWING = (0.5, 2.0), 0.7
 """Other amplitudes of chatter over those that a log shows at its rate; share of the difference in
 friction (assumed)."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS, belt
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.effect import CALIBRATED, LOGGED, NEEDED, STEERED
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
@@ -16,6 +16,7 @@ from hyperleg_design.gap.effects.placing import (
     motor_velocity,
 )
 from hyperleg_design.gap.effects.series import first_derivative
+from hyperleg_design.gap.effects.transmissions import belt
 from hyperleg_design.gap.inference.nuisance import (
     FILTERED,
     FORCES_LATE,

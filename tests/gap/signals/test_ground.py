@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.gap.effects.ground_friction import ChangedGround
+from hyperleg_design.gap.effects.ground.ground_friction import ChangedGround
 from hyperleg_design.gap.playback import show, standard_run
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.ground import footings, ground_residual

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.gap.effects.ground_friction import ChangedGround
+from hyperleg_design.gap.effects.ground.ground_friction import ChangedGround
 from hyperleg_design.gap.playback import show
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.nominal_ground import (

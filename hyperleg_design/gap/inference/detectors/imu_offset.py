@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.imu_bias import IMU, ImuBias
+from hyperleg_design.gap.effects.sensors.imu_bias import IMU, ImuBias
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.base_motion import known, on_ticks, orientation, spin

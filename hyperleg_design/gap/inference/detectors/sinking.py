@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.ground_compliance import USUAL, GroundCompliance
+from hyperleg_design.gap.effects.ground.ground_compliance import USUAL, GroundCompliance
 from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, Footing, footings

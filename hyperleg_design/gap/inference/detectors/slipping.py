@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.ground_friction import USUAL, GroundFriction
+from hyperleg_design.gap.effects.ground.ground_friction import USUAL, GroundFriction
 from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, footings

@@ -3,7 +3,7 @@ import dataclasses
 import numpy as np
 from pendulum import ROTOR, Wrong, misfit, run
 
-from hyperleg_design.gap.effects import belt
+from hyperleg_design.gap.effects.transmissions import belt
 from hyperleg_design.gap.signals.conditioning import condition
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects import belt, slack
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import (
     FEW,
@@ -19,6 +18,7 @@ from hyperleg_design.gap.effects.excitation import (
 )
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.placing import SIDES, driven_motors
+from hyperleg_design.gap.effects.transmissions import belt, slack
 from hyperleg_design.gap.model import machine
 from hyperleg_design.simulation.drives.two_mass import STIFFEST, Belt
 

@@ -18,7 +18,7 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 
 
 def test_without_a_thermometer_squared_torque_heats_the_motor(pendulum, simulated):
-    from hyperleg_design.gap.effects.thermal_derating import (
+    from hyperleg_design.gap.effects.drives.thermal_derating import (
         RATED_RISE,
         TIME_CONSTANT,
         rated_torque,

@@ -8,8 +8,8 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.effects.belt import BAND, CHOSEN, frictionless, load
 from hyperleg_design.gap.effects.series import band_limited
+from hyperleg_design.gap.effects.transmissions.belt import BAND, CHOSEN, frictionless, load
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.machine import rotor
 

@@ -55,7 +55,7 @@ def test_simulation_with_it_leaves_its_trace(simulated):
 def test_delays_between_simulation_steps_are_interpolated():
     from types import SimpleNamespace
 
-    from hyperleg_design.gap.effects.command_delay import LateCommand
+    from hyperleg_design.gap.effects.drives.command_delay import LateCommand
 
     machine = SimpleNamespace(motor=lambda name: 0)
     late = LateCommand(("a",), (), np.array([0.0, 0.0025, 0.001]))
@@ -78,7 +78,7 @@ def test_each_motor_of_several_can_be_late_alone(leg):
 def test_targets_and_commands_are_late_by_their_own():
     from types import SimpleNamespace
 
-    from hyperleg_design.gap.effects.command_delay import LateCommand
+    from hyperleg_design.gap.effects.drives.command_delay import LateCommand
 
     machine = SimpleNamespace(motor=lambda name: 0, joint=lambda name: 0)
     late = LateCommand(("a",), ("q",), 0.0, np.array([0.002, 0.0]))

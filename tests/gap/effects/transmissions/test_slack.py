@@ -3,8 +3,8 @@ import dataclasses
 import numpy as np
 from pendulum import Wrong, misfit, run
 
-from hyperleg_design.gap.effects import belt
-from hyperleg_design.gap.effects import slack as dead_zone
+from hyperleg_design.gap.effects.transmissions import belt
+from hyperleg_design.gap.effects.transmissions import slack as dead_zone
 from hyperleg_design.gap.signals.conditioning import condition
 
 

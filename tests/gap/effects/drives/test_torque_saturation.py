@@ -3,7 +3,7 @@ import pytest
 from pendulum import Wrong, misfit
 
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.gap.effects.torque_saturation import LEAST
+from hyperleg_design.gap.effects.drives.torque_saturation import LEAST
 
 SATURATION = effect("torque_saturation")
 

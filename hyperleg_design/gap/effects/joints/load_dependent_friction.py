@@ -10,7 +10,7 @@ import numpy as np
 from hyperleg_design.gap.effects.effect import CALIBRATED, Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import FRICTION
-from hyperleg_design.gap.effects.friction import JointFriction
+from hyperleg_design.gap.effects.joints.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.sliding import sliding

@@ -9,7 +9,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
-from hyperleg_design.gap.effects.friction import JointFriction
+from hyperleg_design.gap.effects.joints.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
 from hyperleg_design.gap.effects.usual import COULOMB_LEAST
 from hyperleg_design.gap.signals.sliding import sliding

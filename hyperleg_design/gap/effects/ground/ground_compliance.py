@@ -10,7 +10,7 @@ import numpy as np
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
-from hyperleg_design.gap.effects.ground_friction import ChangedGround, ground_trace
+from hyperleg_design.gap.effects.ground.ground_friction import ChangedGround, ground_trace
 from hyperleg_design.gap.signals import nominal_ground
 
 if TYPE_CHECKING:

@@ -36,7 +36,7 @@ def test_simulation_with_it_leaves_its_trace(pendulum):
 
 
 def test_usual_compliance_rings_at_the_usual_frequency(pendulum):
-    from hyperleg_design.gap.effects.transmission_elasticity import RESONANCE
+    from hyperleg_design.gap.effects.transmissions.transmission_elasticity import RESONANCE
 
     subject = pendulum(Wrong()).subject
     usual = ELASTICITY.usual("swing", subject)[0]

@@ -1,4 +1,4 @@
-"""Friction that grows with speed."""
+"""Friction of constant size."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
-from hyperleg_design.gap.effects.families import FRICTION, LATE
-from hyperleg_design.gap.effects.friction import JointFriction
+from hyperleg_design.gap.effects.excitation import FEW, REVERSES, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import FRICTION
+from hyperleg_design.gap.effects.joints.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+from hyperleg_design.gap.effects.usual import least_friction
+from hyperleg_design.gap.signals.sliding import WIDTH, sliding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
@@ -19,45 +21,41 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
 
-SHARE = 0.02
-"""Usual viscous friction at 1 rad/s over the torque that a joint is made for: 1.3-9.7 Nms/rad on
-harmonic drives of 100 Nm (BAM)."""
-SPEED_SPREAD = 3.0
-"""Fastest tenth over slowest tenth of the moving time, that tells viscous from Coulomb friction."""
-OF_FRICTION, OF_STRENGTH = 0.12, 0.0007
-"""Usual error of the model's friction, over it, and over the torque that the joint is made for."""
+SHARE = 0.04
+"""Usual Coulomb friction over the torque that a joint is made for: 4-5 Nm on harmonic drives of 100
+Nm (BAM)."""
+OF_FRICTION = 0.08
+"""Usual error of the model's friction, over it."""
 
 
-class ViscousFriction(Effect):
-    """A joint resists motion in proportion to its velocity, beyond (or, negative, short of) the
-    model; trace: damping times velocity.
+class CoulombFriction(Effect):
+    """A joint resists sliding with one torque at any speed, beyond (or, negative, short of) the
+    friction of the model.
+
+    Trace: torque times the way in which the joint slides, `friction.sliding`.
     """
 
-    identifier: ClassVar[str] = "viscous_friction"
-    nuisance_rank: ClassVar[int] = 1
+    identifier: ClassVar[str] = "coulomb_friction"
     kind: ClassVar[str] = "joint"
     described: ClassVar[bool] = True
-    summary: ClassVar[str] = "a joint resists motion in proportion to its velocity"
+    summary: ClassVar[str] = "a joint resists motion with a torque of constant size"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            "damping",
-            "Nms/rad",
+            "torque",
+            "Nm",
             0.0,
             -50.0,
             100.0,
-            2.0,
-            "1.3-9.7 Nms/rad on harmonic drives (BAM, arXiv 2410.08650)",
+            4.0,
+            "4-5.6 Nm on harmonic drives (BAM, arXiv 2410.08650); 0.7 Nm sliding on an RMD-X8",
         ),
     )
     linear: ClassVar[bool] = True
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "several amplitudes": FRICTION,
-        "slow ramp": LATE | {"controller_gain"},
-        "cold and warm": frozenset({"torque_constant"}),
+        "slow ramp": FRICTION | {"cogging", "joint_spring"},
     }
     look_alikes: ClassVar[Mapping[str, str]] = {
-        "voltage_sag": "drives off: no back-EMF, no damping gain",
-        "controller_gain": "drives off: no back-EMF, no damping gain",
+        "backlash": "preload",
     }
 
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
@@ -70,7 +68,7 @@ class ViscousFriction(Effect):
         Returns:
             Standard deviations from the nulls by location `(parameters,)`.
         """
-        spreads = OF_FRICTION * subject.viscous + OF_STRENGTH * joint_strength(subject)
+        spreads = OF_FRICTION * subject.coulomb + least_friction(subject)
         return {joint: np.array([s]) for joint, s in zip(subject.joints, spreads, strict=True)}
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -94,9 +92,7 @@ class ViscousFriction(Effect):
         Returns:
             Whether the log can show it, where, and why or why not.
         """
-        varied = motion.reversing & (motion.spread > SPEED_SPREAD)
-        lacking = "one speed only: viscous and Coulomb friction look alike"
-        return at_joints(self.identifier, motion, varied, "speeds differ", lacking)
+        return at_joints(self.identifier, motion, motion.reversing, REVERSES, FEW)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """Compute the residual that it leaves, see `Effect.trace`.
@@ -111,10 +107,11 @@ class ViscousFriction(Effect):
             leaves alone are missing.
         """
         joint = signals.subject.joints.index(location)
-        return at_joint(signals, joint, np.atleast_2d(values)[:, :1] * signals.velocity[:, joint])
+        return at_joint(signals, joint, np.atleast_2d(values)[:, :1] * sliding(signals)[:, joint])
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; what is taken away never exceeds the model's.
+        """See `Effect.alteration`; what is taken away never exceeds the model's, and has its
+        width.
 
         Args:
             location: one of `locations`.
@@ -125,8 +122,11 @@ class ViscousFriction(Effect):
             What adds it to a simulation.
         """
         joint = subject.joints.index(location)
+        torque = np.maximum(np.asarray(values, float)[..., 0], -subject.coulomb[joint])
         return JointFriction(
-            location, viscous=np.maximum(np.asarray(values, float)[..., 0], -subject.viscous[joint])
+            location,
+            coulomb=torque,
+            width=float(subject.friction_speed[joint]) if np.any(torque < 0) else WIDTH,
         )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
@@ -154,7 +154,7 @@ class ViscousFriction(Effect):
         joint = subject.joints.index(location)
         return np.array(
             [
-                [-subject.viscous[joint]],
+                [-subject.coulomb[joint]],
                 [min(self.parameters[0].high, joint_strength(subject)[joint])],
             ]
         )

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pendulum import Wrong, steps
 
-from hyperleg_design.gap.effects.friction import JointFriction
+from hyperleg_design.gap.effects.joints.friction import JointFriction
 from hyperleg_design.gap.signals.resting import sticking
 from hyperleg_design.simulation.drives.machine import Machine
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects import belt
 from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints, by_speeds
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.placing import SIDES, driven_motors
+from hyperleg_design.gap.effects.transmissions import belt
 from hyperleg_design.gap.model import machine
 from hyperleg_design.simulation.drives.two_mass import DAMPING_RATIO, Belt
 

@@ -1,4 +1,4 @@
-"""Friction of constant size."""
+"""Friction that grows with speed."""
 
 from __future__ import annotations
 
@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect, Parameter
-from hyperleg_design.gap.effects.excitation import FEW, REVERSES, Excitation, Motion, at_joints
-from hyperleg_design.gap.effects.families import FRICTION
-from hyperleg_design.gap.effects.friction import JointFriction
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.families import FRICTION, LATE
+from hyperleg_design.gap.effects.joints.friction import JointFriction
 from hyperleg_design.gap.effects.placing import at_joint, joint_strength
-from hyperleg_design.gap.effects.usual import least_friction
-from hyperleg_design.gap.signals.sliding import WIDTH, sliding
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
@@ -21,41 +19,45 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
     from hyperleg_design.simulation.alteration import Alteration
 
-SHARE = 0.04
-"""Usual Coulomb friction over the torque that a joint is made for: 4-5 Nm on harmonic drives of 100
-Nm (BAM)."""
-OF_FRICTION = 0.08
-"""Usual error of the model's friction, over it."""
+SHARE = 0.02
+"""Usual viscous friction at 1 rad/s over the torque that a joint is made for: 1.3-9.7 Nms/rad on
+harmonic drives of 100 Nm (BAM)."""
+SPEED_SPREAD = 3.0
+"""Fastest tenth over slowest tenth of the moving time, that tells viscous from Coulomb friction."""
+OF_FRICTION, OF_STRENGTH = 0.12, 0.0007
+"""Usual error of the model's friction, over it, and over the torque that the joint is made for."""
 
 
-class CoulombFriction(Effect):
-    """A joint resists sliding with one torque at any speed, beyond (or, negative, short of) the
-    friction of the model.
-
-    Trace: torque times the way in which the joint slides, `friction.sliding`.
+class ViscousFriction(Effect):
+    """A joint resists motion in proportion to its velocity, beyond (or, negative, short of) the
+    model; trace: damping times velocity.
     """
 
-    identifier: ClassVar[str] = "coulomb_friction"
+    identifier: ClassVar[str] = "viscous_friction"
+    nuisance_rank: ClassVar[int] = 1
     kind: ClassVar[str] = "joint"
     described: ClassVar[bool] = True
-    summary: ClassVar[str] = "a joint resists motion with a torque of constant size"
+    summary: ClassVar[str] = "a joint resists motion in proportion to its velocity"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            "torque",
-            "Nm",
+            "damping",
+            "Nms/rad",
             0.0,
             -50.0,
             100.0,
-            4.0,
-            "4-5.6 Nm on harmonic drives (BAM, arXiv 2410.08650); 0.7 Nm sliding on an RMD-X8",
+            2.0,
+            "1.3-9.7 Nms/rad on harmonic drives (BAM, arXiv 2410.08650)",
         ),
     )
     linear: ClassVar[bool] = True
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "slow ramp": FRICTION | {"cogging", "joint_spring"},
+        "several amplitudes": FRICTION,
+        "slow ramp": LATE | {"controller_gain"},
+        "cold and warm": frozenset({"torque_constant"}),
     }
     look_alikes: ClassVar[Mapping[str, str]] = {
-        "backlash": "preload",
+        "voltage_sag": "drives off: no back-EMF, no damping gain",
+        "controller_gain": "drives off: no back-EMF, no damping gain",
     }
 
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
@@ -68,7 +70,7 @@ class CoulombFriction(Effect):
         Returns:
             Standard deviations from the nulls by location `(parameters,)`.
         """
-        spreads = OF_FRICTION * subject.coulomb + least_friction(subject)
+        spreads = OF_FRICTION * subject.viscous + OF_STRENGTH * joint_strength(subject)
         return {joint: np.array([s]) for joint, s in zip(subject.joints, spreads, strict=True)}
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -92,7 +94,9 @@ class CoulombFriction(Effect):
         Returns:
             Whether the log can show it, where, and why or why not.
         """
-        return at_joints(self.identifier, motion, motion.reversing, REVERSES, FEW)
+        varied = motion.reversing & (motion.spread > SPEED_SPREAD)
+        lacking = "one speed only: viscous and Coulomb friction look alike"
+        return at_joints(self.identifier, motion, varied, "speeds differ", lacking)
 
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         """Compute the residual that it leaves, see `Effect.trace`.
@@ -107,11 +111,10 @@ class CoulombFriction(Effect):
             leaves alone are missing.
         """
         joint = signals.subject.joints.index(location)
-        return at_joint(signals, joint, np.atleast_2d(values)[:, :1] * sliding(signals)[:, joint])
+        return at_joint(signals, joint, np.atleast_2d(values)[:, :1] * signals.velocity[:, joint])
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; what is taken away never exceeds the model's, and has its
-        width.
+        """See `Effect.alteration`; what is taken away never exceeds the model's.
 
         Args:
             location: one of `locations`.
@@ -122,11 +125,8 @@ class CoulombFriction(Effect):
             What adds it to a simulation.
         """
         joint = subject.joints.index(location)
-        torque = np.maximum(np.asarray(values, float)[..., 0], -subject.coulomb[joint])
         return JointFriction(
-            location,
-            coulomb=torque,
-            width=float(subject.friction_speed[joint]) if np.any(torque < 0) else WIDTH,
+            location, viscous=np.maximum(np.asarray(values, float)[..., 0], -subject.viscous[joint])
         )
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
@@ -154,7 +154,7 @@ class CoulombFriction(Effect):
         joint = subject.joints.index(location)
         return np.array(
             [
-                [-subject.coulomb[joint]],
+                [-subject.viscous[joint]],
                 [min(self.parameters[0].high, joint_strength(subject)[joint])],
             ]
         )

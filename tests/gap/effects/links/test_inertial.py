@@ -13,8 +13,8 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.gap.effects.inertial import AddedInertia, carried_mass
-from hyperleg_design.gap.effects.payload import FAR, NEAR
+from hyperleg_design.gap.effects.links.inertial import AddedInertia, carried_mass
+from hyperleg_design.gap.effects.links.payload import FAR, NEAR
 from hyperleg_design.gap.model.mechanism import mechanism_of, pinocchio_model
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject

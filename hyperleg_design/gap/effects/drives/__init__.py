@@ -1,0 +1,1 @@
+"""Effects of motors, their controllers and their battery."""

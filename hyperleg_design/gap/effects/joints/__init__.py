@@ -1,0 +1,1 @@
+"""Effects at joints: friction and springs."""

@@ -1,0 +1,1 @@
+"""Effects of links: masses and where they are."""

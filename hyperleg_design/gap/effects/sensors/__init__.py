@@ -1,0 +1,1 @@
+"""Effects of sensors that tell something else than the truth."""

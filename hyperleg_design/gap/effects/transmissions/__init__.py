@@ -1,0 +1,1 @@
+"""Effects of belts, cables and gears between motors and joints."""
