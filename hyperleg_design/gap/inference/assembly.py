@@ -16,8 +16,8 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
-from hyperleg_design.gap.inference.channel import Channel
-from hyperleg_design.gap.inference.discrepancy import MOTORS, load, shapes
+from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.samples import gather
 from hyperleg_design.gap.signals import filtering, resting

@@ -11,10 +11,10 @@ from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channel import Channel
+    from hyperleg_design.gap.inference.channels.channel import Channel
+    from hyperleg_design.gap.inference.channels.scales import Scales
     from hyperleg_design.gap.inference.hypothesis import Hypothesis
     from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.inference.scales import Scales
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,8 @@ import numpy as np
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.cause_prior import log_prior
-from hyperleg_design.gap.inference.crossing import Crossing
+from hyperleg_design.gap.inference.channels.crossing import Crossing
+from hyperleg_design.gap.inference.channels.scale_fit import STEPS, fitted
 from hyperleg_design.gap.inference.hypothesis import (
     Candidate,
     Hypothesis,
@@ -22,14 +23,13 @@ from hyperleg_design.gap.inference.hypothesis import (
     shifted,
     solve,
 )
-from hyperleg_design.gap.inference.scale_fit import STEPS, fitted
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
+    from hyperleg_design.gap.inference.channels.scales import Scales
     from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.promises import Promise
     from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.inference.scales import Scales
 
 CLOSE = 0.02
 """Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""

@@ -17,16 +17,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.inference.channels.scales import ABSENT
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Name
-from hyperleg_design.gap.inference.scales import ABSENT
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.channel import Channel
+    from hyperleg_design.gap.inference.channels.channel import Channel
+    from hyperleg_design.gap.inference.channels.scales import Scales
     from hyperleg_design.gap.inference.crossed import Prediction
     from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
     from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.inference.scales import Scales
     from hyperleg_design.gap.inference.search import Result
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
-from hyperleg_design.gap.inference.crossing import Crossing
+from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis import (
     EVERYWHERE,
@@ -26,9 +26,9 @@ from hyperleg_design.gap.inference.promises import Promise, Promises
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
+    from hyperleg_design.gap.inference.channels.scales import Scales
     from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.inference.scales import Scales
 
 
 @dataclass(frozen=True, eq=False)

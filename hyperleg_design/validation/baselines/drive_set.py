@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.effects.drives.rotor_inertia import OF_JOINT, OF_ROTOR
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
-from hyperleg_design.gap.inference import nuisance
+from hyperleg_design.gap.effects.usual import lateness
+from hyperleg_design.gap.inference.nuisance import nuisance_parameters
 from hyperleg_design.gap.playback.replay import best_input
 
 if TYPE_CHECKING:
@@ -158,17 +160,16 @@ def drive_set(subject: Subject, step: float) -> DriveSet:
 def _spreads(subject: Subject, step: float) -> np.ndarray:
     known: Mapping[tuple[str, str], float] = {
         (u.effect, u.location): u.spread
-        for u in nuisance.nuisance_parameters(subject, step)
+        for u in nuisance_parameters(subject, step)
         if u.parameter == 0
     }
     inertia = joint_inertia(subject)
-    rotors = nuisance.ROTOR * np.diag(subject.armature) + nuisance.OWN_INERTIA * inertia
+    rotors = OF_ROTOR * np.diag(subject.armature) + OF_JOINT * inertia
     joints = [
         [known[effect, j] for j in subject.joints]
         for effect in ("viscous_friction", "coulomb_friction", "encoder_offset")
     ]
-    late = nuisance.LATE + nuisance.LATE_TICKS * step
-    return np.concatenate([rotors, *joints, [late]])
+    return np.concatenate([rotors, *joints, [lateness(step)]])
 
 
 def check_logs(signals: Sequence[Signals]) -> None:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, norm
 
+from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypothesis import reduced, shifted, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.scales import Scales
-from tests.gap.inference.test_channel import dense, made
+from tests.gap.inference.channels.test_channel import dense, made
 
 RULES = InferenceRules()
 SCALES = Scales(np.array([0.7, 1.9, 1.2, 0.4]), np.log(0.8), np.log(0.5), np.log(3.0))

@@ -3,10 +3,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.posterior import posterior_of, unlisted
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.scales import Scales
 from hyperleg_design.gap.inference.search import Result
 
 RULES = InferenceRules()

@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
 from hyperleg_design.gap.inference.promises import LARGEST, Promises
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.scales import Scales
 from hyperleg_design.gap.inference.screen import NotJudged
-from tests.gap.inference.test_channel import made
+from tests.gap.inference.channels.test_channel import made
 
 RULES = InferenceRules()
 SCALES = Scales(np.array([0.7, 1.9, 1.2, 0.4]), np.log(0.8), np.log(0.5), np.log(3.0))

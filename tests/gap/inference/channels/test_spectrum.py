@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.inference.spectrum import Spectrum
+from hyperleg_design.gap.inference.channels.spectrum import Spectrum
 
 
 def test_what_is_left_of_the_products_is_that_of_the_inverse():

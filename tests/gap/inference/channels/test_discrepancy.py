@@ -4,7 +4,7 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.discrepancy import load, shapes
+from hyperleg_design.gap.inference.channels.discrepancy import load, shapes
 
 
 @pytest.fixture(scope="module")

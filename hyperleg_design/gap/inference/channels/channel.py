@@ -22,9 +22,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg.lapack import dtrtrs
 
-from hyperleg_design.gap.inference.likelihood import Likelihood
-from hyperleg_design.gap.inference.scales import Scales, log_prior_of_scales
-from hyperleg_design.gap.inference.spectrum import Spectrum
+from hyperleg_design.gap.inference.channels.likelihood import Likelihood
+from hyperleg_design.gap.inference.channels.scales import Scales, log_prior_of_scales
+from hyperleg_design.gap.inference.channels.spectrum import Spectrum
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.rules import InferenceRules

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg.lapack import dtrtrs
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.spectrum import Spectrum
+    from hyperleg_design.gap.inference.channels.spectrum import Spectrum
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.gap.inference.scales import ABSENT, Scales
+from hyperleg_design.gap.inference.channels.scales import ABSENT, Scales
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channel import Channel, Residual
-    from hyperleg_design.gap.inference.likelihood import Likelihood
+    from hyperleg_design.gap.inference.channels.channel import Channel, Residual
+    from hyperleg_design.gap.inference.channels.likelihood import Likelihood
     from hyperleg_design.gap.inference.rules import InferenceRules
 
 STEPS = (1.2, 0.5, 0.2)

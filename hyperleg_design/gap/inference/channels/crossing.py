@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channel import Channel, Residual
-    from hyperleg_design.gap.inference.scales import Scales
+    from hyperleg_design.gap.inference.channels.channel import Channel, Residual
+    from hyperleg_design.gap.inference.channels.scales import Scales
 
 
 @dataclass(frozen=True, eq=False)

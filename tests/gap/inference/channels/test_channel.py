@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from hyperleg_design.gap.inference.channel import Channel
+from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.scale_fit import fitted as fit_scales
+from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.scale_fit import fitted as fit_scales
-from hyperleg_design.gap.inference.scales import Scales
 
 RULES = InferenceRules()
 

@@ -1,0 +1,1 @@
+"""The probabilistic model of one residual channel: discrepancy, scales, marginal likelihood."""
