@@ -23,16 +23,12 @@ from hyperleg_design.learning.preset import Preset
 from hyperleg_design.learning.progress import finite, log_measures, open_writer, progress_line
 from hyperleg_design.learning.resolved import task_mapping
 from hyperleg_design.learning.schedule import Schedule
-from hyperleg_design.learning.status import (
-    CHECKPOINT,
-    CRITIC,
-    POLICY,
-    STATUS,
-)
+from hyperleg_design.learning.status import CHECKPOINT, CRITIC, POLICY, STATUS
 from hyperleg_design.learning.stop_requests import stop_requests
 from hyperleg_design.learning.trial import trial
 from hyperleg_design.learning.warm_start import (
     StartPolicy,
+    check_posture,
     fits_critic,
     start_actor,
     start_critic,
@@ -311,14 +307,7 @@ class Training:
 
     def _start_from(self, start: StartPolicy) -> None:
         warm, columns = self.preset.warm_start, list(self.environment.observation_columns["policy"])
-        if start.posture != dict(self.task.posture_deg):
-            raise InputError(
-                "start",
-                "posture_deg",
-                start.posture,
-                f"expects a policy whose task has the posture {dict(self.task.posture_deg)}: "
-                f"actions are added to it",
-            )
+        check_posture(start, self.task.posture_deg)
         same = start.commands == task_mapping(self.task)["commands"]["kind"]
         command = None if same else np.array([float(warm.forward), 0.0, 0.0])
         first = self.observations["policy"].numpy()

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -174,6 +174,25 @@ def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any]
         "biases": tuple(arrays[f"bias_{i}"] for i in layers),
     }
     return metadata, network, hashlib.sha256(content).hexdigest()
+
+
+def check_posture(start: StartPolicy, posture: Mapping[str, float]) -> None:
+    """Check that a policy can start a training under a task.
+
+    Args:
+        start: the policy.
+        posture: default posture of the task by joint [deg].
+
+    Raises:
+        InputError: the policy's task has another posture, to which its actions are added.
+    """
+    if start.posture != dict(posture):
+        raise InputError(
+            "start",
+            "posture_deg",
+            start.posture,
+            f"expects a policy whose task has the posture {dict(posture)}: actions are added to it",
+        )
 
 
 def start_actor(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters.fields import number
 from hyperleg_design.simulation.settings import Checked
 from hyperleg_design.simulation.state import Goal, Motion
@@ -189,3 +192,28 @@ def commander(
         if isinstance(settings, VelocityCommands)
         else WaypointCommander(settings, count)
     )
+
+
+def changed_commands(
+    settings: VelocityCommands | WaypointCommands, values: Mapping[str, Any], where: str
+) -> VelocityCommands | WaypointCommands:
+    """Change settings of commands.
+
+    Args:
+        settings: as they are.
+        values: new settings by name.
+        where: task, for error messages.
+
+    Returns:
+        The validated copy.
+
+    Raises:
+        InputError: no such setting, or a value that makes no sense.
+    """
+    known = [f.name for f in dataclasses.fields(settings)]
+    for name, value in values.items():
+        if name not in known:
+            raise InputError(
+                where, f"commands.{name}", value, f"no such setting; there are {', '.join(known)}"
+            )
+    return dataclasses.replace(settings, **values)

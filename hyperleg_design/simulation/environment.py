@@ -22,6 +22,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.simulation.alteration import Alterations, made
+from hyperleg_design.simulation.commands import changed_commands
 from hyperleg_design.simulation.layout import stacked
 from hyperleg_design.simulation.stepping.action import checked_action
 from hyperleg_design.simulation.stepping.chunk import Chunk
@@ -257,17 +258,7 @@ class Environment:
         Raises:
             InputError: no such setting, or a value that makes no sense.
         """
-        current = self.chunks[0].commander.settings
-        known = [f.name for f in dataclasses.fields(current)]
-        for name, value in values.items():
-            if name not in known:
-                raise InputError(
-                    self.task.name,
-                    f"commands.{name}",
-                    value,
-                    f"no such setting; there are {', '.join(known)}",
-                )
-        changed = dataclasses.replace(current, **values)
+        changed = changed_commands(self.chunks[0].commander.settings, values, self.task.name)
         for chunk in self.chunks:
             chunk.commander.settings = changed
 
@@ -346,15 +337,9 @@ class Environment:
             duration: time from the start that counts [s].
 
         Returns:
-            True with pushes, alterations, commands that are drawn anew within that time, or
-            waypoints without a course.
+            True with alterations, or where the task draws, see `Task.draws_later`.
         """
-        commands = self.task.commands
-        if isinstance(commands, WaypointCommands):
-            drawn = commands.course_share < 1.0
-        else:
-            drawn = commands.interval < duration + 1.0
-        return bool(drawn or self.task.randomisation.push_speed or self.alterations)
+        return self.task.draws_later(duration) or bool(self.alterations)
 
     def keep_signals(self, store: Mapping[str, np.ndarray], samples: slice) -> None:
         """Write `signals` into arrays, without `joint_friction`.

@@ -179,6 +179,22 @@ class Task:
                     f"a task for any walker such as walk_any",
                 )
 
+    def draws_later(self, duration: float) -> bool:
+        """Decide whether running simulations draw random numbers after their start.
+
+        Args:
+            duration: time from the start that counts [s].
+
+        Returns:
+            True with pushes, commands that are drawn anew within that time, or waypoints without a
+            course.
+        """
+        if isinstance(self.commands, WaypointCommands):
+            drawn = self.commands.course_share < 1.0
+        else:
+            drawn = self.commands.interval < duration + 1.0
+        return bool(drawn or self.randomisation.push_speed)
+
     def conditioned(self, designs: DesignRanges) -> Task:
         """Copy the task with the design observed in every observation group.
 

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.simulation.commands import VelocityCommands, commander
+from hyperleg_design.errors import InputError
+from hyperleg_design.simulation.commands import VelocityCommands, changed_commands, commander
 from hyperleg_design.simulation.state import read_motion
 
 
@@ -45,3 +46,17 @@ def test_velocity_commands_change_after_their_interval():
     np.testing.assert_array_equal(keeper.vector(None), first)
     keeper.advance(motion, None, 0.02, rng)
     assert np.all(keeper.vector(None)[:, 0] != first[:, 0])
+
+
+def test_changed_commands_are_validated_and_name_the_task():
+    settings = VelocityCommands(turning=0.5)
+    changed = changed_commands(settings, {"sideways": 0.25}, "task walk")
+    assert (changed.sideways, changed.turning, settings.sideways) == (
+        0.25,
+        0.5,
+        VelocityCommands().sideways,
+    )
+    with pytest.raises(InputError, match=r"task walk.*commands\.sidewise.*no such setting"):
+        changed_commands(settings, {"sidewise": 0.25}, "task walk")
+    with pytest.raises(InputError, match="test_share"):
+        changed_commands(settings, {"test_share": 2.0}, "task walk")
