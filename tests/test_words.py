@@ -20,10 +20,10 @@ FEWEST_WORDS = 3
 """Words that the first paragraph of a public docstring has at least."""
 NAMES_ALLOWED = {
     "evaluation": 10,
-    "gap": 456,
+    "gap": 452,
     "report": 10,
     "robot": 1,
-    "simulation": 8,
+    "simulation": 6,
     "sweep": 4,
     "validation": 52,
 }
@@ -31,7 +31,7 @@ NAMES_ALLOWED = {
 DOCSTRINGS_ALLOWED = {"gap": 6}
 """Public docstrings that are too short, by package; lower a number when you mend some."""
 
-ARGUMENTS_ALLOWED = {"gap": 63}
+ARGUMENTS_ALLOWED = {"gap": 62}
 """Public functions whose docstrings do not describe every argument, by package; lower a number when
 you mend some. What a decorator registers under one signature (reward terms, observations, measures)
 is described once, in its module."""

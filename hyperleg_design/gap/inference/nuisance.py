@@ -137,17 +137,32 @@ class _Usual:
 
     def __init__(self, subject: Subject, step: float) -> None:
         self.by_kind: dict[str, list[tuple[str, Mapping[str, np.ndarray]]]] = {}
-        for effect in sorted(EFFECTS.values(), key=lambda one: one.nuisance_rank):
+        for effect in sorted(EFFECTS.values(), key=lambda effect: effect.nuisance_rank):
             own = self.by_kind.setdefault(effect.kind, [])
             own.append((effect.identifier, effect.nuisance_spreads(subject, step)))
 
     def of(self, kind: str) -> list[NuisanceParameter]:
-        """Those of all places of a kind, place by place."""
+        """List those of all places of a kind, place by place.
+
+        Args:
+            kind: one of `KINDS` of effects.
+
+        Returns:
+            The parameters.
+        """
         places = dict.fromkeys(place for _, by_place in self.by_kind[kind] for place in by_place)
-        return [one for place in places for one in self.at(kind, place)]
+        return [parameter for place in places for parameter in self.at(kind, place)]
 
     def at(self, kind: str, place: str) -> list[NuisanceParameter]:
-        """Those of one place, in the order of the effects' ranks."""
+        """List those of one place, in the order of the effects' ranks.
+
+        Args:
+            kind: one of `KINDS` of effects.
+            place: the location.
+
+        Returns:
+            The parameters.
+        """
         return [
             NuisanceParameter(effect, place, parameter, float(spread))
             for effect, by_place in self.by_kind[kind]

@@ -50,10 +50,10 @@ def checked_whole_number(
     Raises:
         InputError: no whole number, or outside the range.
     """
-    found = checked_number(value, where, path, low, high)
-    if found != int(found):
+    number = checked_number(value, where, path, low, high)
+    if number != int(number):
         raise InputError(where, path, value, "expects a whole number")
-    return int(found)
+    return int(number)
 
 
 def checked_mapping(data: Any, where: str, path: str, of: str = "") -> Mapping[str, Any]:

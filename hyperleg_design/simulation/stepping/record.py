@@ -51,17 +51,17 @@ class Record:
             return
         driven = self.drive.driven
         assert driven is not None
-        matrix, velocity, kept = (
+        matrix, velocity, altered = (
             self.told.chain.machine.joint_from_motor,
             self.drive.qvel[:, 6:],
             self.altered[substep],
         )
         self.told.keep(substep, driven, self.drive.qpos[:, 7:], velocity, self.drive.qvel[:, 3:6])
-        kept[0], kept[1] = applied(matrix, driven.transmitted), 0.0
+        altered[0], altered[1] = applied(matrix, driven.transmitted), 0.0
         if driven.joint_damping is not None:
-            kept[1] = driven.joint_damping * velocity
+            altered[1] = driven.joint_damping * velocity
         if driven.motor_damping is not None:
-            kept[1] += applied(
+            altered[1] += applied(
                 matrix, driven.motor_damping * applied(np.swapaxes(matrix, -1, -2), velocity)
             )
 

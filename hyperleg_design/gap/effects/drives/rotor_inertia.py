@@ -71,18 +71,18 @@ class RotorInertia(Effect):
         Returns:
             Standard deviations from the nulls by location `(parameters,)`.
         """
-        inertia, found = joint_inertia(subject), {}
+        inertia, spreads = joint_inertia(subject), {}
         for location in self.locations(subject):
             motor = subject.motors.index(location)
             column = np.abs(subject.joint_from_motor[:, motor])
             main = int(np.argmax(column))
-            found[location] = np.array(
+            spreads[location] = np.array(
                 [
                     OF_ROTOR * subject.rotor_inertia[motor]
                     + OF_JOINT * inertia[main] / max(float(column[main]), 1e-9) ** 2
                 ]
             )
-        return found
+        return spreads
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """List the motors at which it can sit.

@@ -63,29 +63,29 @@ class _Weak(Live):
         self.lost, self.full = np.zeros(self.count), np.zeros(self.count)
 
     def begin(self, tick: Tick) -> None:
-        found = modelled(
+        share = modelled(
             tick.last_torque, tick.motor_velocity, self.machine, self.alteration.reference_power
         )
         if tick.battery is not None:
             self.full[:] = np.fmax(self.full, tick.battery)
             nominal = self.machine.voltage if np.isfinite(self.machine.voltage) else self.full
             with np.errstate(invalid="ignore", divide="ignore"):
-                found = np.where(np.isfinite(tick.battery), 1 - tick.battery / nominal, found)
-        self.lost[:] = found
+                share = np.where(np.isfinite(tick.battery), 1 - tick.battery / nominal, share)
+        self.lost[:] = share
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
         return np.asarray(command * (1 - self.alteration.torque * self.lost)[:, None])
 
     def limits(self, limits: Limits, tick: Tick) -> Limits:
-        one = self.alteration
+        battery = self.alteration
         share, speed = (
             np.broadcast_to(np.asarray(x, float), (self.count,))[:, None]
-            for x in (one.limits, one.speed)
+            for x in (battery.limits, battery.speed)
         )
         lost = self.lost[:, None]
         voltage = np.maximum(1 - share * lost, 1e-6)
         left = np.maximum(1 - lost, 1e-6)
-        stall = one.strength / np.maximum(share, 1e-12) * left
+        stall = battery.strength / np.maximum(share, 1e-12) * left
         return dataclasses.replace(
             limits,
             stall_torque=np.where(
@@ -96,7 +96,7 @@ class _Weak(Live):
             no_load_speed=np.where(
                 self.line,
                 limits.no_load_speed * voltage,
-                np.where(share > 0, speed * one.ratio * left, limits.no_load_speed),
+                np.where(share > 0, speed * battery.ratio * left, limits.no_load_speed),
             ),
         )
 

@@ -57,12 +57,12 @@ class LinkCom(InertialEffect):
         Returns:
             Standard deviations from the nulls by location `(parameters,)`.
         """
-        found = {}
+        spreads = {}
         for link in self.locations(subject):
             own = subject.tree.link_inertial[subject.tree.link(link)]
             arm = max(float(np.linalg.norm(own[1:4] / own[0])), SHORTEST)
-            found[link] = np.full(3, OF_ARM * arm)
-        return found
+            spreads[link] = np.full(3, OF_ARM * arm)
+        return spreads
 
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass.
