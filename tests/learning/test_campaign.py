@@ -19,7 +19,7 @@ from hyperleg_design.learning.campaign import (
     run_campaign,
     status_table,
 )
-from hyperleg_design.learning.preset_file import load_preset
+from hyperleg_design.simulation.tasks import load_task
 
 from .conftest import tiny_mapping
 
@@ -114,15 +114,16 @@ def test_status_of_each_training(write, tmp_path: Path) -> None:
 def test_the_t_tests_of_the_fair_study_are_those_of_the_plan() -> None:
     runs, plan = load_campaign("campaign_t_test").runs, load_plan()
     assert {run.design for run in runs} == set(plan.designs)
-    assert len(runs) == 2 * len(plan.designs) * plan.seeds["t_test"]
-    assert {(r.task, r.preset, r.start) for r in runs} == {
+    assert len(runs) == 4 * len(plan.designs) * plan.seeds["t_test"]
+    assert {(r.task, r.preset, r.start) for r in runs if not r.compared} == {
         ("walk_guided", "guided", ""),
-        ("t_test_free", "t_test", "walk_guided"),
+        ("walk_upright", "study", "walk_guided"),
+        ("t_test_guided", "t_test_guided", "walk_upright"),
     }
-    fast = load_protocol("t_test_fast")
-    caps = [r.high for s in load_preset("t_test").stages("t_test_free") for r in s.ramps]
-    assert fast.speed_cap == 3.8
-    assert 3.8 in caps
+    assert {(r.task, r.preset, r.start) for r in runs if r.compared} == {
+        ("t_test_free", "t_test", "t_test_guided")
+    }
+    assert load_protocol("t_test_fast").speed_cap == load_task("t_test_free").commands.speed_cap
 
 
 def test_foreign_folders_stay(write, tmp_path: Path) -> None:
@@ -196,7 +197,6 @@ def test_a_shipped_policy_counts_as_long_as_nothing_it_rests_on_has_changed(
     from hyperleg_design.learning.preset_file import load_preset
     from hyperleg_design.learning.resolved import preset_mapping, task_mapping
     from hyperleg_design.robot.design import load_design
-    from hyperleg_design.simulation.tasks import load_task
 
     campaign = load_campaign(write("mine.yaml", yaml.safe_dump(DATA)))
     assert {s.state for s in campaign_status(campaign, tmp_path / "out")} == {"missing"}
