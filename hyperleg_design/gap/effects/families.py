@@ -51,3 +51,11 @@ BESIDE_TRANSMISSIONS = (
     }
 )
 """What leaves the speeds of rotors and joints in their nominal ratio."""
+IN_DRIVES = LATE | {
+    "torque_constant",
+    "thermal_derating",
+    "voltage_sag",
+    "torque_saturation",
+    "controller_gain",
+}
+"""What changes the torque that a motor gives, before anything that acts at its joints."""

@@ -48,6 +48,8 @@ class Cause:
     """Joints in a row that its link carries, see `Mechanism.beyond`."""
     standing: bool = False
     """Whether it acts in all logs, reference logs included, not in those under test alone."""
+    before: tuple[float, ...] = ()
+    """Values of the standing causes that act before it, where it is linearised beside any."""
 
     @property
     def name(self) -> tuple[str, str]:

@@ -10,10 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.families import IN_DRIVES
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.cause_prior import log_prior
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, fitted
+from hyperleg_design.gap.inference.composed import after
+from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis import (
     Candidate,
     Hypothesis,
@@ -25,6 +28,8 @@ from hyperleg_design.gap.inference.hypothesis import (
 )
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from hyperleg_design.gap.inference.assembly import Evidence
     from hyperleg_design.gap.inference.channels.scales import Scales
     from hyperleg_design.gap.inference.fit import Cause
@@ -118,6 +123,59 @@ class HypothesisFit:
             values = values + move * (1.0 if step < WHOLE_STEPS else 0.5)
         return None if best is None else Candidate(promise.effect, promise.location, (best[1],))
 
+    def settled(self, hypothesis: Hypothesis) -> Hypothesis:
+        """A hypothesis whose causes are linearised at their own estimates, and new ones beside the
+        standing ones that act before them.
+
+        Args:
+            hypothesis: fitted to causes that are linearised elsewhere.
+        """
+        for _ in range(self.rules.search.steps):
+            candidates = self._again(hypothesis)
+            if candidates is None:
+                break
+            hypothesis = self.fit(candidates, hypothesis.scales)
+        return hypothesis
+
+    def _again(self, hypothesis: Hypothesis) -> tuple[Candidate, ...] | None:
+        """Candidates linearised at their estimates; None where they are already."""
+        evidence, moved = self.evidence, False
+        values = [hypothesis.values(place) for place in range(len(hypothesis.causes))]
+        standing = [
+            (cause, own)
+            for cause, own in zip(hypothesis.causes, values, strict=True)
+            if cause.standing and cause.effect in IN_DRIVES
+        ]
+        before = tuple(float(x) for _, own in standing for x in own)
+        tests = after(evidence.tests, standing) if standing else evidence.tests
+        candidates, place = [], 0
+        for candidate in hypothesis.candidates:
+            causes = []
+            for cause in candidate.causes:
+                at, place = cause.values if cause.linear else values[place], place + 1
+                wanted = () if cause.standing or cause.effect not in IN_DRIVES else before
+                if _near(at, cause.values, cause.usual) and _near(wanted, cause.before, 1.0):
+                    causes.append(cause)
+                    continue
+                samples = (
+                    evidence.samples if cause.standing else tests if wanted else evidence.tests
+                )
+                again = screen.linearise(samples, EFFECTS[cause.effect], cause.location, at)
+                if again is not None:
+                    cause, moved = self._instead(cause, again, wanted), True
+                causes.append(cause)
+            candidates.append(replace(candidate, causes=tuple(causes)))
+        return tuple(candidates) if moved else None
+
+    def _instead(self, cause: Cause, again: Cause, before: tuple[float, ...]) -> Cause:
+        """A cause as it is linearised again; where it gains nothing by scaling torques, so does
+        this.
+        """
+        again = self.evidence.acting(again, cause.standing)
+        if isinstance(again.factor, Factor) and isinstance(cause.factor, Factor):
+            again = replace(again, factor=replace(again.factor, shows=cause.factor.shows))
+        return replace(again, before=before)
+
     def at_scales(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> Solution:
         """Causes at fixed scales; the gain is over no cause at these.
 
@@ -195,6 +253,14 @@ class HypothesisFit:
 def _sizes(stack: Stack, solution: Solution) -> np.ndarray:
     """Sizes of all rows of a stack: those of the causes, and 1 of the constant trace."""
     return np.append(solution.theta, 1.0) if stack.constant_last else solution.theta
+
+
+def _near(values: ArrayLike, others: ArrayLike, usual: ArrayLike) -> bool:
+    """Whether values differ by less than `CLOSE` usual sizes."""
+    first, second = np.asarray(values, float), np.asarray(others, float)
+    if len(first) != len(second):
+        return False
+    return bool(np.all(np.abs(first - second) < CLOSE * np.asarray(usual)))
 
 
 def eased(

@@ -87,7 +87,7 @@ class Search:
             if best is current:
                 break
             current, fewer = best, self._fewer(best)
-            best = max((current, *fewer[:-1]), key=lambda one: one.score)
+            best = self._better(fewer[:-1], current)
             if best is not current:
                 current, fewer = best, []
         ranked = sorted(self.fitted.values(), key=lambda one: (-one.score, one.names))
@@ -99,10 +99,14 @@ class Search:
         return Result(tuple(ranked), missing)
 
     def _better(self, found: Sequence[Hypothesis], current: Hypothesis) -> Hypothesis:
-        """The best of some hypotheses, if better than a current one; all are kept."""
-        for one in found:
-            self.fitted[one.names] = one
-            current = max(current, one, key=lambda any_: any_.score)
+        """The best of some hypotheses, if better than a current one; all are kept. What would be
+        better is settled first.
+        """
+        for hypothesis in sorted(found, key=lambda any_: -any_.score):
+            if hypothesis.score > current.score:
+                hypothesis = self.fits.settled(hypothesis)
+            self.fitted[hypothesis.names] = hypothesis
+            current = max(current, hypothesis, key=lambda any_: any_.score)
         return current
 
     def _fewer(self, current: Hypothesis) -> list[Hypothesis]:
