@@ -9,12 +9,13 @@ import numpy as np
 from scipy.special import log_ndtr
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.inference.hypothesis import EVERYWHERE
 from hyperleg_design.gap.inference.prior_odds import prior_odds
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
     from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.hypothesis import Hypothesis
+    from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
     from hyperleg_design.gap.inference.rules import InferenceRules
 
 
@@ -46,7 +47,31 @@ def log_prior(
             )
             place += 1
         found += float(np.mean(odds))
+        if one.location == EVERYWHERE:
+            found += _one_way(one, hypothesis, place, rules)
     return found
+
+
+def _one_way(
+    candidate: Candidate, hypothesis: Hypothesis, end: int, rules: InferenceRules
+) -> float:
+    """Log posterior probability that all sizes of an effect at all of its places have one sign, as
+    what acts everywhere acts the same way at each [nat].
+
+    Args:
+        candidate: the effect.
+        hypothesis: that it is in.
+        end: place of the cause after its own.
+        rules: of the inference.
+    """
+    clear = np.zeros(len(candidate.causes))
+    for i, cause in enumerate(candidate.causes):
+        part = hypothesis.parts[end - len(candidate.causes) + i]
+        size = np.flatnonzero(~cause.shape)[0]
+        variance = max(float(np.diag(hypothesis.covariance)[part][size]), 1e-300)
+        deviation = rules.posterior.interval * np.sqrt(variance)
+        clear[i] = hypothesis.theta[part][size] / deviation
+    return float(np.logaddexp(log_ndtr(clear).sum(), log_ndtr(-clear).sum()))
 
 
 def _like_usual(
