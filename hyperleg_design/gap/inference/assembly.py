@@ -307,10 +307,12 @@ def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarra
 
 
 def _rotated(white: Sequence[np.ndarray], truncation: float) -> list[np.ndarray]:
-    """Columns turned to the directions that the samples show, residual last; all have the same
-    prior, which no rotation changes.
+    """Columns turned to the directions that the samples show, one of them at least, residual last;
+    all have the same prior, which no rotation changes.
     """
     total = sum((one[:-1] @ one[:-1].T for one in white), np.zeros(()))
     values, axes = np.linalg.eigh(total)
-    axes = axes[:, values > truncation]
+    shown = values > truncation
+    shown[-1] = True
+    axes = axes[:, shown]
     return [np.concatenate([axes.T @ one[:-1], one[-1:]]) for one in white]

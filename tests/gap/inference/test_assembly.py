@@ -1,0 +1,24 @@
+"""From logs to channels."""
+
+import diagnosed
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit
+from hyperleg_design.gap.inference.rules import InferenceRules
+
+
+@pytest.fixture(scope="module")
+def loud(robot_files):
+    """Evidence of a log whose front motor's torque is lost in noise."""
+    log = diagnosed.run("limited", 0)
+    noise = np.random.default_rng(3).normal(0, 30.0, len(log.time))
+    torque = {"motor_torque/m_front": log.column("motor_torque/m_front") + noise}
+    return diagnosed.evidence(robot_files["coupled"], log.changed(signals=log.signals | torque))
+
+
+def test_a_channel_that_is_mostly_noise_is_fitted_too(loud):
+    (drive,) = (c for c in loud.channels if (c.residual, c.name) == ("drive", "m_front"))
+    assert drive.columns == 1
+    (scales, *_) = HypothesisFit(loud, InferenceRules(), {}, {}).nothing.scales
+    assert np.isfinite(scales.noise).all()
