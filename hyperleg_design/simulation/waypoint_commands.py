@@ -30,7 +30,10 @@ class WaypointCommands(Checked):
     arrival: Any = number("m", 0.01, 5, default=0.5)
     """Distance that counts as reached, sigma_arr [m]; the paper does not print it."""
     speed_cap: Any = number("m/s", 0.1, 10, default=3.4)
-    """Speed that is asked for [m/s]."""
+    """Largest speed that is asked for [m/s]."""
+    slower: Any = number("m/s", 0, 10, default=0.0)
+    """How much slower the speed may be that an episode asks for, drawn evenly [m/s]. A policy that
+    only ever saw one speed fails at any other."""
     course_share: Any = number("", 0, 1, default=0.0)
     """Fraction of episodes that run a course [-]."""
     courses: tuple[tuple[tuple[float, float], ...], ...] = ()
@@ -57,6 +60,10 @@ class WaypointCommands(Checked):
                     course,
                     f"has a leg no longer than the arrival radius, {self.arrival} m",
                 )
+        if np.any(np.asarray(self.slower) >= self.speed_cap):
+            raise InputError(
+                "waypoints", "slower", self.slower, f"expects less than speed_cap, {self.speed_cap}"
+            )
         if self.course_share and not self.courses:
             raise InputError("waypoints", "course_share", self.course_share, "needs courses")
 
@@ -79,6 +86,8 @@ class WaypointCommander:
         """Waypoints reached in the episode."""
         self.course = np.full(count, -1)
         """Course that each simulation runs; -1 for none."""
+        self.slower = np.zeros(count)
+        """How much less than the largest speed each simulation is asked for [m/s]."""
         self._origin, self._heading = np.zeros((count, 2)), np.zeros((count, 2))
 
     def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> Goal:
@@ -105,6 +114,7 @@ class WaypointCommander:
         self.target[ids] = self._drawn(here, motion.heading, rng)
         self.following[ids] = self._drawn(self.target[ids], _unit(self.target[ids] - here), rng)
         self._from_course(ids)
+        self.slower[ids] = s.slower * rng.uniform(size=count) if s.slower else 0.0
         goal = self._seen(ids, here, motion.heading)
         self.best[ids] = goal.distance
         return goal
@@ -183,7 +193,7 @@ class WaypointCommander:
             distance=np.hypot(offset[:, 0], offset[:, 1]),
             heading_error=np.arctan2(offset[:, 1], offset[:, 0]),
             following=to_yaw_frame(heading, self.following[ids] - here),
-            speed_cap=np.full(len(here), float(self.settings.speed_cap)),
+            speed_cap=self.settings.speed_cap - self.slower[ids],
             progress=np.zeros(len(here)),
             arrived=none,
             deviation=segment_distance(here, self.last[ids], self.target[ids]),

@@ -70,6 +70,21 @@ def test_an_assist_goes_ahead_only_where_the_waypoint_lies_ahead(yaw, share):
     np.testing.assert_allclose(keeper.wanted(goal), 3.0 * share, atol=1e-9)
 
 
+def test_each_episode_asks_for_a_speed_of_its_own():
+    keeper = commander(WaypointCommands(speed_cap=3.8, slower=0.8), 1000)
+    everyone, rng = np.arange(1000), np.random.default_rng(0)
+    keeper.reset(everyone, at(np.zeros((1000, 2))), rng)
+    caps = keeper.judge(at(np.zeros((1000, 2)))).speed_cap
+    assert 3.0 <= caps.min() < 3.01 < 3.79 < caps.max() <= 3.8
+    np.testing.assert_array_equal(keeper.judge(at(np.zeros((1000, 2)))).speed_cap, caps)
+    keeper.reset(everyone[:500], at(np.zeros((500, 2))), rng)
+    again = keeper.judge(at(np.zeros((1000, 2)))).speed_cap
+    assert np.all(again[:500] != caps[:500])
+    np.testing.assert_array_equal(again[500:], caps[500:])
+    with pytest.raises(InputError, match="less than speed_cap"):
+        WaypointCommands(speed_cap=3.0, slower=3.0)
+
+
 def test_progress_is_counted_once():
     keeper, rng = (
         commander(WaypointCommands(course_share=1.0, courses=(((5.0, 0.0),),)), 1),

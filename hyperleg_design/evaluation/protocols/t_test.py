@@ -73,6 +73,7 @@ def t_test_task(task: Task, protocol: TTestProtocol) -> Task:
         task.commands,
         arrival=protocol.arrival,
         speed_cap=protocol.speed_cap,
+        slower=0.0,
         courses=(tuple((float(x), float(y)) for x, y in protocol.course[1:]),),
         course_share=1.0,
     )
