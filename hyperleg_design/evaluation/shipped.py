@@ -270,7 +270,8 @@ def pack(source: str | Path, target: str | Path, starts: Collection[str] = ()) -
     Args:
         source: folder of trainings, such as `results/campaign`.
         target: such as `sim/policies`.
-        starts: groups of which the last policy alone is copied, because others only start from it.
+        starts: groups of which only the last policy and its critic are copied, because others
+            only start from them.
 
     Returns:
         One a training of the source, by name.
@@ -295,10 +296,11 @@ def pack(source: str | Path, target: str | Path, starts: Collection[str] = ()) -
         if not (training / POLICY).is_file():
             packed.append(Packed(training.name, 0, 0))
             continue
-        policies, files = [training / POLICY], [training / POLICY, training / RUN]
+        policies = [training / POLICY]
+        files = [training / POLICY, training / CRITIC, training / RUN]
         if training.name.split("-")[0] not in starts:
             policies += sorted(training.glob(LATE))
-            files += [*policies[1:], training / CRITIC]
+            files += policies[1:]
         with output_folder(Path(target) / training.name) as folder:
             for file in files:
                 if file.is_file() and file.suffix == ".onnx":

@@ -31,6 +31,8 @@ def task_mapping(task: Task) -> dict[str, Any]:
         "kind": "waypoints" if isinstance(task.commands, WaypointCommands) else "velocity"
     }
     commands.update(parameters.leaves(task.commands))
+    if not commands.get("slower", True):  # trainings from before there was such a setting go on
+        del commands["slower"]
     if isinstance(task.commands, WaypointCommands):
         commands["courses"] = [
             [list(point) for point in course] for course in task.commands.courses
