@@ -1,6 +1,6 @@
 """What the simulation step does to a policy's measures, and what the stops do to its joints.
 
-Run: python benchmarks/step_convergence.py walk_upright-toe-0 t_test-toe-0
+Run: python benchmarks/step_convergence.py walk_upright-toe-0 t_test_free-toe-0
 [--trials 10] [--set stops.time_constant=0.005 stops.impedance=0.99]
 
 Each policy runs its protocol on the robot that it was trained on, at four steps of the simulation;

@@ -24,7 +24,7 @@ from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.gymnasium_vector import ACTION_BOUND, GymnasiumVector
 from hyperleg_design.simulation.tasks import Task, load_task
 
-NAMES = {"hyperleg/Walk-v0": "walk", "hyperleg/TTest-v0": "goal"}
+NAMES = {"hyperleg/Walk-v0": "walk", "hyperleg/TTest-v0": "t_test_free"}
 """Task of each registered environment."""
 
 

@@ -37,7 +37,7 @@ def job(folder, policy="walk_upright-toe-1", steps=100):
     return FineTuning(find_policy(policy), design, steps, folder / "7")
 
 
-@pytest.mark.parametrize("name", ["walk_upright-toe-1", "t_test-toe-0", "walk_guided-toe-1"])
+@pytest.mark.parametrize("name", ["walk_upright-toe-1", "t_test_free-toe-0", "walk_guided-toe-1"])
 def test_it_trains_under_the_settings_that_the_training_ended_with(name):
     """The only stage sets what the schedule of the whole training sets in its last iteration."""
     policy = load_policy(name)
@@ -143,8 +143,8 @@ out.write_text("policy")
             return subprocess.Popen(words, stderr=log)
 
     monkeypatch.setattr(fine_tuning, "_started", started)
-    jobs = [job(tmp_path, "t_test-toe-0"), job(tmp_path), job(tmp_path, "walk_upright-toe-0")]
-    with pytest.raises(InputError, match=r"7/t_test-toe-0-100.*the disk is full.*its log is"):
+    jobs = [job(tmp_path, "t_test_free-toe-0"), job(tmp_path), job(tmp_path, "walk_upright-toe-0")]
+    with pytest.raises(InputError, match=r"7/t_test_free-toe-0-100.*the disk is full.*its log is"):
         fine_tune(jobs, workers=1, progress=False)
     assert [t.result.is_file() for t in jobs] == [False, True, True]
 
