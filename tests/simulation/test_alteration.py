@@ -136,7 +136,9 @@ def test_no_alterations_means_no_chain(design):
     environment = Environment(
         design, load_task("walk"), simulations=2, threads=1, alterations=lambda given: ()
     )
-    assert all(chunk.drive.chain is None and chunk.altered is None for chunk in environment.chunks)
+    assert all(
+        chunk.drive.chain is None and chunk.record.altered is None for chunk in environment.chunks
+    )
     assert environment.model.opt.integrator == simulation_model(design).opt.integrator
 
 

@@ -83,7 +83,7 @@ def energy_residual(environment, duration=0.3, drop=0.03):
     for _ in range(round(duration / environment.task.physics.policy_step)):
         environment.step(REACH[None])
         signals = environment.signals()
-        for state in chunk.states[:, 0]:
+        for state in chunk.record.states[:, 0]:
             data.qpos[:], data.qvel[:] = state[: 7 + joints], state[7 + joints :]
             mujoco.mj_forward(model, data)
             energy.append(data.energy.sum())

@@ -135,7 +135,7 @@ def test_all_that_evaluate_prints_is_a_column_and_an_objective(kind, tmp_path):
     sweep = space(axes={"toe.mass": {"values": [0.12, 0.3]}})
     values = {"toe.mass": np.array([0.3])}
     design = sweep.design(values, "toe").take(0)
-    evaluations = evaluate_many(policies, SHORT[kind], designs=[design] * 2, workers=1)
+    evaluations = evaluate_many(policies, SHORT[kind], designs=[design] * len(policies), workers=1)
     rows = {row["measure"]: row for row in evaluation_rows(evaluations)}
     mapping, sample = protocol_mapping(SHORT[kind]), np.array([0])
     trials = pd.concat(
@@ -156,9 +156,11 @@ def test_all_that_evaluate_prints_is_a_column_and_an_objective(kind, tmp_path):
     objective = "power"
     drawn = {"sampling": "sobol", "count": 1, "axes": {"toe.mass": {"low": 0.1, "high": 0.3}}}
     wide = space(**drawn)
-    search = search_of(wide, plan(wide, [SHORT[kind]], seeds=2), [objective], [f"{kind}.fell<=1"])
+    search = search_of(
+        wide, plan(wide, [SHORT[kind]], seeds=len(policies)), [objective], [f"{kind}.fell<=1"]
+    )
     study = run_search(search, tmp_path, 1, progress=False)
     again = wide.design({"toe.mass": np.array([study.trials[0].params["toe.mass"]])}, "toe").take(0)
-    evaluations = evaluate_many(policies, SHORT[kind], designs=[again] * 2, workers=1)
+    evaluations = evaluate_many(policies, SHORT[kind], designs=[again] * len(policies), workers=1)
     rows = {row["measure"]: row for row in evaluation_rows(evaluations)}
     assert study.trials[0].values == [rows[objective]["mean"]]
