@@ -74,6 +74,21 @@ class Campaign:
         return frozenset(run.group for run in self.runs if not run.compared)
 
 
+def shipped_starts() -> frozenset[str]:
+    """Collect the groups whose policies others only start from, in every shipped campaign.
+
+    Returns:
+        Names of the groups.
+    """
+    runs = [
+        run
+        for name in resources.names("sim")
+        if name.split("_")[0] == "campaign"
+        for run in load_campaign(name).runs
+    ]
+    return frozenset(r.group for r in runs) - {r.group for r in runs if r.compared}
+
+
 @dataclass(frozen=True)
 class RunStatus:
     """How far one training of a campaign is."""

@@ -126,6 +126,10 @@ def test_the_t_tests_of_the_fair_study_are_those_of_the_plan() -> None:
     assert load_protocol("t_test_fast").speed_cap == load_task("t_test_free").commands.speed_cap
 
 
+def test_a_start_is_compared_in_no_shipped_campaign() -> None:
+    assert module.shipped_starts() == {"walk_guided", "t_test_guided"}
+
+
 def test_foreign_folders_stay(write, tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "thesis.tex").write_text("years of work")

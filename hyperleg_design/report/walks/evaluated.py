@@ -18,7 +18,7 @@ from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.robustness import CONDITIONS, robustness
 from hyperleg_design.evaluation.shipped import Shipped, check_different, shipped_policies
 from hyperleg_design.evaluation.versus_paper import VARIANTS
-from hyperleg_design.learning.campaign import load_campaign
+from hyperleg_design.learning.campaign import load_campaign, shipped_starts
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -310,7 +310,7 @@ def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:
 
 def _compared(folder: str | Path | None, *, late: bool = True) -> list[Shipped]:
     """Policies of the HyperLeg in a folder that are more than starts of others."""
-    starts = load_campaign().starts
+    starts = shipped_starts()
     policies = shipped_policies(folder, late=late)
     return [p for p in policies if p.family == "hyperleg" and p.group not in starts]
 
