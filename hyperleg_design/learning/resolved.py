@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.tasks import Task
 
 
+LATER = ("height_share", "slower")
+"""Settings of tasks that came after trainings were shipped; 0 where they are not used."""
+
+
 def task_mapping(task: Task) -> dict[str, Any]:
     """Write a task out as nested mappings.
 
@@ -30,9 +34,7 @@ def task_mapping(task: Task) -> dict[str, Any]:
     commands: dict[str, Any] = {
         "kind": "waypoints" if isinstance(task.commands, WaypointCommands) else "velocity"
     }
-    commands.update(parameters.leaves(task.commands))
-    if not commands.get("slower", True):  # trainings from before there was such a setting go on
-        del commands["slower"]
+    commands.update(_section(task.commands))
     if isinstance(task.commands, WaypointCommands):
         commands["courses"] = [
             [list(point) for point in course] for course in task.commands.courses
@@ -49,10 +51,10 @@ def task_mapping(task: Task) -> dict[str, Any]:
 
 
 def _section(section: Any) -> dict[str, Any]:
-    """Leaves of a section; without a share of height that is not used, so that trainings from
-    before there was one go on.
+    """Leaves of a section without later settings that are not used, so that trainings from before
+    there were such settings go on.
     """
-    return {k: v for k, v in parameters.leaves(section).items() if k != "height_share" or v}
+    return {k: v for k, v in parameters.leaves(section).items() if k not in LATER or v}
 
 
 def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:

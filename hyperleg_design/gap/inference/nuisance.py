@@ -73,7 +73,7 @@ class NuisanceParameter:
 
     @property
     def name(self) -> str:
-        """For people."""
+        """Parameter and place in words, for reports."""
         if self.effect in UNLISTED:
             return f"{self.effect} at {self.location}"
         parameter = (

@@ -61,7 +61,7 @@ class Offset:
 
     @property
     def unit(self) -> str:
-        """Of the sizes."""
+        """Unit of the offset's size and of what is left of it."""
         return "rad/s" if self.kind == "gyro" else "m/s^2"
 
     @property
@@ -71,7 +71,7 @@ class Offset:
 
     @property
     def says(self) -> str:
-        """For people."""
+        """What was found, as a sentence of a report."""
         if self.leans:
             return (
                 f"feels a vertical that leans by {self.leans:.2g} rad against "

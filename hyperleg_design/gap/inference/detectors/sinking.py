@@ -57,7 +57,7 @@ class Bearing:
 
     @property
     def nominal_slope(self) -> float:
-        """[m/N]"""
+        """Sinking over load by the model's own floor [m/N]."""
         return -_slope(self.load, self.nominal)
 
     @property
