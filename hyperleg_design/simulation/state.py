@@ -79,8 +79,11 @@ class Goal:
     """How much closer this step came than any before, max(d* - d, 0) [m], `(n,)`."""
     arrived: np.ndarray
     """Whether this step reached it, `(n,)`."""
+    to_path: np.ndarray
+    """Vector from the pelvis to the nearest point of the straight line between the last waypoint
+    and this one, in the yaw frame [m], `(n, 2)`."""
     deviation: np.ndarray
-    """Distance from the straight line between the last waypoint and this one [m], `(n,)`."""
+    """Length of that vector [m], `(n,)`."""
     finished: np.ndarray
     """Whether this step reached the last waypoint of a course, `(n,)`."""
 

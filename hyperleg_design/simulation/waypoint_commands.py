@@ -187,6 +187,7 @@ class WaypointCommander:
 
     def _seen(self, ids: Any, here: np.ndarray, heading: np.ndarray) -> Goal:
         offset = to_yaw_frame(heading, self.target[ids] - here)
+        to_path = to_yaw_frame(heading, to_segment(here, self.last[ids], self.target[ids]))
         none = np.zeros(len(here), bool)
         return Goal(
             offset=offset,
@@ -196,7 +197,8 @@ class WaypointCommander:
             speed_cap=self.settings.speed_cap - self.slower[ids],
             progress=np.zeros(len(here)),
             arrived=none,
-            deviation=segment_distance(here, self.last[ids], self.target[ids]),
+            to_path=to_path,
+            deviation=np.hypot(to_path[:, 0], to_path[:, 1]),
             finished=none.copy(),
         )
 
@@ -240,8 +242,8 @@ def clipped(offset: np.ndarray) -> np.ndarray:
     return offset * np.minimum(1.0, SIGHT / np.maximum(length, 1e-9))[:, None]
 
 
-def segment_distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Compute the distance of points from straight segments.
+def to_segment(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Compute the vectors from points to the nearest points of straight segments.
 
     Args:
         point: `(n, 2)` [m].
@@ -249,13 +251,12 @@ def segment_distance(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> n
         end: of each segment, `(n, 2)` [m].
 
     Returns:
-        The distances, `(n,)` [m].
+        The vectors, `(n, 2)` [m].
     """
     along = end - start
     length = np.maximum(np.einsum("ni,ni->n", along, along), 1e-12)
     share = np.clip(np.einsum("ni,ni->n", point - start, along) / length, 0.0, 1.0)
-    nearest = point - start - share[:, None] * along
-    return np.hypot(nearest[:, 0], nearest[:, 1])
+    return np.asarray(start + share[:, None] * along - point)
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

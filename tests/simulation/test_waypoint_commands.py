@@ -8,7 +8,7 @@ from hyperleg_design.simulation.waypoint_commands import (
     SIGHT,
     WaypointCommands,
     clipped,
-    segment_distance,
+    to_segment,
 )
 
 T_TEST = ((9.14, 0.0), (9.14, 4.57), (9.14, -4.57), (9.14, 0.0), (0.0, 0.0))
@@ -104,13 +104,25 @@ def test_unreachable_or_senseless_courses_are_refused():
         WaypointCommands(courses=(((np.nan, 0.0),),))
 
 
-def test_distance_from_a_segment():
+def test_vectors_to_a_segment():
     points = np.array([[1.0, 1.0], [-3.0, 4.0], [5.0, 0.0], [2.0, -0.5]])
     start, end = np.zeros((4, 2)), np.tile([4.0, 0.0], (4, 1))
-    np.testing.assert_allclose(segment_distance(points, start, end), [1.0, 5.0, 1.0, 0.5])
     np.testing.assert_allclose(
-        segment_distance(points, start, start), np.linalg.norm(points, axis=1)
+        to_segment(points, start, end), [[0.0, -1.0], [3.0, -4.0], [-1.0, 0.0], [0.0, 0.5]]
     )
+    np.testing.assert_allclose(to_segment(points, start, start), -points)
+
+
+def test_the_path_is_seen_from_the_robot():
+    """A robot that faces along y stands 1 m to the right of a path along x: the path is ahead."""
+    keeper, rng = (
+        commander(WaypointCommands(course_share=1.0, courses=(T_TEST,)), 1),
+        np.random.default_rng(0),
+    )
+    keeper.reset(np.array([0]), at([0.0, 0.0]), rng)
+    goal = keeper.judge(at([3.0, -1.0], yaw=np.pi / 2))
+    np.testing.assert_allclose(goal.to_path, [[1.0, 0.0]], atol=1e-12)
+    np.testing.assert_allclose(goal.deviation, [1.0])
 
 
 def test_clipping_keeps_the_direction():

@@ -93,6 +93,21 @@ def waypoint(state: State, robot: Robot) -> list[np.ndarray]:
     ]
 
 
+def path(state: State, robot: Robot) -> list[np.ndarray]:
+    """Observe the vector to the nearest point of the straight line between the last waypoint and
+    the present one (clipped), without which nobody can return to that line.
+
+    Args:
+        state: of all simulations after a policy step.
+        robot: what parts know of the robot.
+
+    Returns:
+        Columns, `(n, k)` each.
+    """
+    assert state.goal is not None
+    return [clipped(state.goal.to_path)]
+
+
 def privileged(state: State, robot: Robot) -> list[np.ndarray]:
     """Observe what only a simulation knows: linear velocity, pelvis height, and vertical force on
     each foot over the weight.
@@ -166,6 +181,7 @@ PARTS: dict[str, Part] = {
         ],
         needs_goal=True,
     ),
+    "path": Part("path", path, lambda layout: [("to_path", 2, (1, -1))], needs_goal=True),
     "privileged": Part(
         "privileged",
         privileged,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from hyperleg_design.evaluation.protocol import TTestProtocol
 from hyperleg_design.evaluation.protocols import course
-from hyperleg_design.simulation.waypoint_commands import segment_distance
+from hyperleg_design.simulation.waypoint_commands import to_segment
 
 T = TTestProtocol().course
 
@@ -47,7 +47,7 @@ def test_distances_equal_brute_force_and_the_simulations(seed):
         brute = np.linalg.norm(points[:, None] - line, axis=-1).min(1)
         assert found[:, k] == pytest.approx(brute, abs=2e-3)
         ends = (np.broadcast_to(w, points.shape) for w in (waypoints[k], waypoints[k + 1]))
-        assert found[:, k] == pytest.approx(segment_distance(points, *ends))
+        assert found[:, k] == pytest.approx(np.linalg.norm(to_segment(points, *ends), axis=1))
     assert course.course_deviation(points, waypoints) == pytest.approx(found.min(1))
 
 

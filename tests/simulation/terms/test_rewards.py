@@ -35,6 +35,7 @@ def state(robot):
         speed_cap=np.array([1.0, 3.0]),
         progress=np.array([0.02, 0.0]),
         arrived=np.array([False, True]),
+        to_path=np.array([[0.0, 0.3], [2.0, 0.0]]),
         deviation=np.array([0.3, 2.0]),
         finished=np.zeros(2, bool),
     )
