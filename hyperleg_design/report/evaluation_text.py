@@ -71,6 +71,8 @@ def _plain(value: Estimate) -> dict[str, Any]:
 def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
     """Write the rows of `evaluation_rows` as a table for a terminal, with units.
 
+    Measures that no trial has, such as those of a knee that a robot lacks, are only named below it.
+
     Args:
         rows: one for each policy and measure.
 
@@ -78,7 +80,10 @@ def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
         The text.
     """
     cells = []
+    lacking = list(dict.fromkeys(row["measure"] for row in rows if row["mean"] is None))
     for row in rows:
+        if row["mean"] is None:
+            continue
         numbers = ["" if row[k] is None else row[k] for k in ("mean", "low", "high")]
         cells.append(
             [
@@ -92,7 +97,7 @@ def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
                 row["missing"],
             ]
         )
-    return table(
+    text = table(
         [
             "variant",
             "policy is",
@@ -101,3 +106,4 @@ def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
         ],
         cells,
     )
+    return f"{text}\nwithout a value in any trial: {', '.join(lacking)}" if lacking else text

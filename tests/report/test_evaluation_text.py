@@ -3,7 +3,7 @@ from __future__ import annotations
 from hyperleg_design.report.evaluation_text import evaluation_text
 
 
-def test_what_could_not_be_measured_stays_empty():
+def test_what_no_trial_has_is_named_below_the_table():
     common = {
         "variant": "toe",
         "trained": "specialist",
@@ -34,4 +34,4 @@ def test_what_could_not_be_measured_stays_empty():
     lines = evaluation_text(rows).splitlines()
     assert "250.5" in lines[2]
     assert "None" not in "".join(lines)
-    assert lines[3].split() == ["toe", "specialist", "cadence", "Hz", "0", "0", "10"]
+    assert lines[3:] == ["without a value in any trial: cadence"]

@@ -206,20 +206,16 @@ def _log(
     rows = len(found["joint_position"])
     if rows < 2:
         raise InputError(name, "samples", rows, "ended at once: a log needs two samples at least")
-    model = actuation_model(design)
-    found = _as_told(model, found)
+    model, limbs = actuation_model(design), len(layout.limbs)
+    found = _as_told(model, limbs, found)
     signals = (
         _joint_signals(design, layout, found)
         | _motor_signals(design, layout, found)
         | _base_signals(found, time_step)
     )
     signals |= _contact_signals(layout, found["pad_force"])
-    gains = {
-        j: (k, d)
-        for j, k, d in zip(
-            layout.joints, np.tile(model.stiffness, 2), np.tile(model.damping, 2), strict=True
-        )
-    }
+    pairs = np.tile(np.column_stack([model.stiffness, model.damping]), (limbs, 1)).tolist()
+    gains = {joint: (k, d) for joint, (k, d) in zip(layout.joints, pairs, strict=True)}
     constants = dict(zip(layout.motors, _torque_constants(design, layout).tolist(), strict=True))
     known: dict[str, Any] = {
         "robot": design.name,
@@ -231,7 +227,9 @@ def _log(
     return Log(name, np.arange(rows) * time_step, signals, Metadata(**(known | dict(said))))
 
 
-def _as_told(model: ActuationModel, found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _as_told(
+    model: ActuationModel, limbs: int, found: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
     """Signals as drives and sensors tell them; `motor_command` and `acceleration_error` only where
     they tell something of their own.
     """
@@ -243,7 +241,7 @@ def _as_told(model: ActuationModel, found: Mapping[str, np.ndarray]) -> dict[str
         return found
     found["base_angular_velocity"] = told.pop("angular_velocity")
     found |= told
-    legs = (len(told["motor_torque"]), 2, -1)
+    legs = (len(told["motor_torque"]), limbs, -1)
     found["driven_joint_torque"] = (
         told["motor_torque"].reshape(legs) @ model.joint_from_motor.T
     ).reshape(legs[0], -1)

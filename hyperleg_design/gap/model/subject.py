@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import mujoco
     import pinocchio
 
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Subject:
     name: str
     path: str
     """File it was read from."""
-    design: Design | None
+    design: RobotDesign | None
     """Where it is one of ours."""
     base: str
     """`fixed` or `floating`."""
@@ -131,10 +131,12 @@ class Subject:
         """Whether the base floats."""
         return self.base == "floating"
 
-    @property
+    @cached_property
     def one_to_one(self) -> bool:
-        """Whether each motor drives the joint of its own name."""
-        return self.motors == self.joints
+        """Whether each motor drives the joint of its own name and counts at it."""
+        return self.motors == self.joints and np.array_equal(
+            self.joint_from_motor, np.eye(len(self.joints))
+        )
 
     @cached_property
     def motor_from_joint(self) -> np.ndarray:
@@ -252,14 +254,17 @@ def index_of(name: str, names: Sequence[str], field: str, what: str) -> int:
 
 
 def _least_heat(subject: Subject) -> np.ndarray:
+    from hyperleg_design.robot.described import prefixed
     from hyperleg_design.robot.motors import motor_arrays
     from hyperleg_design.robot.transmission import motor_names
     from hyperleg_design.simulation.drives.actuation import motor_from_joint
 
-    assert subject.design is not None
-    names = motor_names(subject.design)
-    cost = [
-        motor_arrays(subject.design).power_constant[names.index(m.split("_", 1)[1])]
-        for m in subject.motors
-    ]
-    return motor_from_joint(subject.joint_from_motor, np.array(cost))
+    design = subject.design
+    assert design is not None
+    constants = motor_arrays(design).power_constant
+    cost = {
+        prefixed(limb, name): constant
+        for limb in design.copies
+        for name, constant in zip(motor_names(design), constants, strict=False)
+    }
+    return motor_from_joint(subject.joint_from_motor, np.array([cost[m] for m in subject.motors]))

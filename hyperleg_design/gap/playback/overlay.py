@@ -69,8 +69,8 @@ class Overlay:
         Raises:
             InputError: the robot has no such place.
         """
+        from hyperleg_design.gap.model.design_subject import subject_of
         from hyperleg_design.gap.model.subject import Subject
-        from hyperleg_design.gap.model.subject_build import subject_of
 
         subject = robot if isinstance(robot, Subject) else subject_of(robot)
         return alterations(self.change, subject)

@@ -11,10 +11,11 @@ import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model.design_subject import of_design
+from hyperleg_design.gap.model.file_subject import of_file
 from hyperleg_design.gap.model.subject import Subject, index_of, motor_index
-from hyperleg_design.gap.model.subject_build import of_design, of_file
 from hyperleg_design.gap.signals.gearing import on_the_joints_side
-from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
@@ -67,7 +68,7 @@ def load_subject(
     path = _find(robot, logs, named)
     known = set().union(*(log.joints for log in logs)) if logs else None
     if path.suffix.lower() in (".yaml", ".yml"):
-        bare = of_design(load_design(path, overrides=chosen), path, base or "floating", known)
+        bare = of_design(load_robot(path, overrides=chosen), path, base, known)
     else:
         if chosen:
             raise InputError(

@@ -10,7 +10,7 @@ from hyperleg_design.gap.experiments.rig_room import (
     targets_for,
     use_of,
 )
-from hyperleg_design.gap.model.subject_build import subject_of
+from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design
 

@@ -8,10 +8,11 @@ from hyperleg_design.evaluation.rollout import record
 from hyperleg_design.gap.checks.check import check_log
 from hyperleg_design.gap.logs.log import read_log
 from hyperleg_design.gap.logs.recording import log_of_recording, log_of_trial, write_logs
-from hyperleg_design.gap.model.subject_build import subject_of
+from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.playback.overlay import Overlay
 from hyperleg_design.gap.results.finding import ERROR
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.models import quaternion_matrix, rigid_body_model
 from hyperleg_design.simulation.drives.told import TOLD
 from hyperleg_design.simulation.environment import Environment
@@ -305,3 +306,20 @@ def test_with_an_overlay_a_log_says_what_drives_and_sensors_tell():
         np.tile([0, 0, 1.0], (len(log.time) - 1, 1)),
         atol=1e-9,
     )
+
+
+def test_a_quadruped_writes_logs_with_and_without_an_overlay():
+    """Four limbs of three motors each; torques at the joints are those of the motors."""
+    design = load_robot("mini_cheetah")
+    change = {("torque_constant", "front_left_knee"): {"scale": 0.5}}
+    weak = Overlay("mini_cheetah", change, {}).alterations(design)
+    for alterations in ((), weak):
+        made = Environment(
+            design, load_task("walk_any"), simulations=1, seed=1, alterations=alterations
+        )
+        still = rollout(made, lambda seen: np.zeros((len(seen), 12)), 10)
+        log = log_of_recording(made, still, 0)
+        joints, motors = made.layout.joints, made.layout.motors
+        assert log.metadata.gains == dict.fromkeys(joints, (20.0, 0.5))
+        told = log.stack("motor_torque", motors) @ subject_of(design).joint_from_motor.T
+        np.testing.assert_allclose(log.stack("joint_torque", joints), told, atol=1e-9)

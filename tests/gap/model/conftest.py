@@ -6,7 +6,18 @@ from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.fixture(
-    scope="module", params=["hyperleg", "toe_locked", "toe_removed", "arm", "coupled", "pendulum"]
+    scope="module",
+    params=[
+        "hyperleg",
+        "toe_locked",
+        "toe_removed",
+        "mini_cheetah",
+        "parallel_ankle",
+        "teaching_leg",
+        "arm",
+        "coupled",
+        "pendulum",
+    ],
 )
 def subject(request, robot_files):
     return load_subject(robot_files.get(request.param, request.param))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.model.machine import machine_of
-from hyperleg_design.gap.model.subject_build import subject_of
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.drives.machine import machine_of as machine_of_design

@@ -4,8 +4,8 @@ import pytest
 
 from hyperleg_design import resources
 from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.model.rig_spec import rig_spec
-from hyperleg_design.gap.model.subject_build import subject_of
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.model.subject_build import subject_of
+from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.playback.overlay import (
     Overlay,
     overlay_from_mapping,

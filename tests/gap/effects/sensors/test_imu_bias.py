@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.gap.model.subject_build import subject_of
+from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.robot.design import load_design

@@ -1,0 +1,152 @@
+"""The subject of a design: its motors count before their gears, and its limits are the motors'."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model import robot_file
+from hyperleg_design.gap.model.assembling import add_rotors, assembled
+from hyperleg_design.gap.model.feet import pads_of
+from hyperleg_design.gap.model.mechanism import mechanism_of
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.described import prefixed
+from hyperleg_design.robot.friction import FRICTION_SPEED
+from hyperleg_design.robot.gear import rotor_inertia
+from hyperleg_design.robot.mjcf import mujoco_spec
+from hyperleg_design.robot.motors import find_motor
+from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.trees.tree_design import TreeDesign
+from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.model import simulation_spec
+from hyperleg_design.sizing.envelope import motor_envelope
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.robot.described import RobotDesign
+
+
+def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None) -> Subject:
+    """Build the subject of one of our designs before any log declared anything.
+
+    Args:
+        design: one robot, of any family.
+        path: of its file.
+        base: `fixed` or `floating`; as in the design where empty.
+        known: joints that logs know; others are held still. All are free by default.
+
+    Returns:
+        The subject. A linkage whose reduction depends on the posture has that of the default
+        posture.
+
+    Raises:
+        InputError: a batch of designs, or none of its joints is known.
+    """
+    drawn = build_tree(design)
+    base = base or ("floating" if drawn.floating else "fixed")
+    every = [j.name for j in drawn.moving]
+    if known is not None and not known & set(every):
+        raise InputError(
+            design.name,
+            "joints",
+            sorted(known)[:8],
+            f"are joints of another robot; its own are {', '.join(every)}",
+        )
+    spec = _spec(design, base)
+    robot_file.strip_drives(spec)
+    for group in (spec.sensors, spec.keys):
+        for item in list(group):
+            spec.delete(item)
+    for joint in spec.joints:
+        joint.frictionloss = 0.0
+    robot_file.set_base(spec, base, path)
+    kept = [name for name in every if known is None or name in known]
+    held = robot_file.lock(spec, kept)
+    moving = [joint for joint in drawn.moving if joint.name in kept]
+    limbs, names = design.copies, transmission.motor_names(design)
+    sections = {
+        prefixed(limb, name): section
+        for limb in limbs
+        for name, section in design.joint_sections.items()
+    }
+    own = [sections[joint.name] for joint in moving]
+    full = np.kron(np.eye(len(limbs)), transmission.joint_from_motor(design))
+    full = full[[list(sections).index(joint.name) for joint in moving]]
+    used = np.flatnonzero(np.any(full != 0, 0))
+    full = full[:, used]
+    motors = [prefixed(limb, name) for limb in limbs for name in names]
+    used_names = tuple(motors[i] for i in used)
+
+    def of_motors(values: np.ndarray) -> np.ndarray:
+        return np.tile(np.asarray(values, float)[: len(names)], len(limbs))[used]
+
+    rotor = of_motors(rotor_inertia(design))
+    add_rotors(spec, kept, used_names, full, rotor)
+    model = robot_file.compiled(spec, path)
+    tree = mechanism_of(model)
+    layout = layout_of(design)
+    pads = tuple(
+        dataclasses.replace(pad, foot=int(layout.pad_foot[layout.pads.index(pad.name)]))
+        for pad in pads_of(model, tree)
+    )
+    envelope = motor_envelope(design)
+    constants = [find_motor(str(a.motor)).torque_constant for a in design.every_actuator]
+    rods = design.rod_sections if isinstance(design, TreeDesign) else ()
+    notes = [f"the linkages of {', '.join(rods)} have the reductions of the default posture"]
+    return assembled(
+        name=design.name,
+        path=path,
+        design=design,
+        base=base,
+        model=model,
+        tree=tree,
+        joint_from_motor=full,
+        motors=used_names,
+        motor_aliases=used_names,
+        rotor_inertia=rotor,
+        armature=np.zeros(len(moving)),
+        gains=np.array([[joint.stiffness, joint.damping] for joint in own], float),
+        torque_limit=of_motors(envelope.peak_torque),
+        stall_torque=of_motors(envelope.stall_torque),
+        no_load_speed=of_motors(envelope.no_load_speed),
+        coulomb=np.array([joint.coulomb for joint in moving], float),
+        viscous=np.array([joint.viscous for joint in moving], float),
+        friction_speed=FRICTION_SPEED,
+        torque_constant=of_motors(np.array(constants)),
+        passive=np.zeros(len(moving), bool),
+        default=np.array([joint.default for joint in moving]),
+        feet=layout.feet,
+        pads=pads,
+        unlogged=held,
+        notes=notes if rods else [],
+        imu_rotation=np.eye(3),
+        imu_position=np.zeros(3),
+    )
+
+
+def _spec(design: RobotDesign, base: str) -> Any:
+    """A robot on a stand needs neither pads nor a floor."""
+    if base == "fixed" and isinstance(design, TreeDesign):
+        return mujoco_spec(design, friction=False, floor=False)
+    return simulation_spec(design)
+
+
+def subject_of(design: RobotDesign, base: str = "floating") -> Subject:
+    """Build the subject of one of our designs, with all joints free to move.
+
+    Args:
+        design: one robot, of any family.
+        base: `fixed` or `floating`.
+
+    Returns:
+        The subject.
+
+    Raises:
+        InputError: a batch of designs.
+    """
+    bare = of_design(design, Path(design.source or f"{design.name}.yaml"), base, None)
+    return dataclasses.replace(bare, bare=bare)
