@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
@@ -48,16 +50,19 @@ class List(Printing):
     kind: Annotated[str, tyro.conf.Positional] = "all"
     """designs, variants, motors, sweeps, tasks, protocols, presets, policies, measures,
     parameters, or all (without measures and parameters)."""
+    design: str = "hyperleg"
+    """Design whose parameters are listed: shipped name or YAML file."""
 
     def run(self) -> None:
         """Print what is shipped, as a list or as JSON."""
         from hyperleg_design.report import listing
 
-        entries = listing.listing(self.kind)
+        entries = listing.listing(self.kind, self.design)
         if self.json:
             emit(entries)
         else:
-            print(listing.listing_text(entries))
+            width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+            print(listing.listing_text(entries, width))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,6 +138,7 @@ class Import(Printing):
     def run(self) -> None:
         """Import the file, and print where its limits contradict the motors."""
         from hyperleg_design.robot.build import design_yaml
+        from hyperleg_design.robot.checks.finding import finding_lines
         from hyperleg_design.robot.importing import import_robot
         from hyperleg_design.writing import write_text
 
@@ -150,9 +156,9 @@ class Import(Printing):
             )
             return
         written = "" if self.out is None else f" -> {self.out}"
-        print(f"{design.name}: {len(design.joint_sections)} joints of one limb{written}")
-        for finding in findings:
-            print(finding)
+        print(f"{design.name}: {len(design.joint_sections)} joints{written}")
+        for line in finding_lines(findings):
+            print(line)
         if not findings:
             print("the file's limits agree with the motors")
 

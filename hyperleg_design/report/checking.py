@@ -11,7 +11,7 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml
 from hyperleg_design.robot.check import check_file, finding_of
-from hyperleg_design.robot.checks.finding import Finding
+from hyperleg_design.robot.checks.finding import Finding, finding_lines
 from hyperleg_design.sweep.space import load_sweep
 
 
@@ -89,10 +89,7 @@ def checks_text(findings: list[dict[str, Any]]) -> str:
             else f"{_counted(entry['errors'], 'error')}, {_counted(entry['warnings'], 'warning')}"
         )
         lines.append(f"{entry['path']}: {verdict}")
-        lines += [
-            f"  {f['severity']}: {f['place']} {f['message']}: {f['remedy']}"
-            for f in entry["findings"]
-        ]
+        lines += [f"  {line}" for line in finding_lines(Finding(**f) for f in entry["findings"])]
     return "\n".join(lines)
 
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.text import table
 from hyperleg_design.robot.ablation import DESCRIPTION
-from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.dimensions import total_mass
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.motors import catalogue
-from hyperleg_design.robot.parameters import values as parameters
 
 KINDS = (
     "designs",
@@ -30,11 +30,12 @@ _LONG = ("measures", "parameters")
 """Kinds that are shown only where they are asked for."""
 
 
-def listing(kind: str = "all") -> dict[str, Any]:
+def listing(kind: str = "all", design: str = "hyperleg") -> dict[str, Any]:
     """List everything that is shipped, by kind.
 
     Args:
         kind: one of `KINDS`, or `all`.
+        design: whose parameters are listed: a shipped name or a YAML file.
 
     Returns:
         Entries by kind.
@@ -44,7 +45,7 @@ def listing(kind: str = "all") -> dict[str, Any]:
     """
     if kind != "all" and kind not in KINDS:
         raise InputError("list", "", kind, f"expects one of all, {', '.join(KINDS)}")
-    makers = {
+    makers: dict[str, Callable[[], Any]] = {
         "designs": _designs,
         "variants": lambda: DESCRIPTION,
         "motors": _motors,
@@ -54,7 +55,7 @@ def listing(kind: str = "all") -> dict[str, Any]:
         "presets": lambda: _of_sim("preset"),
         "policies": _policies,
         "measures": _measures,
-        "parameters": _parameters,
+        "parameters": lambda: _parameters(load_robot(design)),
     }
     chosen = [k for k in KINDS if k not in _LONG] if kind == "all" else (kind,)
     return {k: makers[k]() for k in chosen}
@@ -133,10 +134,9 @@ def _policies() -> dict[str, Any]:
     return policies
 
 
-def _parameters() -> dict[str, Any]:
-    design = load_design("hyperleg")
+def _parameters(design: RobotDesign) -> dict[str, Any]:
     rows = {}
-    for path, rule in parameters.rules(Design).items():
+    for path, rule in design.rules.items():
         value = design[path]
         origin = design.origins.get(path)
         rows[path] = {
@@ -149,11 +149,12 @@ def _parameters() -> dict[str, Any]:
     return rows
 
 
-def listing_text(shipped: dict[str, Any]) -> str:
+def listing_text(shipped: dict[str, Any], width: int | None = None) -> str:
     """Write a listing as tables for a terminal.
 
     Args:
         shipped: as `listing` returns it.
+        width: of the terminal in characters, to which descriptions are wrapped; not by default.
 
     Returns:
         The text.
@@ -174,12 +175,12 @@ def listing_text(shipped: dict[str, Any]) -> str:
                 "motor",
                 "vendor",
                 "kind",
-                "kg",
-                "peak Nm",
-                "rated Nm",
-                "no load rad/s",
-                "corner rad/s",
-                "Km Nm/W^.5",
+                "mass [kg]",
+                "peak [Nm]",
+                "rated [Nm]",
+                "no load [rad/s]",
+                "corner [rad/s]",
+                "Km [Nm/W^0.5]",
             ]
             parts.append(
                 table(
@@ -193,7 +194,7 @@ def listing_text(shipped: dict[str, Any]) -> str:
         elif kind == "designs":
             parts.append(
                 table(
-                    ["design", "variant", "kg"],
+                    ["design", "variant", "mass [kg]"],
                     [[n, e["variant"], e["total_mass"]] for n, e in entries.items()],
                 )
             )
@@ -202,10 +203,10 @@ def listing_text(shipped: dict[str, Any]) -> str:
                 [n, e["group"], e["design"], str(e["seed"]), str(len(e["files"]) - 1)]
                 for n, e in entries.items()
             ]
-            parts.append(table(["policy", "task", "design", "seed", "late ones"], rows))
+            parts.append(table(["policy", "task", "design", "seed", "late checkpoints"], rows))
         elif kind == "measures":
             rows = [[n, e["unit"], e["better"], e["description"]] for n, e in entries.items()]
-            parts.append(table(["measure", "unit", "better", "what it is"], rows))
+            parts.append(table(["measure", "unit", "better", "what it is"], rows, width))
         elif kind == "parameters":
             rows = [
                 [
@@ -226,6 +227,7 @@ def listing_text(shipped: dict[str, Any]) -> str:
                         [n, e if isinstance(e, str) else e["description"]]
                         for n, e in entries.items()
                     ],
+                    width,
                 )
             )
         parts.append("")

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from hyperleg_design.robot.names import JOINTS
 
+NARROWEST = 20
+"""Characters that the last column of a table keeps in a narrow terminal."""
 
-def table(headers: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+
+def table(
+    headers: Sequence[str], rows: Iterable[Sequence[object]], width: int | None = None
+) -> str:
     """Write aligned columns: texts to the left, numbers to the right.
 
     Args:
         headers: of the columns.
         rows: of cells.
+        width: in characters, to which the texts of the last column are wrapped; not by default.
 
     Returns:
         The text.
@@ -32,6 +39,10 @@ def table(headers: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
         for i, h in enumerate(headers)
     ]
 
+    indent = sum(widths[:-1]) + 2 * len(widths[:-1])
+    if width is not None:
+        widths[-1] = min(widths[-1], max(NARROWEST, width - indent))
+
     def line(parts: Sequence[str]) -> str:
         aligned = [
             p.rjust(w) if numeric and numeric[i] else p.ljust(w)
@@ -39,9 +50,14 @@ def table(headers: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
         ]
         return "  ".join(aligned).rstrip()
 
-    return "\n".join(
-        [line(list(headers)), line(["-" * w for w in widths]), *(line(row) for row in cells)]
-    )
+    def lines(parts: Sequence[str]) -> list[str]:
+        if len(parts[-1]) <= widths[-1]:
+            return [line(parts)]
+        first, *more = textwrap.wrap(parts[-1], widths[-1])
+        return [line([*parts[:-1], first]), *(" " * indent + text for text in more)]
+
+    body = [part for row in cells for part in lines(row)]
+    return "\n".join([line(list(headers)), line(["-" * w for w in widths]), *body])
 
 
 def _cell(value: object) -> str:

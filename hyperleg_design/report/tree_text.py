@@ -36,27 +36,19 @@ def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
         [name, m["motor"], m["gear"], *(float(m[k]) for k in keys)]
         for name, m in analysis["motors"].items()
     ]
-    lines = []
-    for direction, force in analysis["contact_force"].items():
-        if force["force"] is None:
-            lines.append(f"largest {direction} force of one limb: none; {force['reason']}")
-            continue
-        lines.append(
-            f"largest {direction} force of one limb, default posture: {force['force']:.4g} N, "
-            f"{force['body_weights']:.3g} body weights; at their limit: "
-            f"{', '.join(force['binding']) or 'no motor, the floor slips'}"
-        )
+    limbs = analysis["limbs"]
+    copies = f"limbs: {', '.join(limbs)}" if limbs else "described as a whole"
+    limb, behind = ("one limb", "limb") if limbs else ("the robot", "all but the trunk")
     return "\n".join(
         [
-            f"{analysis['design']} (limbs: {', '.join(analysis['limbs'])}): "
-            f"{analysis['total_mass']:.2f} kg, limb "
+            f"{analysis['design']} ({copies}): {analysis['total_mass']:.2f} kg, {behind} "
             f"{analysis['limb_mass']:.2f} kg, standing height {analysis['standing_height']:.3f} m",
             f"links [kg]: {masses}",
             "",
             table(heads, joints),
             "max torque: derated, one joint at its best whatever the others do; alone: the others "
             "at zero torque; all in the default posture",
-            f"reachable torques of one limb fill {100 * analysis['zonotope_to_box_volume']:.1f} % "
+            f"reachable torques of {limb} fill {100 * analysis['zonotope_to_box_volume']:.1f} % "
             f"of the box that their maxima span",
             "",
             table(
@@ -72,6 +64,35 @@ def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
                 motors,
             ),
             "",
-            *lines,
+            *_linkages(analysis["linkages"]),
+            *_forces(analysis["contact_force"], limb),
         ]
     )
+
+
+def _linkages(linkages: Mapping[str, Any]) -> list[str]:
+    """One line for each joint that a rod drives, and one for a rod that does not reach."""
+    lines = []
+    for motor, linkage in linkages.items():
+        for joint, (low, high) in linkage["reduction"].items():
+            lines.append(
+                f"rod of motor {motor}: reduction {low:.4g} .. {high:.4g} to {joint} over its "
+                f"range, {linkage['default'][joint]:.4g} in the default posture"
+            )
+        if linkage["beyond"]:
+            posture = ", ".join(f"{j} {angle:g} deg" for j, angle in linkage["beyond"].items())
+            lines.append(f"rod of motor {motor}: does not reach in all postures, not at {posture}")
+    return [*lines, ""] if lines else []
+
+
+def _forces(forces: Mapping[str, Any], limb: str) -> list[str]:
+    """One line for each direction, or the reason why there is no force."""
+    lines = [
+        f"largest {direction} force of {limb}, default posture: {force['force']:.4g} N, "
+        f"{force['body_weights']:.3g} body weights; at their limit: "
+        f"{', '.join(force['binding']) or 'no motor, the floor slips'}"
+        for direction, force in forces.items()
+        if force["force"] is not None
+    ]
+    reasons = {force["reason"]: None for force in forces.values() if force["force"] is None}
+    return lines + [f"force of {limb} on the floor: none; {reason}" for reason in reasons]

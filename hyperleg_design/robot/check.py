@@ -4,6 +4,8 @@ rules.
 
 from __future__ import annotations
 
+import dataclasses
+import re
 from pathlib import Path
 
 from hyperleg_design import resources
@@ -17,6 +19,8 @@ from hyperleg_design.robot.design import Design
 from hyperleg_design.robot.linkage import LinkageModel
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.motors import Motor, catalogue, load_motor
+from hyperleg_design.robot.trees.rod_range import RodRange, rod_ranges
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 KINDS = ("design", "motor", "urdf", "mjcf")
 XML = (".urdf", ".xml", ".mjcf")
@@ -87,7 +91,8 @@ def check_file(path: str | Path) -> list[Finding]:
             "error",
             str(path),
             "is of no kind that can be checked",
-            "expects a design or motor (YAML), a URDF, or an MJCF file",
+            "expects a design (a YAML file with family: or base:), a motor (with constants: and "
+            "convention:), a sweep (with axes:), a URDF, or an MJCF file",
         )
     ]
 
@@ -121,7 +126,7 @@ def finding_of(error: InputError, severity: str = "error") -> Finding:
         The finding, with the place, the value and the remedy of the error.
     """
     if error.value is None:
-        return Finding(severity, error.place, error.remedy, "correct it there")
+        return Finding(severity, error.place, error.remedy)
     return Finding(severity, error.place, f"is {shown(error.value)}", error.remedy)
 
 
@@ -132,13 +137,35 @@ def _check_design_file(path: str | Path) -> list[Finding]:
     from hyperleg_design.robot.description import urdf
 
     design = load_robot(path)
-    findings = check_urdf(urdf(design))
+    findings = [
+        dataclasses.replace(found, place=re.sub(r" \(line \d+\)$", "", found.place))
+        for found in check_urdf(urdf(design))  # lines of a text that the user does not see
+    ]
+    if isinstance(design, TreeDesign):
+        findings += [found for rod in rod_ranges(design) for found in _rod_findings(rod)]
     try:
         if isinstance(design, Design):
             LinkageModel.of(design)
     except InputError as error:
         findings.append(finding_of(error, "warning"))
     return findings
+
+
+def _rod_findings(rod: RodRange) -> list[Finding]:
+    """Warnings of a linkage that cannot follow its joints over their whole ranges."""
+    place, remedy = f"rods.{rod.motor}", "move its points, or narrow the ranges of the joints"
+    findings = []
+    if rod.beyond:
+        message = f"does not reach at {_posture(rod.beyond)}"
+        findings.append(Finding("warning", place, message, remedy))
+    for joint, posture in rod.reversed.items():
+        message = f"has passed a dead centre at {_posture(posture)}, where it turns {joint} back"
+        findings.append(Finding("warning", place, message, remedy))
+    return findings
+
+
+def _posture(angles: dict[str, float]) -> str:
+    return ", ".join(f"{joint} {angle:g} deg" for joint, angle in angles.items())
 
 
 __all__ = ["KINDS", "Finding", "check_file", "check_mjcf", "check_urdf", "finding_of", "kind_of"]

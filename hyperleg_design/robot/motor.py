@@ -19,7 +19,6 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import Rule
-from hyperleg_design.robot.parameters.values import LABELS
 
 CONFIDENCES = ("high", "medium", "low")
 RPM = 2 * math.pi / 60
@@ -56,11 +55,11 @@ class Constant:
     value: float
     """Number in the unit that the name of the field states."""
     label: str
-    """One of `parameters.LABELS`."""
+    """One of `parameters.LABELS`; `user` for a plain value."""
     source: str
     """Document, page or reason."""
     confidence: str
-    """`high`, `medium` or `low`."""
+    """`high`, `medium` or `low`, which is also that of a plain value."""
 
 
 @dataclass(frozen=True)
@@ -256,7 +255,7 @@ def load_motor(path: Path) -> Motor:
         ("name", "vendor", "product", "kind", "description", "constants", "convention", "presets"),
         where,
     )
-    for key in ("name", "vendor", "product", "kind", "constants", "convention"):
+    for key in ("name", "kind", "constants", "convention"):
         if key not in data:
             raise InputError(where, key, None, "is missing")
     if data["name"] != path.stem:
@@ -278,8 +277,8 @@ def load_motor(path: Path) -> Motor:
         presets[str(name)] = _constants(preset, _PRESET, {}, where, f"presets.{name}")
     motor = Motor(
         name=str(data["name"]),
-        vendor=str(data["vendor"]),
-        product=str(data["product"]),
+        vendor=str(data.get("vendor", "")),
+        product=str(data.get("product", "")),
         kind=str(data["kind"]),
         description=str(data.get("description", "")),
         constants=_constants(data["constants"], _RULES, _OPTIONAL, where, "constants"),
@@ -313,22 +312,15 @@ def _constants(
         raise InputError(where, path, data, f"expects a mapping with {', '.join(required)}")
     rules = {**required, **optional}
     _known(data, rules, where, f"{path}.")
+    missing = [f"{k} [{rule.unit or '-'}]" for k, rule in required.items() if k not in data]
+    if missing:
+        raise InputError(where, path, None, f"lacks {', '.join(missing)}")
     constants = {}
-    for key, rule in rules.items():
-        if key not in data:
-            if key in required:
-                raise InputError(where, f"{path}.{key}", None, f"is missing [{rule.unit}]")
-            continue
-        entry = data[key]
-        if not isinstance(entry, Mapping) or "value" not in entry:
-            raise InputError(
-                where, f"{path}.{key}", entry, "expects value, label, source and confidence"
-            )
-        _known(entry, ("value", "label", "source", "confidence"), where, f"{path}.{key}.")
-        _one_of(entry.get("label"), LABELS, where, f"{path}.{key}.label")
-        _one_of(entry.get("confidence"), CONFIDENCES, where, f"{path}.{key}.confidence")
-        value = parameters.checked(entry["value"], rule, where, f"{path}.{key}")
-        constants[key] = Constant(
-            value, entry["label"], str(entry.get("source", "")), entry["confidence"]
-        )
+    for key, entry in data.items():
+        place = f"{path}.{key}"
+        value, origin = parameters.labelled(entry, where, place)
+        sure = entry.get("confidence", "low") if isinstance(entry, Mapping) else "low"
+        _one_of(sure, CONFIDENCES, where, f"{place}.confidence")
+        number = parameters.checked(value, rules[key], where, place)
+        constants[key] = Constant(number, origin.label, origin.source, sure)
     return constants

@@ -14,6 +14,7 @@ from hyperleg_design.robot.dimensions import limb_mass, standing_height, total_m
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.trees import limb_masses, tree_limb
+from hyperleg_design.robot.trees.rod_range import rod_ranges
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.sizing import zonotope
 from hyperleg_design.sizing.capability import DIRECTIONS, largest_force
@@ -31,12 +32,15 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         design: one robot; batches are refused.
 
     Returns:
-        Plain numbers, lists and mappings, SI units, ready for JSON: `limbs` (names of the copies),
+        Plain numbers, lists and mappings, SI units, ready for JSON: `limbs` (names of the copies,
+        none where the robot is described as a whole),
         `total_mass`, `limb_mass` [kg], `standing_height` [m], `link_mass` [kg], `reduction` (joints
         x motors), `max_joint_torque` [Nm] (derated), `torque_alone` [Nm] (the others at zero, not
         derated), `single_joint_speed` [rad/s], `reflected_inertia` [kg m^2] (joints x joints),
         `link_inertia` [kg m^2] (of what is behind each joint, about it, rotors not in it),
-        `zonotope_to_box_volume` [-], `motors`, and `contact_force` by direction: `force` [N],
+        `zonotope_to_box_volume` [-], `motors`, `linkages` (for each motor with a rod `reduction`,
+        its smallest and largest by joint, `default` and `beyond`, as `RodRange` has them), and
+        `contact_force` by direction: `force` [N],
         `body_weights` [-] and `binding` motors, or the `reason` why there is none.
 
     Raises:
@@ -55,7 +59,7 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         "schema": SCHEMA,
         "family": "tree",
         "design": design.name,
-        "limbs": [copy for copy in design.copies if copy] or ["the whole robot"],
+        "limbs": [copy for copy in design.copies if copy],
         "total_mass": float(total_mass(design)),
         "limb_mass": float(limb_mass(design)),
         "standing_height": float(standing_height(design)),
@@ -73,6 +77,14 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         "reflected_inertia": leg_reflected_inertia(design).tolist(),
         "link_inertia": named([limb_masses.behind(design, name, default)[2] for name in joints]),
         "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(matrix, -peak, peak)),
+        "linkages": {
+            rod.motor: {
+                "reduction": {joint: list(ends) for joint, ends in rod.reduction.items()},
+                "default": rod.default,
+                "beyond": rod.beyond,
+            }
+            for rod in rod_ranges(design)
+        },
         "contact_force": _forces(design),
     }
 

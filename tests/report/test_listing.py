@@ -24,6 +24,20 @@ def test_every_parameter_is_listed_with_a_label():
     assert all(entry["label"] in parameters.LABELS for entry in found.values())
 
 
+def test_parameters_of_any_design_are_listed():
+    found = listing("parameters", "teaching_leg")["parameters"]
+    assert found["actuators.knee.gear"]["value"] == 6.0
+    assert found["joints.knee.stiffness"]["unit"] == "Nm/rad"
+
+
+def test_long_descriptions_are_wrapped_to_a_terminal_and_lose_no_word():
+    found = listing("presets")
+    wide, narrow = listing_text(found), listing_text(found, 80)
+    assert max(map(len, narrow.splitlines())) <= 80
+    dashes = str.maketrans("", "", "-")
+    assert narrow.translate(dashes).split() == wide.translate(dashes).split()
+
+
 def test_an_unknown_kind_names_the_known_ones():
     with pytest.raises(InputError, match="designs"):
         listing("robots")

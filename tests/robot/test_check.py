@@ -67,7 +67,7 @@ def test_a_fault_is_one_finding(write, name, text, words):
     assert len(found) == 1
     assert found[0].severity == "error"
     assert words in str(found[0])
-    assert found[0].remedy
+    assert found[0].message
 
 
 def test_a_design_whose_linkage_cannot_be_is_a_warning(write):
@@ -88,7 +88,7 @@ def test_findings_of_errors():
     assert str(found) == "error: a.yaml: toe.mass: is -1; expects kg"
     assert (
         str(finding_of(InputError("a.yaml", "toe.mass", None, "is missing"), "warning"))
-        == "warning: a.yaml: toe.mass: is missing; correct it there"
+        == "warning: a.yaml: toe.mass: is missing"
     )
 
 

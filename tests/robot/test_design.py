@@ -209,7 +209,7 @@ WHOLE = (resources.content_folder("descriptions") / "hyperleg.yaml").read_text()
         (
             "spacing: {value: 0.20, label",
             "spacing: {value: 0.20, lable",
-            ["hip.spacing", "value, label, source"],
+            ["hip.spacing.lable", "did you mean label?"],
         ),
         ("motor: {value: RI70", "motor: {value: RI71", ["motor", "RI71", "RI70"]),
     ],

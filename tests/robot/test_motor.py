@@ -19,6 +19,14 @@ def edited(change) -> str:
 
 
 @pytest.mark.parametrize("motor", catalogue().values(), ids=catalogue())
+def test_every_shipped_constant_names_its_source(motor):
+    for group in (motor.constants, *motor.presets.values()):
+        for name, constant in group.items():
+            assert constant.label != "user", name
+            assert len(constant.source) > 5, name
+
+
+@pytest.mark.parametrize("motor", catalogue().values(), ids=catalogue())
 def test_torque_constant_and_speed_agree(motor):
     """Kt of direct current and the no-load speed at nominal voltage are two views of one constant:
     V = Kt omega_0, roughly.
@@ -58,7 +66,7 @@ def test_conventions_of_current_and_resistance(write):
 
 
 CHANGES = {
-    "vendor": (lambda d: d.pop("vendor"), ["vendor", "missing"]),
+    "convention missing": (lambda d: d.pop("convention"), ["convention", "missing"]),
     "kind": (lambda d: d.update(kind="stepper"), ["kind", "stepper", "inrunner"]),
     "name": (lambda d: d.update(name="RI71"), ["name", "RI71", "RI70"]),
     "extra": (lambda d: d.update(colour="red"), ["colour", "no such field"]),
@@ -78,15 +86,11 @@ CHANGES = {
     ),
     "missing constant": (
         lambda d: d["constants"].pop("mass_g"),
-        ["constants.mass_g", "missing", "[g]"],
+        ["constants", "lacks mass_g [g]"],
     ),
     "unknown constant": (
         lambda d: d["constants"].update(mass={"value": 1}),
         ["constants.mass", "mass_g"],
-    ),
-    "plain value": (
-        lambda d: d["constants"].update(mass_g=270),
-        ["constants.mass_g", "value, label, source and confidence"],
     ),
     "entry typo": (
         lambda d: d["constants"]["mass_g"].update(sorce="x"),
@@ -117,8 +121,8 @@ CHANGES = {
         ["constants.resistance.label", "guess", "vendor"],
     ),
     "confidence": (
-        lambda d: d["constants"]["resistance"].pop("confidence"),
-        ["constants.resistance.confidence", "high"],
+        lambda d: d["constants"]["resistance"].update(confidence="sure"),
+        ["constants.resistance.confidence", "sure", "high"],
     ),
     "rated": (
         lambda d: d["constants"]["rated_torque"].update(value=5),
@@ -128,7 +132,7 @@ CHANGES = {
     "preset": (lambda d: d["presets"].update(paper=None), ["presets.paper", "mapping"]),
     "preset constant": (
         lambda d: d["presets"]["paper"].pop("power_constant"),
-        ["presets.paper.power_constant", "missing"],
+        ["presets.paper", "lacks power_constant [W/Nm^2]"],
     ),
 }
 
@@ -140,6 +144,21 @@ def test_a_motor_file_with_a_fault(write, case):
         load_motor(write("RI70.yaml", edited(change)))
     for word in ["RI70.yaml", *words]:
         assert word in str(caught.value)
+
+
+def test_plain_values_are_the_users_and_give_the_same_motor(write):
+    """Designs take plain values, too; their label says that nobody named a source."""
+
+    def plain(data):
+        data["constants"] = {k: v["value"] for k, v in data["constants"].items()}
+        del data["vendor"], data["product"], data["description"]
+
+    motor, known = load_motor(write("RI70.yaml", edited(plain))), catalogue()["RI70"]
+    assert {c.label for c in motor.constants.values()} == {"user"}
+    assert {c.confidence for c in motor.constants.values()} == {"low"}
+    for name, constant in known.constants.items():
+        assert motor.constants[name].value == constant.value
+    assert motor.power_constant("vendor") == known.power_constant("vendor")
 
 
 def test_rpm():

@@ -130,7 +130,7 @@ def test_a_broken_catalogue_names_its_file(write, tmp_path, monkeypatch):
         (tmp_path / kind).mkdir()
     write("motors/RI70.yaml", "name: RI70\n")
     monkeypatch.setenv("HYPERLEG_HOME", str(tmp_path))
-    with pytest.raises(InputError, match=r"motors/RI70\.yaml: vendor"):
+    with pytest.raises(InputError, match=r"motors/RI70\.yaml: kind"):
         catalogue()
 
 

@@ -339,7 +339,9 @@ def compare_text(measures: dict[str, Any]) -> str:
     for name in measures:
         for key, value in _flat(measures[name]).items():
             rows.setdefault(key, [""] * len(measures))[list(measures).index(name)] = value
-    cells = [[key, _unit(key), *values] for key, values in rows.items()]
+    groups = list(dict.fromkeys(key.split(".")[0] for key in rows))
+    ordered = sorted(rows, key=lambda key: groups.index(key.split(".")[0]))
+    cells = [[key, _unit(key), *rows[key]] for key in ordered]
     return table(["measure", "unit", *measures], cells)
 
 

@@ -231,8 +231,11 @@ def labelled(data: Any, where: str, path: str) -> tuple[Any, Origin]:
     """
     if not isinstance(data, Mapping):
         return data, Origin("user")
-    extra = [k for k in data if k not in ("value", "label", "source", "confidence")]
-    if extra or "value" not in data:
+    known = ["confidence", "label", "source", "value"]
+    for key in data:
+        if key not in known and "value" in data:
+            raise InputError(where, f"{path}.{key}", data[key], unknown(str(key), known))
+    if "value" not in data:
         raise InputError(
             where, path, dict(data), "expects a value, or a mapping with value, label, source"
         )

@@ -22,6 +22,10 @@ LARGEST_CONDITION = 1e6
 """Condition number of `joint_from_motor` from which it counts as singular."""
 
 
+MOVES = 0.01
+"""Share of a joint in a motion that no motor drives, from which it is named."""
+
+
 def ordered(
     joints: Mapping[str, tuple[str, str]], links: Iterable[str], root: str, where: str
 ) -> list[str]:
@@ -208,7 +212,7 @@ def _check_bodies(design: TreeDesign, where: str) -> None:
             "are principal moments of inertia that no body has: none is negative, and the largest "
             "is at most the sum of the other two; check gyration, inertia and the units"
         )
-        _refuse(where, f"links.{name}", real, principal, remedy)
+        _refuse(where, f"links.{name}", real, principal.round(9), remedy)
     fixed = {j.child for j in design.all_joints.values() if j.type == "fixed"}
     for name, joint in design.joint_sections.items():
         own = [joint.child]
@@ -240,13 +244,21 @@ def _check_actuation(design: TreeDesign, where: str) -> None:
             len(columns),
             f"motors cannot hold {len(joints)} joints; give each joint a motor of its own or more",
         )
-    condition = np.linalg.cond(matrix)
-    remedy = (
-        "is the condition number of joint_from_motor, as good as singular: some joints cannot be "
-        "driven apart; check transmission, rods and gears"
+    undriven, sizes, _ = np.linalg.svd(matrix)
+    good = sizes[..., -1] * LARGEST_CONDITION > sizes[..., 0]
+    if np.all(good):
+        return
+    first = np.unravel_index(np.argmin(good), good.shape)
+    motion = undriven[first][:, len(joints) - 1]
+    together = [n for n, share in zip(joints, motion, strict=True) if abs(share) > MOVES]
+    raise InputError(
+        where,
+        "transmission",
+        None,
+        f"joint_from_motor is singular: {' and '.join(together)} cannot be driven apart; check "
+        f"transmission, rods and gears",
+        bad=~good,
     )
-    good = condition < LARGEST_CONDITION
-    _refuse(where, "transmission", good, np.where(np.isfinite(condition), condition, 1e99), remedy)
 
 
 def _check_printed(design: TreeDesign, where: str) -> None:

@@ -277,12 +277,12 @@ def _from_matrix(
     except (TypeError, ValueError):
         matrix = np.full(0, np.nan)
     if matrix.shape != (len(rows), len(columns)) or not np.all(np.isfinite(matrix)):
-        size = [list(matrix.shape)] if matrix.size else None
+        held = f"holds {' by '.join(map(str, matrix.shape))} numbers; " if matrix.ndim == 2 else ""
         remedy = (
-            f"expects {len(rows)} rows of {len(columns)} finite numbers: a row for each of "
+            f"{held}expects {len(rows)} rows of {len(columns)} finite numbers: a row for each of "
             f"{', '.join(rows)}, a column for each of {', '.join(columns)}"
         )
-        raise InputError(where, place, size, remedy)
+        raise InputError(where, place, None, remedy)
     entries: dict[str, dict[str, Any]] = {}
     for column, motor in enumerate(columns):
         gear = float(_plain(sections["actuators"][motor].get("gear", 1.0)))

@@ -5,6 +5,7 @@ import pytest
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.report.sizing import comparison
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +46,14 @@ def test_compare_puts_designs_beside_each_other(design):
     units = {line.split()[0]: line.split()[1] for line in text.splitlines()[2:]}
     assert (units["total_mass"], units["torque_alone.knee"]) == ("kg", "Nm")
     assert units["zonotope_to_box_volume"] == "-"
+
+
+def test_rows_of_one_measure_stand_together_whatever_the_joints_are_called():
+    robots = [load_robot("teaching_leg"), load_robot("mini_cheetah")]
+    text = comparison.compare_text(comparison.compare(robots))
+    groups = [line.split(".")[0] for line in text.splitlines()[2:] if "." in line.split()[0]]
+    runs = [group for group, other in zip(groups, ["", *groups], strict=False) if group != other]
+    assert len(runs) == len(set(runs))
 
 
 def test_compare_keeps_two_designs_of_one_name_apart(design):

@@ -195,7 +195,7 @@ def test_from_mapping_keeps_origins():
         ({"mass": 1, "part": {"length": 1}, 5: 1}, ["5", "no such field"]),
         (
             {"mass": 1, "part": {"length": {"value": 1, "lable": "paper"}}},
-            ["part.length", "value, label, source"],
+            ["part.length.lable", "did you mean label?"],
         ),
         (
             {"mass": 1, "part": {"length": {"label": "paper"}}},

@@ -55,12 +55,12 @@ def with_part(section, **parts):
         ),
         pytest.param(
             {"transmission": {"joint_from_motor": [[7, 7], [9, 9]]}},
-            ["transmission", "singular"],
+            ["transmission", "singular", "hip and knee cannot be driven apart"],
             id="singular matrix",
         ),
         pytest.param(
             {"transmission": {"joint_from_motor": [[7, 0, 0], [0, 9, 0]]}},
-            ["transmission.joint_from_motor", "[2, 3]", "2 rows of 2"],
+            ["transmission.joint_from_motor", "holds 2 by 3", "2 rows of 2"],
             id="wrong size",
         ),
         pytest.param(

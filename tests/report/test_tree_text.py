@@ -1,0 +1,27 @@
+"""The page of a written-out robot: whose forces, which linkages, and one reason for no force."""
+
+from __future__ import annotations
+
+from hyperleg_design.report.tree_text import tree_analysis_text
+from hyperleg_design.robot.load import load_robot
+from hyperleg_design.sizing.analysis import analyze
+from tests.robot.tree_files import leg
+
+
+def test_a_robot_with_limbs_speaks_of_one_limb_and_gives_reductions_of_its_rods():
+    text = tree_analysis_text(analyze(load_robot("parallel_ankle")))
+    assert text.startswith("parallel_ankle (limbs: left, right): 60.00 kg, limb 9.66 kg")
+    assert "largest vertical force of one limb" in text
+    assert "rod of motor ankle_inner: reduction -26.82 .. -10.83 to ankle_roll" in text
+
+
+def test_a_robot_that_is_described_as_a_whole_has_no_limbs():
+    text = tree_analysis_text(analyze(leg()))
+    assert text.startswith("leg (described as a whole): 3.00 kg, all but the trunk 2.00 kg")
+    assert "limb" not in text
+    assert "rod" not in text
+
+
+def test_without_pads_the_reason_stands_once():
+    text = tree_analysis_text(analyze(leg(pads={})))
+    assert text.count("has no pads") == 1
