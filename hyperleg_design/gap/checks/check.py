@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.checks.declarations import declarations
 from hyperleg_design.gap.checks.excitation import excitation_of
 from hyperleg_design.gap.checks.gates import unusable
 from hyperleg_design.gap.checks.plausibility import implausible
@@ -130,6 +131,7 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
         *_clock(sampling),
         *_columns(columns, sampling),
         *(implausible(log, subject) if measured else ()),
+        *declarations(log.metadata, subject),
     ]
     ordered = tuple(sorted(_merged(found), key=lambda f: SEVERITIES.index(f.severity)))
     return Check(

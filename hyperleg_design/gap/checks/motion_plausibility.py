@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.logs.log import Log
 
 RPM = 30 / math.pi
+FEWEST = 2
+"""Rows from which a motion has a spread."""
 
 
 def implausible_motion(log: Log) -> list[Finding]:
@@ -35,6 +37,8 @@ def implausible_motion(log: Log) -> list[Finding]:
     if not joints:
         return []
     moved, integral = _windows(log, joints)
+    if len(moved) < FEWEST:
+        return []
     slope, fit = fitted_slopes(moved, integral)
     moving = (
         np.nanstd(moved, axis=0)

@@ -53,6 +53,9 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
                 ", unless a gear of that ratio lies between" if geared else ""
             )
             findings.append(Finding(WARNING if geared else ERROR, column, text, remedy))
+        elif fit[0] > RULES.unit.strange and _thousand(slope[0]):
+            text = f"is {slope[0]:.3g} times what targets and declared gains ask for: it is in mNm"
+            findings.append(Finding(ERROR, column, text, "convert to Nm"))
     for motor in log.motors:
         if not log.has("motor_current", motor):
             continue
@@ -63,7 +66,7 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
                     log.column(f"{kind}/{motor}")[:, None],
                     constant * log.column(f"motor_current/{motor}")[:, None],
                 )
-                if fit[0] > RULES.unit.strange and abs(slope[0] / 1000 - 1) < 0.5:
+                if fit[0] > RULES.unit.strange and _thousand(slope[0]):
                     text = (
                         f"makes {slope[0]:.3g} times the torque with the declared torque "
                         f"constant: it is in mA"
@@ -71,6 +74,11 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
                     findings.append(Finding(ERROR, f"motor_current/{motor}", text, "convert to A"))
                 break
     return findings
+
+
+def _thousand(slope: float) -> bool:
+    """Whether a slope stands for a unit with milli before it."""
+    return abs(slope / 1000 - 1) < 0.5
 
 
 def asked_torque(log: Log, subject: Subject | None) -> list[tuple[str, np.ndarray, np.ndarray]]:

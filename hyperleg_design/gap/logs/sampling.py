@@ -26,19 +26,20 @@ _THIRD_DIFFERENCE = 20.0
 
 @dataclass(frozen=True)
 class Sampling:
-    """The clock of a log."""
+    """How evenly the rows of a log follow each other in time."""
 
     ticks: int
+    """Number of rows [-]."""
     duration: float
-    """[s]"""
+    """Time from the first row to the last [s]."""
     step: float
-    """Median [s]."""
+    """Median time between two rows [s]."""
     jitter: float
     """Spread of the steps without dropouts, a robust standard deviation over the median [-]."""
     dropouts: float
     """Share of the duration in steps longer than `DROPOUT` medians [-]."""
     longest: float
-    """Longest step [s]."""
+    """Longest time between two rows [s]."""
 
     @property
     def rate(self) -> float:
@@ -48,15 +49,18 @@ class Sampling:
 
 @dataclass(frozen=True)
 class Column:
-    """One column of a log."""
+    """What the values of one signal of a log look like: their own rate, range, steps and noise."""
 
     column: str
+    """Name, `kind/place`."""
     rate: float
     """At which its value is given anew [Hz]."""
     missing: float
     """Share of rows without a value, beyond those between its own samples [-]."""
     low: float
+    """Smallest value, in the unit of the column."""
     high: float
+    """Largest value."""
     quantum: float
     """Smallest step between values; 0 where there is none."""
     noise: float

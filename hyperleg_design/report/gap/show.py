@@ -20,10 +20,10 @@ TRACE, RESIDUAL, BEFORE, TARGET = "#c8602a", "#9ca3af", "#2f6db3", "#6b7280"
 ZOOM = 2.0
 """Length of the stretch of the closed loop that is drawn large [s]."""
 PLACES = {
-    "motion": "balance of motion",
-    "drive": "balance of the drive",
-    "base": "balance of the base",
-    "ground": "balance of the ground",
+    "motion": "residual of motion",
+    "drive": "residual of the drive",
+    "base": "residual of the base",
+    "ground": "residual of the ground",
 }
 
 
@@ -77,7 +77,7 @@ def show_summary(shown: Shown) -> dict[str, Any]:
             p.name: {"value": float(v), "unit": p.unit}
             for p, v in zip(shown.effect.parameters, shown.values, strict=True)
         },
-        "balance": shown.residual_name,
+        "residual": shown.residual_name,
         "row": shown.row,
         "trace_rms": _rms(shown.trace[known]),
         "residual_rms": _rms(shown.residual[known]),
@@ -100,12 +100,12 @@ def show_text(summary: Mapping[str, Any]) -> str:
         f"{name} {v['value']:.4g} {v['unit']}".rstrip() for name, v in summary["parameters"].items()
     )
     lines = [f"{summary['effect']} at {summary['location']} of {summary['robot']}: {values}"]
-    if summary["balance"]:
-        place = PLACES[summary["balance"]]
+    if summary["residual"]:
+        place = PLACES[summary["residual"]]
         unit = summary["unit"]
         lines.append(
             f"trace {summary['trace_rms']:.3g} {unit} RMS in the {place}, row {summary['row']}; "
-            f"residual {summary['residual_rms']:.3g} {unit}"
+            f"simulated {summary['residual_rms']:.3g} {unit}"
         )
     else:
         lines.append("leaves no trace on this motion")

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.logs.columns import unit
 from hyperleg_design.gap.pipeline.beside_balances import APART
 
 if TYPE_CHECKING:
@@ -14,12 +15,14 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.playback.added import Changed, Replayed
     from hyperleg_design.gap.playback.measure import Gap
 
-FLOORS = {
+NOISE_FROM = {
     "reference": "reference logs",
     "repeats": "repeats of the same motion",
     "split": "the smooth part against the noisy part of the logs",
 }
-"""What a floor rests on."""
+"""What the size of the noise rests on."""
+LEAST_PROBABILITY = 0.005
+"""Probability below which a rival is not printed; `diagnosis.json` has all."""
 MOST_PLACES = 4
 """Names listed before the rest is counted."""
 
@@ -52,11 +55,12 @@ def _text(check: Check) -> str:
     shown = [e for e in check.excitation if e.shown]
     lines += [f"  shows   {e.effect}{_places(e.where)}: {e.why}" for e in shown]
     lines += [f"  cannot  {e.effect}: {e.why}" for e in check.excitation if not e.shown]
-    lines.append(
-        "  fit for a diagnosis"
-        if check.usable
-        else "  not fit for a diagnosis: mend the errors first"
-    )
+    if not check.usable:
+        lines.append("  not fit for a diagnosis: mend the errors first")
+    elif not shown:
+        lines.append("  fit for a diagnosis, which would say nothing: this log shows no effect")
+    else:
+        lines.append("  fit for a diagnosis")
     return "\n".join(lines)
 
 
@@ -76,12 +80,12 @@ def _signals(columns: Sequence[Column]) -> list[str]:
         kinds.setdefault(column.column.partition("/")[0], []).append(column)
     lines = []
     for kind, members in kinds.items():
-        quantum = max(c.quantum for c in members)
+        quantum, units = max(c.quantum for c in members), [unit(c.column) for c in members]
         parts = [
             f"{kind} ({len(members)})",
             f"{min(c.rate for c in members):.4g} Hz",
-            f"steps of {quantum:.2g}" if quantum else "",
-            f"noise {max(c.noise for c in members):.2g}",
+            f"steps of {quantum:.2g} {units[0]}".rstrip() if quantum else "",
+            f"noise {max(c.noise for c in members):.2g} {units[0]}".rstrip(),
             f"at a bound {100 * max(c.saturated for c in members):.2g} %"
             if max(c.saturated for c in members) > 0.005
             else "",
@@ -101,18 +105,19 @@ def gap_text(gap: Gap, most: int = 12) -> str:
     Returns:
         The text.
     """
-    lines = [f"floor from {FLOORS[gap.floor_from]}"]
+    lines = [f"noise from {NOISE_FROM[gap.floor_from]}"]
     lines += [f"note: {note}" for note in gap.notes]
     for signal in dict.fromkeys(row.signal for row in gap.rows):
         rows = sorted(gap.select(signal), key=lambda row: -row.excess)
         lines += [
             "",
             f"{signal} [{rows[0].unit}]",
-            f"  {'place':<24} {'gap':>10} {'floor':>10} {'excess':>10} {'share':>7}",
+            f"  {'place':<24} {'gap':>10} {'noise':>10} {'excess':>10} {'share':>7}",
         ]
+        titles = _titles([{"location": row.location, "kind": row.kind} for row in rows])
         lines += [
-            f"  {row.location:<24} {row.gap:>10.4g} {row.floor:>10.4g} {row.excess:>10.4g} "
-            f"{100 * row.share:>6.0f}%"
+            f"  {titles[row.kind, row.location]:<24} {row.gap:>10.4g} {row.floor:>10.4g} "
+            f"{row.excess:>10.4g} {100 * row.share:>6.0f}%"
             for row in rows[:most]
         ]
         if len(rows) > most:
@@ -205,17 +210,19 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         The text.
     """
     gap = diagnosis["gap"]
+    size = f"residuals [{gap['unit']}]: {gap['before']:.4g}"
     lines = [
         f"verdict: {diagnosis['verdict']}",
-        f"gap {gap['before']:.4g} {gap['unit']} before, floor {gap['floor']:.4g}",
+        f"{size}, of which noise {gap['floor']:.4g}",
     ]
     if diagnosis["causes"]:
         low, high = (100 * float(v) for v in gap["closed_interval"])
-        lines[1] += (
-            f", {gap['after']:.4g} after: {100 * gap['closed']:.0f} % of the excess closed on "
-            f"held-out data ({low:.0f} .. {high:.0f})"
+        lines[1] = (
+            f"{size} before, {gap['after']:.4g} with the causes added, noise {gap['floor']:.4g}; "
+            f"closed on held-out data: {100 * gap['closed']:.0f} % ({low:.0f} .. {high:.0f})"
         )
-    for title, rows in (("cause", diagnosis["causes"]), ("rival", diagnosis["rivals"][:4])):
+    rivals = [r for r in diagnosis["rivals"] if r["probability"] >= LEAST_PROBABILITY]
+    for title, rows in (("cause", diagnosis["causes"]), ("rival", rivals[:4])):
         for row in rows:
             words = ", ".join(
                 choice
@@ -224,20 +231,22 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
                 )
                 for n, p, choice in chosen(row["effect"], row["parameters"])
             )
+            closes = f", closes {100 * row['closed']:.0f} %" if title == "cause" else ""
             lines.append(
-                f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}, "
-                f"closes {100 * row['closed']:.0f} %; {words}"
+                f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}"
+                f"{closes}; {words}"
             )
     lines += [
-        f"  at rest, which is in no balance: {one['says']}" for one in diagnosis.get("at_rest", ())
+        f"  at rest, which is in no residual: {one['says']}" for one in diagnosis.get("at_rest", ())
     ]
     lines += [
         f"  {one['location']} {one['says']}"
         for one in diagnosis.get("residual_shape", ())
         if one["shape"] in APART
     ]
+    titles = _titles(diagnosis["where"])
     places = [
-        f"{w['location']} {100 * w['share']:.0f} %"
+        f"{titles[w['kind'], w['location']]} {100 * w['share']:.0f} %"
         for w in diagnosis["where"]
         if w["regime"] == "all"
     ][:5]
@@ -253,12 +262,33 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
             for effect, parameter, least, most in rows
         ]
     if diagnosis["separating_experiment"]:
-        words = "; ".join(
-            f"{key.replace('_', ' ')}: {value}"
-            for key, value in diagnosis["separating_experiment"].items()
-        )
-        lines.append(f"  to tell them apart: {words}")
+        lines.append(f"  to tell them apart: {_experiment(diagnosis['separating_experiment'])}")
     return "\n".join(lines)
+
+
+def _titles(where: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], str]:
+    """Names of places by kind and name, with the kind before a name that two places share."""
+    kinds: dict[str, set[str]] = {}
+    for place in where:
+        kinds.setdefault(str(place["location"]), set()).add(str(place["kind"]))
+    return {
+        (kind, name): f"{kind} {name}" if len(own) > 1 else name
+        for name, own in kinds.items()
+        for kind in own
+    }
+
+
+def _experiment(experiment: Mapping[str, Any]) -> str:
+    """What to do next, for how long, and what it separates."""
+    told = dict(experiment)
+    text = f"{told.pop('name', 'an experiment')}"
+    if "minutes" in told:
+        text += f" ({told.pop('minutes'):g} min)"
+    if "do" in told:
+        text += f": {told.pop('do')}"
+    if "separates" in told:
+        text += f"; it separates {' from '.join(told.pop('separates'))}"
+    return "; ".join([text, *(f"{k.replace('_', ' ')}: {value}" for k, value in told.items())])
 
 
 def replayed_text(rows: Sequence[Replayed]) -> str:

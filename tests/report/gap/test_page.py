@@ -141,7 +141,7 @@ def test_what_a_joint_shows_at_rest_is_told_and_no_gap_is_said_to_close(
     assert "At rest: swing stays where it is: it sticks." in text
     assert "is gone on data" not in text
     assert (
-        "  at rest, which is in no balance: swing stays where it is: it sticks"
+        "  at rest, which is in no residual: swing stays where it is: it sticks"
         in diagnosis_text(told).splitlines()
     )
 

@@ -40,7 +40,7 @@ def test_summary_is_what_was_shown(shown):
     text = show_text({**summary, "figure": "a.png"})
     assert "viscous_friction at joint of servo_rig" in text
     assert text.endswith("a.png")
-    assert "no trace" in show_text({**summary, "balance": ""})
+    assert "no trace" in show_text({**summary, "residual": ""})
 
 
 def test_figure_is_drawn_the_same_each_time_and_without_a_trace_too(shown, tmp_path):

@@ -3,7 +3,7 @@ import numpy as np
 from hyperleg_design.gap.checks.check import check_log
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.report.gap.text import checks_text
+from hyperleg_design.report.gap.text import checks_text, diagnosis_text
 
 
 def log(**metadata):
@@ -21,7 +21,7 @@ def test_what_a_log_can_and_cannot_show():
     lines = checks_text([check_log(log(gains=dict.fromkeys("abcdef", (20.0, 1.0))))]).splitlines()
     assert lines[0].startswith("run: 4.995 s at 200 Hz, 1000 ticks")
     assert any(
-        line.startswith("  signals position (6), 200 Hz, steps of 0.001, noise 0.000")
+        line.startswith("  signals position (6), 200 Hz, steps of 0.001 rad, noise 0.000")
         for line in lines
     )
     assert "  shows   coulomb_friction at a, b, c, d and 2 more: motion reverses" in lines
@@ -38,3 +38,69 @@ def test_errors_and_remarks():
     )
     assert "  note    the source lacks gains" in text
     assert text.count("not fit for a diagnosis: mend the errors first") == 2
+
+
+def diagnosis(**changes):
+    cause = {
+        "effect": "torque_constant",
+        "location": "knee",
+        "probability": 0.9,
+        "closed": 1.0,
+        "parameters": {"scale": {"value": 0.85, "low": 0.84, "high": 0.86, "unit": ""}},
+    }
+    found = {
+        "verdict": "ambiguous",
+        "gap": {
+            "before": 0.5,
+            "after": 0.1,
+            "floor": 0.1,
+            "unit": "Nm",
+            "closed": 1.0,
+            "closed_interval": [0.9, 1.0],
+        },
+        "causes": [cause],
+        "rivals": [
+            {**cause, "effect": "transmission_ratio", "probability": 0.1, "closed": 0.0},
+            {**cause, "effect": "backlash", "probability": 0.001, "parameters": {}},
+        ],
+        "where": [
+            {"location": "knee", "kind": "joint", "regime": "all", "share": 0.6},
+            {"location": "knee", "kind": "motor", "regime": "all", "share": 0.3},
+            {"location": "hip", "kind": "joint", "regime": "all", "share": 0.1},
+        ],
+        "separating_experiment": {
+            "name": "chirp",
+            "do": "sweep the joint",
+            "minutes": 2,
+            "separates": ["torque_constant at knee", "transmission_ratio at knee"],
+        },
+    }
+    return found | changes
+
+
+def test_an_answer_states_units_likely_rivals_and_the_experiment_as_a_sentence():
+    lines = diagnosis_text(diagnosis()).splitlines()
+    assert lines[1] == (
+        "residuals [Nm]: 0.5 before, 0.1 with the causes added, noise 0.1; closed on held-out "
+        "data: 100 % (90 .. 100)"
+    )
+    assert [line.split()[1] for line in lines if line.startswith("  rival")] == [
+        "transmission_ratio"
+    ]
+    assert "  where: joint knee 60 %, motor knee 30 %, hip 10 %" in lines
+    assert lines[-1] == (
+        "  to tell them apart: chirp (2 min): sweep the joint; it separates torque_constant at "
+        "knee from transmission_ratio at knee"
+    )
+
+
+def test_without_a_cause_only_the_noise_is_told():
+    found = diagnosis(verdict="none", causes=[], rivals=[], separating_experiment=None)
+    assert diagnosis_text(found).splitlines()[1] == "residuals [Nm]: 0.5, of which noise 0.1"
+
+
+def test_a_log_that_shows_nothing_is_said_to_show_nothing():
+    moving = log(gains=dict.fromkeys("abcdef", (20.0, 1.0)))
+    resting = {name: 0 * values for name, values in moving.signals.items()}
+    text = checks_text([check_log(Log("rest", moving.time, resting, moving.metadata))])
+    assert text.splitlines()[-1].endswith("this log shows no effect")

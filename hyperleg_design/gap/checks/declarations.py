@@ -1,0 +1,48 @@
+"""Whether what a log declares in its metadata names fields, joints and motors that there are."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from hyperleg_design.gap.logs.metadata import FIELDS, Metadata
+from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.model.subject import Subject
+
+
+def declarations(metadata: Metadata, subject: Subject | None) -> list[Finding]:
+    """Find declarations that would be ignored or refused later.
+
+    Args:
+        metadata: of the log.
+        subject: the robot, if known.
+
+    Returns:
+        Warnings of unknown fields that are nearly known ones, and errors of joints and motors that
+        the robot does not have.
+    """
+    findings = []
+    for key in metadata.extra:
+        if near := difflib.get_close_matches(key, FIELDS, 1, cutoff=0.75):
+            text = f"metadata have a field {key} that nothing reads"
+            findings.append(Finding(WARNING, "", text, f"did you mean {near[0]}?"))
+    if subject is None:
+        return findings
+    joints = {*subject.joints, *subject.unlogged}
+    motors = {*subject.motors, *subject.motor_aliases, *subject.unlogged}
+    for field, names, known in (
+        ("gains", metadata.gains, joints),
+        ("torque_constant", metadata.torque_constant, motors),
+        ("supply", metadata.supply, motors),
+    ):
+        findings += [_stranger(field, name, known) for name in names if name not in known]
+    return findings
+
+
+def _stranger(field: str, name: str, known: Collection[str]) -> Finding:
+    near = difflib.get_close_matches(name, known, 1)
+    remedy = f"did you mean {near[0]}?" if near else f"there are {', '.join(sorted(known))}"
+    return Finding(ERROR, "", f"metadata declare {field} of {name}, which the robot lacks", remedy)
