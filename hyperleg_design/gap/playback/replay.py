@@ -95,6 +95,7 @@ def replay(
     windows: Windows | None = None,
     *,
     follow: str = "",
+    keeps_targets: bool = True,
     time_step: float | None = None,
     threads: int = 1,
 ) -> Replay:
@@ -106,6 +107,9 @@ def replay(
             nominal one.
         windows: by default `short_windows`.
         follow: one of `INPUTS`; `best_input` by default.
+        keeps_targets: whether the controller keeps a target until the next row, as one that is set
+            at the rate of the log; otherwise targets move evenly from row to row, as those of a
+            controller that is faster than the log.
         time_step: of the simulation, as a rule a fraction of a tick [s].
         threads: of MuJoCo; the result does not depend on it.
 
@@ -126,6 +130,7 @@ def replay(
             windows,
             follow,
             inputs,
+            keeps_targets and follow == "target",
             substeps,
             threads,
         )
@@ -170,6 +175,7 @@ def _run(
     windows: Windows,
     follow: str,
     inputs: np.ndarray,
+    kept: bool,
     substeps: int,
     threads: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -212,13 +218,7 @@ def _run(
         temperature = None if signals.temperature is None else signals.temperature[now]
         for sub in range(substeps):
             part = sub / substeps
-            # A controller holds a target until the next; a torque is a sample of something
-            # continuous.
-            value = (
-                inputs[now]
-                if follow == "target"
-                else (1 - part) * inputs[now] + part * inputs[after]
-            )
+            value = inputs[now] if kept else (1 - part) * inputs[now] + part * inputs[after]
             driven = plant.step(follow, value, temperature, battery)
             if sub == 0:
                 torque[:, k] = driven.believed
