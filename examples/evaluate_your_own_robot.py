@@ -1,11 +1,11 @@
 """Evaluate a changed robot: what a heavier toe and a softer sole do to a policy that was trained
 without them.
 
-Takes an ONNX policy: one of `hyperleg train`, or by default the first that is shipped. Where there
-is none, a policy that holds the default posture is evaluated instead: it falls, and the numbers say
+Takes an ONNX policy of `hyperleg train`, or the name of a shipped training. Where none is given or
+shipped, a policy that holds the default posture is evaluated instead: it falls, and the numbers say
 so.
 
-Run: python examples/evaluate_your_own_robot.py [POLICY.onnx]
+Run: python examples/evaluate_your_own_robot.py [POLICY]
 """
 
 import sys
@@ -19,12 +19,14 @@ from hyperleg_design.evaluation.statistics import estimate
 from hyperleg_design.simulation.tasks import load_task
 
 walkers = [
-    one.path for one in shipped_policies(late=False) if one.group == "walk" and one.design == "toe"
+    policy.training
+    for policy in shipped_policies(late=False)
+    if (policy.group, policy.design) == ("walk_upright", "toe")
 ]
-file = sys.argv[1] if len(sys.argv) > 1 else walkers[0] if walkers else None
-policy = load_policy(file) if file else standing(14)
-own = policy.design if file else hl.load_design("hyperleg")
-task = policy.task if file else load_task("walk")
+name = sys.argv[1] if len(sys.argv) > 1 else walkers[1] if walkers else ""
+policy = load_policy(name) if name else standing(14)
+own = policy.design if name else hl.load_design("hyperleg")
+task = policy.task if name else load_task("walk")
 
 robots = {
     "as trained": own,
@@ -33,16 +35,16 @@ robots = {
 }
 protocol = load_protocol("walk").changed(trials=4)
 print(
-    f"{getattr(policy, 'name', 'standing')}: {protocol.distance:g} m at {protocol.speed:g} m/s, "
+    f"{name or 'standing'}: {protocol.distance:g} m at {protocol.speed:g} m/s, "
     f"{int(protocol.trials)} trials each"
 )
-for name, robot in robots.items():
-    found = evaluate(policy, protocol, design=robot, task=task)
+for robot_name, robot in robots.items():
+    evaluation = evaluate(policy, protocol, design=robot, task=task)
     power, transport, peak = (
-        estimate([found.values(m)]) for m in ("power", "cost_of_transport", "grf_peak")
+        estimate([evaluation.values(m)]) for m in ("power", "cost_of_transport", "grf_peak")
     )
-    print(f"{name:<20} {', '.join(found.outcomes)}")
+    print(f"{robot_name:<20} {', '.join(evaluation.outcomes)}")
     print(
-        f"{'':<20} power {power.mean:.0f} W, CoT {transport.mean:.3f}, heel strike {peak.mean:.0f} "
-        f"N"
+        f"{'':<20} power {power.mean:.0f} W, cost of transport {transport.mean:.3f}, "
+        f"heel strike {peak.mean:.0f} N"
     )

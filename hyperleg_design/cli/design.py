@@ -265,6 +265,8 @@ class Sweep(Printing):
 
         sweep, show = load_sweep(self.file), not self.json
         protocols = self.evaluate or sweep.evaluated
+        if protocols:
+            walker(sweep.base, "sweep run --evaluate")
         wanted = plan(sweep, protocols, seeds=self.seeds, policies=self.policies)
         with cluster(self.scheduler) as executor:
             result = run_sweep(

@@ -13,8 +13,9 @@ from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit, require
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import load_policy
+from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.load import changed_robot, load_robot, walker
+from hyperleg_design.robot.load import changed_robot, load_robot
 
 if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alterations
@@ -33,7 +34,8 @@ class Train:
     preset: str = "laptop"
     """Training preset: a shipped name (`hyperleg list presets`), or a YAML file."""
     start: str = ""
-    """ONNX policy of another task to start from; from scratch by default."""
+    """Policy of another task to start from: an ONNX file, or the name of a shipped training; from
+    scratch by default."""
     designs: str = ""
     """Designs to draw from, so that one policy learns them all and observes which it has: toe, or
     a YAML file of ranges; the one design by default."""
@@ -70,7 +72,7 @@ class Train:
             "threads": self.threads,
             "device": self.device,
         }
-        given |= {"start": self.start} if self.start else {}
+        given |= {"start": find_policy(self.start, "--start")} if self.start else {}
         given |= {} if self.iterations is None else {"iterations": self.iterations}
         given |= {"designs": self.designs} if self.designs else {}
         arguments = [f"--{key}={value}" for key, value in given.items()]
@@ -80,7 +82,7 @@ class Train:
 
         overlay = read_overlay(self.overlay)
         # A wrong place is an error here, before this process is replaced.
-        overlay.alterations(walker(load_robot(self.design), "overlay"))
+        overlay.alterations(load_robot(self.design))
         if not launch.surrounded():
             launch.run_here(
                 ["train", *arguments, f"--overlay={self.overlay}"],
@@ -190,7 +192,8 @@ class Evaluate(Printing):
         from hyperleg_design.writing import check_output_folder
 
         if not self.policies:
-            raise InputError("evaluate", "", None, "expects ONNX files")
+            remedy = "expects ONNX files, or names of `hyperleg list policies`"
+            raise InputError("evaluate", "", None, remedy)
         overlay = None
         if self.overlay:
             from hyperleg_design.gap.playback.overlay import read_overlay, write_overlay

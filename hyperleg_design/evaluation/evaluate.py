@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import rollout
-from hyperleg_design.evaluation.policy import Policy, load_policy
+from hyperleg_design.evaluation.policy import Policy, check_joints, load_policy
 from hyperleg_design.evaluation.protocol import (
     Protocol,
     TTestProtocol,
@@ -115,6 +115,7 @@ def _run(
         expected = " or ".join(kind.__name__ for kind in RUNS)
         raise InputError("evaluate", "protocol", rules.name, f"expects a {expected}")
     robot, task = rollout.resolved(chosen, design, task)
+    check_joints(chosen, robot)
     run = RUNS[type(rules)](task, rules)
     environment = Environment(
         robot,

@@ -31,6 +31,7 @@ from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.reading import short_name
 from hyperleg_design.robot.load import robot_from_mapping
+from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.tasks import task_from_mapping
 
 if TYPE_CHECKING:
@@ -182,25 +183,39 @@ def check_layout(policy: Policy, environment: Environment) -> None:
     Raises:
         InputError: names the first number that is another one.
     """
-    if not isinstance(policy, OnnxPolicy):
-        return
-    pairs = (
-        ("columns", policy.columns, environment.observation_columns["policy"]),
-        ("joints", policy.joints, environment.layout.joints),
-    )
-    for key, own, needed in pairs:
-        difference = _first_difference(own, needed)
-        if difference:
-            trained, present = (
-                design.variant or design.name for design in (policy.design, environment.designs[0])
-            )
-            raise InputError(
-                policy.name,
-                key,
-                None,
-                f"the policy, trained on {trained}, is made for another layout than {present} and "
-                f"this task have: {difference}; expects a policy of {present}",
-            )
+    if isinstance(policy, OnnxPolicy):
+        columns = environment.observation_columns["policy"]
+        _same(policy, "columns", policy.columns, columns, environment.designs[0])
+
+
+def check_joints(policy: Policy, design: RobotDesign) -> None:
+    """Check that a policy that knows its joints was made for a robot with the same ones.
+
+    Args:
+        policy: an ONNX policy; any other callable passes.
+        design: a robot or batch.
+
+    Raises:
+        InputError: names the first joint that is another one.
+    """
+    if isinstance(policy, OnnxPolicy):
+        robot = design.take(0) if design.batch_shape else design
+        _same(policy, "joints", policy.joints, layout_of(robot).joints, robot)
+
+
+def _same(
+    policy: OnnxPolicy, key: str, own: Sequence[str], needed: Sequence[str], design: RobotDesign
+) -> None:
+    difference = _first_difference(own, needed)
+    if difference:
+        trained, present = (robot.variant or robot.name for robot in (policy.design, design))
+        raise InputError(
+            policy.name,
+            key,
+            None,
+            f"the policy, trained on {trained}, is made for another layout than {present} and this "
+            f"task have: {difference}; expects a policy of {present}",
+        )
 
 
 def checked_action(

@@ -194,11 +194,12 @@ def policies_for(
     return [p for p in known if (p.group, p.design) == (group, variant)][:seeds]
 
 
-def find_policy(name: str | Path) -> Path:
+def find_policy(name: str | Path, where: str = "policy") -> Path:
     """Find the file of a policy.
 
     Args:
         name: an ONNX file, or the name of a shipped training, whose last policy is meant.
+        where: option that names it, for the error.
 
     Returns:
         The path of the ONNX file.
@@ -214,12 +215,12 @@ def find_policy(name: str | Path) -> Path:
         return named
     known = shipped_policies(late=False)
     near = difflib.get_close_matches(str(name), [policy.training for policy in known], 1)
-    meant = f"did you mean {near[0]}? " if near else ""
+    meant = f"did you mean {near[0]}? Shipped" if near else "shipped"
     raise InputError(
-        "policy",
+        where,
         "",
         str(name),
-        f"no such file; {meant}Shipped, with their seeds: {_briefly(known) or 'none'}",
+        f"no such file; {meant}, with their seeds: {_briefly(known) or 'none'}",
     )
 
 

@@ -40,6 +40,8 @@ class TrainingFit:
     """Leaves that differ, by path: as trained, as evaluated."""
     outside: tuple[str, ...] = ()
     """Those of them that lie outside what it was trained over."""
+    units: Mapping[str, str] = field(default_factory=dict)
+    """Units of the leaves that differ, by path; empty for a number without unit."""
 
     def text(self) -> str:
         """Describe the fit for tables.
@@ -50,7 +52,8 @@ class TrainingFit:
         if not self.outside:
             return self.kind
         shown = ", ".join(
-            f"{path} {_short(self.changed[path][0])} -> {_short(self.changed[path][1])}"
+            f"{path} {_short(self.changed[path][0])} -> {_short(self.changed[path][1])} "
+            f"{self.units.get(path, '')}".rstrip()
             for path in self.outside[:_SHOWN]
         )
         rest = len(self.outside) - _SHOWN
@@ -82,12 +85,13 @@ def training_fit(policy: Policy, design: RobotDesign) -> TrainingFit:
     parts = {path: pair for path, pair in changed.items() if not path.startswith(_LAWS)}
     if parts or _same_actuation(policy.design, design):
         changed = parts  # laws only say how a robot follows from its parts
+    units = {path: design.rules[path].unit for path in changed}
     if RANGES in policy.metadata:
         ranges = design_ranges(policy.metadata[RANGES], f"{policy.name}: {RANGES}")
         beyond = set(ranges.outside(cast("Design", design)))
         outside = tuple(p for p in changed if p in beyond or p not in ranges.ranges)
-        return TrainingFit(ZERO_SHOT if outside else CONDITIONED, changed, outside)
-    return TrainingFit(ZERO_SHOT if changed else SPECIALIST, changed, tuple(changed))
+        return TrainingFit(ZERO_SHOT if outside else CONDITIONED, changed, outside, units)
+    return TrainingFit(ZERO_SHOT if changed else SPECIALIST, changed, tuple(changed), units)
 
 
 def _same_actuation(a: RobotDesign, b: RobotDesign) -> bool:

@@ -138,11 +138,11 @@ def _check_design_file(path: str | Path) -> list[Finding]:
 
     design = load_robot(path)
     findings = [
-        dataclasses.replace(found, place=re.sub(r" \(line \d+\)$", "", found.place))
-        for found in check_urdf(urdf(design))  # lines of a text that the user does not see
+        dataclasses.replace(finding, place=re.sub(r" \(line \d+\)$", "", finding.place))
+        for finding in check_urdf(urdf(design))  # lines of a text that the user does not see
     ]
     if isinstance(design, TreeDesign):
-        findings += [found for rod in rod_ranges(design) for found in _rod_findings(rod)]
+        findings += [f for rod in rod_ranges(design) for f in _rod_findings(rod)]
     try:
         if isinstance(design, Design):
             LinkageModel.of(design)

@@ -22,6 +22,7 @@ from hyperleg_design.robot.ablation import ablate, states
 from hyperleg_design.robot.checks.consistency import check_design
 from hyperleg_design.robot.hyperleg import SPRING_LEAVES, HyperLeg
 from hyperleg_design.robot.masses import check_printed, lapsed
+from hyperleg_design.robot.motor_paths import with_motor_paths
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
@@ -172,7 +173,7 @@ def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
     """Design of a file before ablation, and the variant that the file asks for."""
-    data = read_yaml(path)
+    data = with_motor_paths(read_yaml(path), path.parent)
     where = short_name(path)
     if path.resolve() in seen:
         raise InputError(where, "base", data.get("base"), "leads back to itself")

@@ -27,6 +27,7 @@ from hyperleg_design.robot import transmission
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
 from hyperleg_design.robot.models import leg_reflected_inertia
+from hyperleg_design.robot.motor_paths import with_motor_paths
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
@@ -72,12 +73,9 @@ def import_robot(
         InputError: the file is no robot (see `described_file.read_robot`), a joint without a motor,
             a pattern that matches nothing, or actuation that does not fit.
     """
-    robot = read_robot(path, meshes=meshes)
-    design = tree_design_from_mapping(
-        design_mapping(robot, read_yaml(Path(actuation)), short_name(Path(actuation))),
-        robot.name,
-        short_name(Path(actuation)),
-    )
+    robot, motors = read_robot(path, meshes=meshes), Path(actuation)
+    data, where = with_motor_paths(read_yaml(motors), motors.parent), short_name(motors)
+    design = tree_design_from_mapping(design_mapping(robot, data, where), robot.name, where)
     return design, lint(robot, design)
 
 

@@ -20,6 +20,7 @@ from hyperleg_design.robot.design import (
     load_design,
     parse_overrides,
 )
+from hyperleg_design.robot.motor_paths import with_motor_paths
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import FAMILY, tree_design_from_mapping
 
@@ -158,7 +159,7 @@ def _base(path: Path, name: str) -> Path:
 
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> TreeDesign:
-    data, where = read_yaml(path), short_name(path)
+    data, where = with_motor_paths(read_yaml(path), path.parent), short_name(path)
     if path.resolve() in seen:
         raise InputError(where, "base", data.get("base"), "leads back to itself")
     name = str(data.get("name", re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem)))

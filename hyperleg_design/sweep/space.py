@@ -1,7 +1,7 @@
 """The space of designs that a sweep covers: read from YAML, sampled from one seed, made into
 batches.
 
-design: hyperleg                       # a shipped name or a file
+design: hyperleg                       # a shipped name, or a file: from here, or beside this one
 set: {masses.law: components}          # leaves changed for all designs
 variants: [toe, toe_removed_matched]   # each sample is evaluated as each of these
 sampling: grid                         # or random, sobol, latin_hypercube, with count
@@ -29,6 +29,7 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.design import SPRING, Design
 from hyperleg_design.robot.load import load_robot, walker
+from hyperleg_design.robot.motor_paths import path_from_here
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.sweep import measures, registry
@@ -72,7 +73,24 @@ def load_sweep(name: str | Path, *, overrides: Mapping[str, Any] | None = None) 
         InputError: names file, field, value and remedy.
     """
     path = resources.find("sweeps", name)
-    return sweep_from_mapping(read_yaml(path), short_name(path), path.stem, overrides=overrides)
+    data = _from_here(read_yaml(path), path.parent)
+    return sweep_from_mapping(data, short_name(path), path.stem, overrides=overrides)
+
+
+def _from_here(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """What a file holds, with files of the design and of motors that lie beside it found."""
+    replaced, axes = dict(data), data.get("axes")
+    if "design" in data:
+        replaced["design"] = path_from_here(data["design"], folder)
+    if isinstance(axes, Mapping):
+        replaced["axes"] = {name: _axis_from_here(axis, folder) for name, axis in axes.items()}
+    return replaced
+
+
+def _axis_from_here(axis: Any, folder: Path) -> Any:
+    if not isinstance(axis, Mapping) or not isinstance(axis.get("values"), list):
+        return axis
+    return {**axis, "values": [path_from_here(value, folder) for value in axis["values"]]}
 
 
 def sweep_from_mapping(

@@ -13,7 +13,8 @@ def test_a_policy_is_a_specialist_on_its_own_design_and_zero_shot_on_others():
     assert heavy.kind == "zero-shot"
     assert heavy.outside == ("toe.mass",)
     trained = float(policy.design.toe.mass)
-    assert heavy.text() == (f"zero-shot, outside the trained range: toe.mass {trained:.4g} -> 0.5")
+    change = f"toe.mass {trained:.4g} -> 0.5 kg"
+    assert heavy.text() == f"zero-shot, outside the trained range: {change}"
 
 
 def test_a_callable_says_nothing():

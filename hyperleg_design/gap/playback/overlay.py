@@ -30,7 +30,7 @@ from hyperleg_design.writing import write_text
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Change
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alteration
 
 SCHEMA = 1
@@ -57,7 +57,7 @@ class Overlay:
             )
         object.__setattr__(self, "change", checked)
 
-    def alterations(self, robot: Subject | Design) -> tuple[Alteration, ...]:
+    def alterations(self, robot: Subject | RobotDesign) -> tuple[Alteration, ...]:
         """Make the alterations that add the effects to a simulation of a robot.
 
         Args:

@@ -280,15 +280,15 @@ def _titles(where: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], str]:
 
 def _experiment(experiment: Mapping[str, Any]) -> str:
     """What to do next, for how long, and what it separates."""
-    told = dict(experiment)
-    text = f"{told.pop('name', 'an experiment')}"
-    if "minutes" in told:
-        text += f" ({told.pop('minutes'):g} min)"
-    if "do" in told:
-        text += f": {told.pop('do')}"
-    if "separates" in told:
-        text += f"; it separates {' from '.join(told.pop('separates'))}"
-    return "; ".join([text, *(f"{k.replace('_', ' ')}: {value}" for k, value in told.items())])
+    plan = dict(experiment)
+    text = f"{plan.pop('name', 'an experiment')}"
+    if "minutes" in plan:
+        text += f" ({plan.pop('minutes'):g} min)"
+    if "do" in plan:
+        text += f": {plan.pop('do')}"
+    if "separates" in plan:
+        text += f"; it separates {' from '.join(plan.pop('separates'))}"
+    return "; ".join([text, *(f"{k.replace('_', ' ')}: {value}" for k, value in plan.items())])
 
 
 def replayed_text(rows: Sequence[Replayed]) -> str:

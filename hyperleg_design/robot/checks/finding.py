@@ -1,4 +1,4 @@
-"""What a check of a file found."""
+"""What a check of a file finding."""
 
 from __future__ import annotations
 
@@ -38,8 +38,10 @@ def finding_lines(findings: Iterable[Finding]) -> list[str]:
         The lines, in the order of the first place of each.
     """
     places: dict[tuple[str, str, str], list[str]] = {}
-    for found in findings:
-        places.setdefault((found.severity, found.message, found.remedy), []).append(found.place)
+    for finding in findings:
+        places.setdefault((finding.severity, finding.message, finding.remedy), []).append(
+            finding.place
+        )
     lines = []
     for (severity, message, remedy), at in places.items():
         more = f" and {len(at) - MOST_PLACES} more" if len(at) > MOST_PLACES else ""

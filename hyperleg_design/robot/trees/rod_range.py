@@ -58,7 +58,7 @@ def _range(design: TreeDesign, motor: str) -> RodRange:
     each = max(3, int(POSTURES ** (1 / max(1, len(rows)))))
     sections = [design.joint_sections[name] for name in names]
     grids = [np.linspace(float(s.lower_deg), float(s.upper_deg), each) for s in sections]
-    found: list[np.ndarray] = [own]
+    columns: list[np.ndarray] = [own]
     beyond: dict[str, float] = {}
     turned: dict[str, dict[str, float]] = {}
     for angles in product(*grids):
@@ -66,14 +66,14 @@ def _range(design: TreeDesign, motor: str) -> RodRange:
         position = np.array(rest)
         position[rows] = np.deg2rad(angles)
         try:
-            found.append(gear * crank_turn(design, motor, position)[1][rows])
+            columns.append(gear * crank_turn(design, motor, position)[1][rows])
         except InfeasibleError:
             beyond = beyond or posture
             continue
-        for name, here, there in zip(names, own, found[-1], strict=True):
+        for name, here, there in zip(names, own, columns[-1], strict=True):
             if here * there < 0:
                 turned.setdefault(name, posture)
-    ends = zip(np.min(found, 0).tolist(), np.max(found, 0).tolist(), strict=True)
+    ends = zip(np.min(columns, 0).tolist(), np.max(columns, 0).tolist(), strict=True)
     return RodRange(
         motor,
         dict(zip(names, ends, strict=True)),
