@@ -20,7 +20,7 @@ FEWEST_WORDS = 3
 """Words that the first paragraph of a public docstring has at least."""
 NAMES_ALLOWED = {
     "evaluation": 10,
-    "gap": 452,
+    "gap": 451,
     "report": 10,
     "robot": 1,
     "simulation": 6,
@@ -28,7 +28,7 @@ NAMES_ALLOWED = {
     "validation": 52,
 }
 """Bindings of barred names that are left, by package; lower a number when you rename some."""
-DOCSTRINGS_ALLOWED = {"gap": 6}
+DOCSTRINGS_ALLOWED = {"gap": 1}
 """Public docstrings that are too short, by package; lower a number when you mend some."""
 
 ARGUMENTS_ALLOWED = {"gap": 62}

@@ -56,7 +56,7 @@ class Check:
 
     @property
     def errors(self) -> tuple[Finding, ...]:
-        """That forbid a diagnosis."""
+        """Findings that forbid a diagnosis."""
         return tuple(f for f in self.findings if f.severity == ERROR)
 
     def refuse(self) -> None:

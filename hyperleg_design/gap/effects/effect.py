@@ -7,7 +7,6 @@ from __future__ import annotations
 import difflib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -16,6 +15,7 @@ from hyperleg_design.errors import InputError
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.excitation import Excitation, Motion
+    from hyperleg_design.gap.effects.parameter import Parameter
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
@@ -42,28 +42,6 @@ PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "imu": "IMU"}
 Change = Mapping[tuple[str, str], Mapping[str, float]]
 """Values of parameters by (effect, location): what is added to a simulation; empty, the simulation
 as it is."""
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A number that an effect has."""
-
-    name: str
-    unit: str
-    null: float
-    """Value at which the simulation is as it was."""
-    low: float
-    high: float
-    """Range searched; bounds of what is physically plausible."""
-    typical: float
-    """Usual distance from `null` on hardware: scale of the prior and of finite differences."""
-    source: str
-    """Where the magnitude comes from."""
-    shape: bool = False
-    """Whether it only shapes the trace (a Stribeck speed, a cogging order) and means nothing while
-    the size is at its null."""
-    choices: tuple[str, ...] = ()
-    """What 0, 1, ... stand for, of one that is no size."""
 
 
 class Effect(ABC):

@@ -159,12 +159,12 @@ class Log:
 
     @property
     def motors(self) -> tuple[str, ...]:
-        """With any signal of their own."""
+        """Names of the motors that have any signal of their own."""
         return self.names(*MOTOR_SIGNALS)
 
     @property
     def feet(self) -> tuple[str, ...]:
-        """With a contact force."""
+        """Names of the feet or pads that have a contact force."""
         return tuple(dict.fromkeys(name[:-2] for name in self.names(CONTACT)))
 
     @property
@@ -174,7 +174,7 @@ class Log:
 
     @property
     def duration(self) -> float:
-        """From first to last tick [s]."""
+        """Time from the first to the last tick [s]."""
         return float(self.time[-1] - self.time[0])
 
     def part(self, rows: slice | np.ndarray, name: str = "") -> Log:

@@ -40,7 +40,7 @@ class Evidence:
 
     @property
     def after(self) -> np.ndarray:
-        """What is left `(t, r)` [Nm]."""
+        """Residual that the causes leave, `(t, r)` [Nm]."""
         return self.before - self.explained
 
     @property

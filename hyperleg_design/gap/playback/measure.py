@@ -31,14 +31,16 @@ from hyperleg_design.gap.signals.signals import Signals
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the table."""
+    """The gap of one signal at one place, in one regime of its motion."""
 
     signal: str
     """`torque`, `drive`, `control`, `transmission`, `base`, `ground`, `position` or `velocity`."""
     unit: str
+    """Unit of `gap`, `floor`, `mean` and `size`."""
     kind: str
     """`joint`, `motor`, `foot` or `robot`."""
     location: str
+    """Name of the joint, motor or foot."""
     regime: str
     """`all`, or what the joint, motor or foot was doing."""
     gap: float
@@ -53,6 +55,7 @@ class Row:
     size: float
     """Root mean square of the signal itself, where that means something; NaN else."""
     ticks: int
+    """Number of ticks in this regime."""
 
     @property
     def excess(self) -> float:
@@ -62,7 +65,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Gap:
-    """Gap of a set of logs."""
+    """How far logs are from the simulation, beyond the repeatability of the robot."""
 
     rows: tuple[Row, ...]
     floor_from: str

@@ -95,10 +95,10 @@ class Shrinkage:
 
 @dataclass(frozen=True)
 class Place:
-    """Where the gap lies."""
+    """One place at which the gap lies, in one regime of its motion, and its share of the gap."""
 
     location: str
-    """Name of the place."""
+    """Name of the joint, motor, link, foot or sensor."""
     kind: str
     """`joint`, `motor`, `link`, `foot`, `sensor` or `robot`."""
     regime: str

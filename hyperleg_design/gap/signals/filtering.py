@@ -50,19 +50,21 @@ FEWEST = 40
 
 @dataclass(frozen=True)
 class Row:
-    """One row of a residual."""
+    """One row of a residual, and the frequencies at which it counts."""
 
     residual_name: str
+    """Name of the residual, such as `motion`."""
     column: int
+    """Index of the row in its residual."""
     name: str
     """Joint, motor, foot and axis, or axis of the base."""
     cutoff: float
-    """[Hz]"""
+    """Frequency above which the row holds noise only [Hz]."""
 
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """One band of one row."""
+    """The coefficients of one row in one band of frequencies."""
 
     index: int
     low: float

@@ -41,7 +41,7 @@ UNSETTLED = 0.2
 
 @dataclass(frozen=True, eq=False)
 class LimitCycle:
-    """Of `n` joints on `t` ticks."""
+    """Limit cycles of `n` joints on `t` ticks: how fast they are, and their share of the motion."""
 
     speed: np.ndarray
     """Amplitude of the joints' speed beyond what bends friction's bristles `(t, n)` [rad/s]; 0

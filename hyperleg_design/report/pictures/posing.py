@@ -38,7 +38,7 @@ class Moving(Protocol):
 
     @property
     def base_orientation(self) -> np.ndarray:
-        """W x y z, `(t, 4)`."""
+        """Orientation of the base in the world, unit quaternions w x y z, `(t, 4)`."""
 
     @property
     def joint_position(self) -> np.ndarray:

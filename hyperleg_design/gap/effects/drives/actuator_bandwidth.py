@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
+from hyperleg_design.gap.effects.kinds import MotorEffect
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     commanded,
-    driven_motors,
     is_commanded,
     limited,
 )
@@ -31,7 +31,7 @@ BANDWIDTH = 10.0
 """Content of the command that tells a motor's bandwidth from delay [Hz]."""
 
 
-class ActuatorBandwidth(Effect):
+class ActuatorBandwidth(MotorEffect):
     """A drive's torque follows the command within its limits through a first-order lag, T tau' =
     command - tau.
 
@@ -40,7 +40,6 @@ class ActuatorBandwidth(Effect):
 
     identifier: ClassVar[str] = "actuator_bandwidth"
     nuisance_rank: ClassVar[int] = 2
-    kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a drive's torque follows its command through a first-order lag"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -69,17 +68,6 @@ class ActuatorBandwidth(Effect):
             Standard deviations from the nulls by location `(parameters,)`.
         """
         return dict.fromkeys(self.locations(subject), np.array([0.5 * lateness(step)]))
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import FRICTION
+from hyperleg_design.gap.effects.kinds import MotorTorque
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
-    at_motor,
-    driven_motors,
     motor_position,
     motor_strength,
     motor_velocity,
@@ -40,7 +39,7 @@ TRIED = 3
 """Best orders kept as starts of a search."""
 
 
-class Cogging(Effect):
+class Cogging(MotorTorque):
     """A motor resists with a torque that repeats `order` times a turn of M^T q: cosine cos(order
     M^T q) + sine sin(order M^T q).
 
@@ -49,7 +48,6 @@ class Cogging(Effect):
     """
 
     identifier: ClassVar[str] = "cogging"
-    kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a motor's torque varies with its angle, some periods a turn"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -78,17 +76,6 @@ class Cogging(Effect):
         "slow ramp": FRICTION | {"encoder_offset", "joint_spring"},
     }
 
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
-
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.
 
@@ -104,22 +91,11 @@ class Cogging(Effect):
             self.identifier, motion, slow, "slow motion over a range", "no slow motion over a range"
         )
 
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
-        motor = signals.subject.motors.index(location)
-        cosine, sine, order = np.atleast_2d(np.asarray(values, float)).T[..., None]
+    def _torque(
+        self, signals: Signals, motor: int, cosine: np.ndarray, sine: np.ndarray, order: np.ndarray
+    ) -> np.ndarray:
         angle = order * motor_position(signals, motor)
-        return at_motor(signals, motor, cosine * np.cos(angle) + sine * np.sin(angle))
+        return cosine * np.cos(angle) + sine * np.sin(angle)
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """Make what adds it to a simulation, see `Effect.alteration`.

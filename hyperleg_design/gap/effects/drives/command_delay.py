@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
     ROBOT,
     before_measurement,

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import STEERED, Effect, Parameter
+from hyperleg_design.gap.effects.effect import STEERED
 from hyperleg_design.gap.effects.excitation import STILL, Excitation, Motion, at_drives
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS, FRICTION, WITH_LOAD, WITHOUT_DRIVE
+from hyperleg_design.gap.effects.kinds import JointEffect
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     commanded,
@@ -31,7 +33,7 @@ USUAL = 0.015
 """Usual error of a gain over it."""
 
 
-class ControllerGain(Effect):
+class ControllerGain(JointEffect):
     """A joint's controller is stiffer or more damped than its declared gains.
 
     Its torque K (target - q) - D q_dot changes by ((scale_K - 1) K (target - q) - (scale_D - 1) D
@@ -45,7 +47,6 @@ class ControllerGain(Effect):
     scales_measured: ClassVar[bool] = False
     nuisance_rank: ClassVar[int] = 6
     nuisance_torque: ClassVar[str] = STEERED
-    kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint controller is stiffer or more damped than declared"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(

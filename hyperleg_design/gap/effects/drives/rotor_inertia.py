@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import INERTIAL
-from hyperleg_design.gap.effects.placing import at_motor, driven_motors, joint_inertia
+from hyperleg_design.gap.effects.kinds import MotorTorque
+from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placing import joint_inertia
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.drives.machine import Machine
 
@@ -29,7 +30,7 @@ OF_ROTOR, OF_JOINT = 0.06, 0.01
 """Usual error over the rotor's inertia and over that of its joint."""
 
 
-class RotorInertia(Effect):
+class RotorInertia(MotorTorque):
     """Inertia of a rotor and what turns with it, beyond the model's, on the motor's side of the
     transmission.
 
@@ -38,7 +39,6 @@ class RotorInertia(Effect):
 
     identifier: ClassVar[str] = "rotor_inertia"
     nuisance_rank: ClassVar[int] = 1
-    kind: ClassVar[str] = "motor"
     described: ClassVar[bool] = True
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -84,17 +84,6 @@ class RotorInertia(Effect):
             )
         return spreads
 
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
-
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.
 
@@ -110,21 +99,8 @@ class RotorInertia(Effect):
             self.identifier, motion, moved, "motion accelerates", "hardly any acceleration"
         )
 
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
-        motor = signals.subject.motors.index(location)
-        acceleration = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
-        return at_motor(signals, motor, np.atleast_2d(values)[:, :1] * acceleration)
+    def _torque(self, signals: Signals, motor: int, inertia: np.ndarray) -> np.ndarray:
+        return inertia * (signals.acceleration @ signals.subject.joint_from_motor[:, motor])
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """See `Effect.alteration`; what is taken away never exceeds the model's.

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import SCALING, WITH_LOAD
+from hyperleg_design.gap.effects.kinds import MotorTorque
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
-    at_motor,
-    driven_motors,
     given,
     machine,
     motor_strength,
@@ -38,7 +37,7 @@ WARMING = 10.0
 """Rise of a motor's temperature that changes torque visibly [K]."""
 
 
-class ThermalDerating(Effect):
+class ThermalDerating(MotorTorque):
     """A motor's torque falls short of what its current says by a share for each kelvin above 25
     degC.
 
@@ -48,7 +47,6 @@ class ThermalDerating(Effect):
 
     identifier: ClassVar[str] = "thermal_derating"
     scales: ClassVar[str] = "motor"
-    kind: ClassVar[str] = "motor"
     rare: ClassVar[float] = -0.5
     """Assumed."""
     driver: ClassVar[str] = "temperature"
@@ -71,17 +69,6 @@ class ThermalDerating(Effect):
         "known payload": WITH_LOAD,
         "cold and warm": SCALING | {"load_dependent_friction"},
     }
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.
@@ -110,23 +97,8 @@ class ThermalDerating(Effect):
             why if warm else f"{why}; {WARMING:.0f} K are needed",
         )
 
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
-        motor = signals.subject.motors.index(location)
-        torque = given(signals, motor)
-        return at_motor(
-            signals, motor, np.atleast_2d(values)[:, :1] * (rise(signals, motor) * torque)
-        )
+    def _torque(self, signals: Signals, motor: int, coefficient: np.ndarray) -> np.ndarray:
+        return coefficient * (rise(signals, motor) * given(signals, motor))
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """Make what adds it to a simulation, see `Effect.alteration`.

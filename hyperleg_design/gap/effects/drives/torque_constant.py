@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import NEEDED, Effect, Parameter
+from hyperleg_design.gap.effects.effect import NEEDED
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, WITH_LOAD, WITHOUT_DRIVE
+from hyperleg_design.gap.effects.kinds import MotorEffect
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
     at_motor,
     before_measurement,
-    driven_motors,
     given,
     is_commanded,
     is_measured,
@@ -33,7 +34,7 @@ READING = 1
 """Parameter by which currents are read wrongly."""
 
 
-class TorqueConstant(Effect):
+class TorqueConstant(MotorEffect):
     """A motor's torque is `scale` times the one believed, from its current and the declared
     constant, or as commanded.
 
@@ -46,7 +47,6 @@ class TorqueConstant(Effect):
     identifier: ClassVar[str] = "torque_constant"
     scales: ClassVar[str] = "motor"
     nuisance_torque: ClassVar[str] = NEEDED
-    kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = (
         "a motor gives more or less torque than its current and its data sheet say"
     )
@@ -109,17 +109,6 @@ class TorqueConstant(Effect):
         rows = np.zeros_like(signals.measured)
         rows[:, motor] = spread * (signals.measured - signals.residual["drive"])[:, motor]
         return {"drive": rows}
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
+from hyperleg_design.gap.effects.kinds import MotorEffect
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     commanded,
-    driven_motors,
     is_commanded,
     limited,
     motor_strength,
@@ -35,7 +35,7 @@ LEAST = 0.03
 nobody)."""
 
 
-class TorqueSaturation(Effect):
+class TorqueSaturation(MotorEffect):
     """A drive stops at a torque below the limit of the model: at 1 / inverse_limit, so that 0 is no
     limit.
 
@@ -44,7 +44,6 @@ class TorqueSaturation(Effect):
     """
 
     identifier: ClassVar[str] = "torque_saturation"
-    kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a drive limits its torque (or current) to less than the model's limit"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -60,17 +59,6 @@ class TorqueSaturation(Effect):
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
     }
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

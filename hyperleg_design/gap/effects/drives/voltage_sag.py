@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from hyperleg_design.gap.effects.drives.weak_battery import WeakBattery, modelled
-from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS, LATE, SCALING, WITHOUT_DRIVE
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
     BATTERY,
     before_measurement,

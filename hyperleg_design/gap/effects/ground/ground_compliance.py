@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
 from hyperleg_design.gap.effects.ground.ground_friction import ChangedGround, ground_trace
+from hyperleg_design.gap.effects.kinds import FootEffect
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.signals import nominal_ground
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ USUAL = 0.5
 """Usual error of how the ground gives and damps, over it."""
 
 
-class GroundCompliance(Effect):
+class GroundCompliance(FootEffect):
     """Compliance of sole and ground under one foot [m/N], and how well it is damped, over the
     model's; shows in vertical forces.
 
@@ -32,7 +33,6 @@ class GroundCompliance(Effect):
 
     identifier: ClassVar[str] = "ground_compliance"
     nuisance_rank: ClassVar[int] = 1
-    kind: ClassVar[str] = "foot"
     summary: ClassVar[str] = "the ground or the sole is softer or harder under a foot"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -70,17 +70,6 @@ class GroundCompliance(Effect):
             Standard deviations from the nulls by location `(parameters,)`.
         """
         return dict.fromkeys(self.locations(subject), np.array([USUAL, USUAL]))
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the feet at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return subject.feet if subject.floating else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
+from hyperleg_design.gap.effects.kinds import FootEffect
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.signals import ground, nominal_ground
 from hyperleg_design.simulation.alteration import Alteration
 
@@ -29,13 +30,12 @@ USUAL = 0.1
 """Usual error of the ground's friction over it."""
 
 
-class GroundFriction(Effect):
+class GroundFriction(FootEffect):
     """The coefficient of sliding friction under one foot; shows where the foot slides, or holds
     beyond the nominal cone.
     """
 
     identifier: ClassVar[str] = "ground_friction"
-    kind: ClassVar[str] = "foot"
     summary: ClassVar[str] = "the ground is more or less slippery under a foot"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -63,17 +63,6 @@ class GroundFriction(Effect):
             Standard deviations from the nulls by location `(parameters,)`.
         """
         return dict.fromkeys(self.locations(subject), np.array([USUAL]))
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the feet at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return subject.feet if subject.floating else ()
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

@@ -1,15 +1,61 @@
-"""What effects of friction share: friction in a simulation."""
+"""What effects of friction share: how large it is, and how it acts in a simulation."""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects.families import FRICTION as FRICTION
+from hyperleg_design.gap.effects.kinds import JointTorque
+from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.model.subject import Subject
+
+
+class DescribedFriction(JointTorque):
+    """Friction of one size that a model describes, so that there may also be less of it."""
+
+    described: ClassVar[bool] = True
+    linear: ClassVar[bool] = True
+    share: ClassVar[float]
+    """Usual size over the torque that the joint is made for [1/s or -]."""
+
+    @staticmethod
+    @abstractmethod
+    def _described(subject: Subject) -> np.ndarray:
+        """What the model has of it, `(joints,)`."""
+
+    def usual(self, location: str, subject: Subject) -> np.ndarray:
+        """Compute a share of the torque that the joint is made for, see `Effect.usual`.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Usual distances from the nulls `(1,)`.
+        """
+        return np.array([self.share * joint_strength(subject)[subject.joints.index(location)]])
+
+    def bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """Bound it by no friction at all, and by the torque that the joint is made for.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, 1)`.
+        """
+        joint = subject.joints.index(location)
+        largest = min(self.parameters[0].high, joint_strength(subject)[joint])
+        return np.array([[-self._described(subject)[joint]], [largest]])
 
 
 @dataclass(frozen=True, eq=False)

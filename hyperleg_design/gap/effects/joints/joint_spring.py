@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import INERTIAL
-from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+from hyperleg_design.gap.effects.kinds import JointTorque
+from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ STIFFNESS, TORQUE = 0.002, 0.002
 """Usual error of the torque a radian, and at rest, over the torque that the joint is made for."""
 
 
-class JointSpring(Effect):
+class JointSpring(JointTorque):
     """A cable, a seal or a spring pulls a joint back: stiffness (q - default) + preload, default
     the robot's posture at rest.
 
@@ -35,7 +36,6 @@ class JointSpring(Effect):
 
     identifier: ClassVar[str] = "joint_spring"
     nuisance_rank: ClassVar[int] = 5
-    kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a cable or a spring pulls a joint towards some angle"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -79,17 +79,6 @@ class JointSpring(Effect):
             for joint, s in zip(subject.joints, joint_strength(subject), strict=True)
         }
 
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the joints at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return subject.joints
-
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.
 
@@ -102,25 +91,11 @@ class JointSpring(Effect):
         """
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
-        joint = signals.subject.joints.index(location)
-        stiffness, preload = np.atleast_2d(np.asarray(values, float)).T[..., None]
-        return at_joint(
-            signals,
-            joint,
-            stiffness * (signals.position[:, joint] - signals.subject.default[joint]) + preload,
-        )
+    def _torque(
+        self, signals: Signals, joint: int, stiffness: np.ndarray, preload: np.ndarray
+    ) -> np.ndarray:
+        rest = signals.subject.default[joint]
+        return stiffness * (signals.position[:, joint] - rest) + preload
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """Make what adds it to a simulation, see `Effect.alteration`.

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import CALIBRATED, Effect, Parameter
+from hyperleg_design.gap.effects.effect import CALIBRATED
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.joints.friction import JointFriction
-from hyperleg_design.gap.effects.placing import at_joint
+from hyperleg_design.gap.effects.kinds import JointTorque
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.sliding import sliding
 
@@ -25,7 +26,7 @@ USUAL = 0.006
 """Usual share that a model leaves out."""
 
 
-class LoadDependentFriction(Effect):
+class LoadDependentFriction(JointTorque):
     """A joint resists sliding with a share of the torque that reaches it: its drive's, less what
     turns the rotors.
 
@@ -37,7 +38,6 @@ class LoadDependentFriction(Effect):
     scales: ClassVar[str] = "joint"
     nuisance_rank: ClassVar[int] = 3
     nuisance_torque: ClassVar[str] = CALIBRATED
-    kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -97,29 +97,13 @@ class LoadDependentFriction(Effect):
         lacking = "no joint reverses under different loads"
         return at_joints(self.identifier, motion, loaded, "reverses under different loads", lacking)
 
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
+    def _torque(self, signals: Signals, joint: int, coefficient: np.ndarray) -> np.ndarray:
         subject = signals.subject
-        joint = subject.joints.index(location)
         load = (
             applied(subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
             - signals.acceleration @ subject.armature[joint]
         )
-        return at_joint(
-            signals,
-            joint,
-            np.atleast_2d(values)[:, :1] * (np.abs(load) * sliding(signals)[:, joint]),
-        )
+        return coefficient * (np.abs(load) * sliding(signals)[:, joint])
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """Make what adds it to a simulation, see `Effect.alteration`.

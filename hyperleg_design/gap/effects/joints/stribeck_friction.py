@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.joints.friction import JointFriction
-from hyperleg_design.gap.effects.placing import at_joint, joint_strength
+from hyperleg_design.gap.effects.kinds import JointTorque
+from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.usual import COULOMB_LEAST
 from hyperleg_design.gap.signals.sliding import sliding
 
@@ -26,7 +27,7 @@ OF_FRICTION = 0.08
 """Usual error of the breakaway torque over the model's Coulomb friction."""
 
 
-class StribeckFriction(Effect):
+class StribeckFriction(JointTorque):
     """Breakaway friction in excess of sliding friction, which is gone at speeds above the Stribeck
     speed.
 
@@ -36,7 +37,6 @@ class StribeckFriction(Effect):
 
     identifier: ClassVar[str] = "stribeck_friction"
     nuisance_rank: ClassVar[int] = 2
-    kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = (
         "a joint sticks: friction is larger at rest and at low speed than in fast motion"
     )
@@ -81,17 +81,6 @@ class StribeckFriction(Effect):
         rest = np.zeros(len(self.parameters) - 1)
         return {joint: np.append(s, rest) for joint, s in zip(subject.joints, spreads, strict=True)}
 
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the joints at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return subject.joints
-
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.
 
@@ -106,22 +95,11 @@ class StribeckFriction(Effect):
         lacking = "no slow motion: breakaway is passed in a few ticks"
         return at_joints(self.identifier, motion, slow, "slow and fast motion", lacking)
 
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
-        joint = signals.subject.joints.index(location)
-        torque, speed = np.atleast_2d(np.asarray(values, float)).T[..., None]
+    def _torque(
+        self, signals: Signals, joint: int, torque: np.ndarray, speed: np.ndarray
+    ) -> np.ndarray:
         fall = np.exp(-((signals.velocity[:, joint] / np.maximum(speed, 1e-6)) ** 2))
-        return at_joint(signals, joint, torque * fall * sliding(signals)[:, joint])
+        return torque * fall * sliding(signals)[:, joint]
 
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """Make what adds it to a simulation, see `Effect.alteration`.

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Parameter
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.links.inertial import InertialEffect, fitted
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.model.mechanism import inertial_parameters, mass_properties
 
 if TYPE_CHECKING:

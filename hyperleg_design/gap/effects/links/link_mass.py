@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Parameter
 from hyperleg_design.gap.effects.links.inertial import InertialEffect, least_mass
+from hyperleg_design.gap.effects.parameter import Parameter
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject

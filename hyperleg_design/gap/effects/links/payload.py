@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Parameter
 from hyperleg_design.gap.effects.links.inertial import (
     InertialEffect,
     carried_mass,
     fitted,
     least_mass,
 )
+from hyperleg_design.gap.effects.parameter import Parameter
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject

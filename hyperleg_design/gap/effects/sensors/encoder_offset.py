@@ -9,10 +9,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import INERTIAL
+from hyperleg_design.gap.effects.kinds import JointEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.simulation.alteration import Alteration, Live
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ USUAL = 0.003
 """Usual error of an encoder's zero [rad]."""
 
 
-class EncoderOffset(Effect):
+class EncoderOffset(JointEffect):
     """A joint stands at the logged position minus `offset`; controller and log read the same wrong
     angle.
 
@@ -42,7 +43,6 @@ class EncoderOffset(Effect):
 
     identifier: ClassVar[str] = "encoder_offset"
     nuisance_rank: ClassVar[int] = 4
-    kind: ClassVar[str] = "joint"
     summary: ClassVar[str] = "a joint's encoder reads a constant angle too much"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -75,17 +75,6 @@ class EncoderOffset(Effect):
         spreads = np.zeros(len(self.parameters))
         spreads[0] = USUAL
         return dict.fromkeys(self.locations(subject), spreads)
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the joints at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return subject.joints
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import INERTIAL
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.simulation.alteration import Alteration, Live
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import (
     FEW,
     REVERSES,
@@ -17,7 +16,9 @@ from hyperleg_design.gap.effects.excitation import (
     by_speeds,
 )
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
-from hyperleg_design.gap.effects.placing import SIDES, driven_motors
+from hyperleg_design.gap.effects.kinds import MotorEffect
+from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placing import SIDES
 from hyperleg_design.gap.effects.transmissions import belt, slack
 from hyperleg_design.gap.model import machine
 from hyperleg_design.simulation.drives.two_mass import STIFFEST, Belt
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 COASTING = ("a rotor that the load carries over", "a rotor that crosses by itself")
 
 
-class Backlash(Effect):
+class Backlash(MotorEffect):
     """A motor turns freely through a small angle before its joints follow; see `belt`.
 
     The angle is the whole width of the dead zone, at the joint that the motor moves most. While the
@@ -43,7 +44,6 @@ class Backlash(Effect):
     identifier: ClassVar[str] = "backlash"
     rough: ClassVar[Mapping[str, float]] = {"angle": 0.15}
     """How rotors move on belts that give was 10 to 25 % off in development."""
-    kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a motor turns freely through a small angle before its joint follows"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -57,17 +57,6 @@ class Backlash(Effect):
         "preload": FRICTION | LATE | {"cogging", "transmission_elasticity"},
         "log rotor speeds": BESIDE_TRANSMISSIONS,
     }
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

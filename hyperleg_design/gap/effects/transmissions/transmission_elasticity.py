@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints, by_speeds
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
-from hyperleg_design.gap.effects.placing import SIDES, driven_motors
+from hyperleg_design.gap.effects.kinds import MotorEffect
+from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placing import SIDES
 from hyperleg_design.gap.effects.transmissions import belt
 from hyperleg_design.gap.model import machine
 from hyperleg_design.simulation.drives.two_mass import DAMPING_RATIO, Belt
@@ -35,7 +36,7 @@ TELLING = 8.0
 """Content of the motion that tells elasticity from delay [Hz]."""
 
 
-class TransmissionElasticity(Effect):
+class TransmissionElasticity(MotorEffect):
     """A motor and its joints are joined by a spring, on the motor's side of the transmission; see
     `belt`.
 
@@ -45,7 +46,6 @@ class TransmissionElasticity(Effect):
     identifier: ClassVar[str] = "transmission_elasticity"
     rough: ClassVar[Mapping[str, float]] = {"compliance": 0.15}
     """How rotors move on belts that give was 10 to 25 % off in development."""
-    kind: ClassVar[str] = "motor"
     summary: ClassVar[str] = "a belt, cable or gear gives under load, so motor and joint move apart"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -104,17 +104,6 @@ class TransmissionElasticity(Effect):
         if side >= belt.CHOSEN:
             return None
         return machine.rotor(subject, subject.motors.index(location)) * (1 - side)
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

@@ -10,7 +10,6 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.effects.effect import Effect, Parameter
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, by_speeds
 from hyperleg_design.gap.effects.families import (
     BESIDE_TRANSMISSIONS,
@@ -18,11 +17,12 @@ from hyperleg_design.gap.effects.families import (
     WITH_LOAD,
     WITHOUT_DRIVE,
 )
+from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
     SIDES,
     at_motor,
-    driven_motors,
     given,
     motor_velocity,
 )
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
 
 
-class TransmissionRatio(Effect):
+class TransmissionRatio(MotorEffect):
     """A motor turns `scale` times as fast over its joints as the model says, and pulls on them
     `scale` times as hard.
 
@@ -52,7 +52,6 @@ class TransmissionRatio(Effect):
 
     identifier: ClassVar[str] = "transmission_ratio"
     scales: ClassVar[str] = "motor"
-    kind: ClassVar[str] = "motor"
     rare: ClassVar[float] = -0.5
     """Assumed: belts have the ratio of their teeth."""
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
@@ -75,17 +74,6 @@ class TransmissionRatio(Effect):
         "known angle": SCALING | {"rotor_inertia"},
         "log rotor speeds": BESIDE_TRANSMISSIONS | {"transmission_elasticity", "backlash"},
     }
-
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
-        return driven_motors(subject)
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.

@@ -1,0 +1,118 @@
+"""What effects at one kind of place have in common: where they can sit, and how their torque shows.
+
+An effect of another kind of place, or with places of its own, says so in its `locations`.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from hyperleg_design.gap.effects.effect import Effect
+from hyperleg_design.gap.effects.placing import at_joint, at_motor, driven_motors
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.model.subject import Subject
+    from hyperleg_design.gap.signals.signals import Signals
+
+
+class JointEffect(Effect):
+    """An effect that can sit at each joint."""
+
+    kind: ClassVar[str] = "joint"
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """List the joints at which it can sit, see `Effect.locations`.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the joints; empty where it can sit nowhere on this robot.
+        """
+        return subject.joints
+
+
+class JointTorque(JointEffect):
+    """A torque that a joint takes from its drive, beyond the model."""
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """Compute the residual of motion that the torque leaves at its joint, see `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            The residual of motion, `(k, t, joints)` [Nm].
+        """
+        joint = signals.subject.joints.index(location)
+        settings = np.atleast_2d(np.asarray(values, float))
+        return at_joint(signals, joint, self._torque(signals, joint, *settings.T[..., None]))
+
+    @abstractmethod
+    def _torque(self, signals: Signals, joint: int, *values: Any, **named: Any) -> np.ndarray:
+        """The torque `(k, t)` [Nm] at a joint; each of the values `(k, 1)` is one parameter's."""
+
+
+class MotorEffect(Effect):
+    """An effect that can sit at each motor that exists."""
+
+    kind: ClassVar[str] = "motor"
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """List the motors at which it can sit, see `Effect.locations`.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the motors; empty where it can sit nowhere on this robot.
+        """
+        return driven_motors(subject)
+
+
+class MotorTorque(MotorEffect):
+    """A torque that is lost between the measured torque of a motor and the joints."""
+
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        """Compute the residual of motion that the torque leaves at the joints that the motor moves,
+        see `Effect.trace`.
+
+        Args:
+            signals: a conditioned log, `t` ticks.
+            location: one of `locations`.
+            values: `(k, parameters)`, k settings at once.
+
+        Returns:
+            The residual of motion, `(k, t, joints)` [Nm].
+        """
+        motor = signals.subject.motors.index(location)
+        settings = np.atleast_2d(np.asarray(values, float))
+        return at_motor(signals, motor, self._torque(signals, motor, *settings.T[..., None]))
+
+    @abstractmethod
+    def _torque(self, signals: Signals, motor: int, *values: Any, **named: Any) -> np.ndarray:
+        """The torque `(k, t)` [Nm] on the motor's side; each of the values `(k, 1)` is one
+        parameter's.
+        """
+
+
+class FootEffect(Effect):
+    """An effect that can sit under each foot of a robot that stands on its feet."""
+
+    kind: ClassVar[str] = "foot"
+
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """List the feet under which it can sit, see `Effect.locations`.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Names of the feet; empty where the base is fixed.
+        """
+        return subject.feet if subject.floating else ()

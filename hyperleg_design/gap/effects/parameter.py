@@ -1,0 +1,30 @@
+"""A number that an effect has: unit, null, range, and usual size with its source."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of an effect."""
+
+    name: str
+    """Name in files and on pages."""
+    unit: str
+    """Unit; empty for a number without one."""
+    null: float
+    """Value at which the simulation is as it was."""
+    low: float
+    """Lower end of the range that is searched, of what is physically plausible."""
+    high: float
+    """Upper end of that range."""
+    typical: float
+    """Usual distance from `null` on hardware: scale of the prior and of finite differences."""
+    source: str
+    """Where the magnitude comes from."""
+    shape: bool = False
+    """Whether it only shapes the trace (a Stribeck speed, a cogging order) and means nothing while
+    the size is at its null."""
+    choices: tuple[str, ...] = ()
+    """What 0, 1, ... stand for, of one that is no size."""
