@@ -28,20 +28,6 @@ def test_the_interval_covers_the_truth_as_often_as_it_says(between, within, most
     assert 0.92 <= covered <= most
 
 
-def test_plain_percentiles_would_not_cover():
-    """Why the correction is there: percentiles of a bootstrap over five seeds miss far more than
-    one in twenty.
-    """
-    rng = np.random.default_rng(2)
-    hits = []
-    for _ in range(300):
-        groups = drawn(rng, 5, 10, 1.0, 0.1)
-        means = resampling.resampled_means(groups, 400, rng)
-        low, high = np.quantile(means, [0.025, 0.975])
-        hits.append(low <= 0 <= high)
-    assert np.mean(hits) < 0.9
-
-
 @pytest.mark.parametrize("paired", [False, True])
 def test_no_difference_is_told_about_one_time_in_twenty(paired):
     rng = np.random.default_rng(3)
@@ -148,26 +134,6 @@ def test_bootstrap_error_is_that_of_theory():
     assert estimate(groups, resamples=20_000).standard_error == pytest.approx(
         np.sqrt(theory), rel=0.03
     )
-
-
-def test_groups_of_unequal_length_are_drawn_from_their_own_values():
-    groups = [np.array([1.0, 2.0]), np.array([5.0] * 7), np.array([9.0])]
-    rng = np.random.default_rng(8)
-    for which, expected in ((0, 1.5), (1, 5.0), (2, 9.0)):
-        drawn_means = resampling._drawn_means(
-            [[g] for g in groups], np.full((20_000, 3), which), rng
-        )
-        assert drawn_means.mean() == pytest.approx(expected, abs=0.01)
-        assert drawn_means.var() == pytest.approx(
-            0.25 / 2 / 3 if which == 0 else 0, rel=0.05, abs=1e-12
-        )
-
-
-def test_memory_stays_small_and_pieces_fit_together(monkeypatch):
-    groups = drawn(np.random.default_rng(9), 5, 10, 1, 1)
-    whole = estimate(groups, resamples=2000)
-    monkeypatch.setattr(resampling, "_DRAWS", 500)
-    assert estimate(groups, resamples=2000) == whole
 
 
 def test_no_fall_in_fifty_walks_still_has_an_upper_bound():

@@ -2,6 +2,7 @@ import os
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -54,3 +55,36 @@ def biped_runs():
     import robots
 
     return {"standing": robots.biped_run(), "thrown": robots.biped_run(height=4.0)}
+
+
+@pytest.fixture(scope="module")
+def standing_biped():
+    from hyperleg_design.gap.playback import show
+
+    return show._subject(None, True)
+
+
+@pytest.fixture(scope="module")
+def standing(standing_biped):
+    """Signals of a run in which the biped bends its knees and presses its feet apart, with
+    alterations of the ground under its left foot.
+    """
+    from hyperleg_design.gap.effects.ground.ground_friction import ChangedGround
+    from hyperleg_design.gap.playback import show, standard_run
+    from hyperleg_design.gap.signals.conditioning import condition
+    from hyperleg_design.gap.signals.nominal_ground import foot_bodies
+
+    time = np.arange(601) * standard_run.TICK
+    target = show._stand_targets(standing_biped, time)
+    kept = {}
+
+    def signals(**changes):
+        key = tuple(sorted(changes.items()))
+        if key not in kept:
+            left = foot_bodies(standing_biped, 0)
+            alterations = (ChangedGround(left, **changes),) if changes else ()
+            log = standard_run.simulated_log(standing_biped, target, time, alterations)[1]
+            kept[key] = condition(log, standing_biped)
+        return kept[key]
+
+    return signals

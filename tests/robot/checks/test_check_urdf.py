@@ -11,29 +11,7 @@ from lxml import etree
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.description import urdf
-
-GOOD = """<robot name="arm">
-  <link name="base"/>
-  <link name="upper">
-    <inertial><origin xyz="0 0 0.1"/><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.002"/></inertial>
-    <visual><geometry><box size="0.1 0.1 0.2"/></geometry></visual>
-  </link>
-  <link name="lower">
-    <inertial><mass value="0.5"/><inertia ixx="0.004" iyy="0.004" izz="0.001" ixy="0.0001" ixz="0" iyz="0"/></inertial>
-    <collision><origin xyz="0 0 0"/><geometry><sphere radius="0.02"/></geometry></collision>
-  </link>
-  <link name="tip"/>
-  <joint name="shoulder" type="revolute">
-    <parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
-    <limit lower="-1" upper="2" effort="10" velocity="5"/>
-  </joint>
-  <joint name="elbow" type="revolute">
-    <parent link="upper"/><child link="lower"/><origin xyz="0 0 0.2"/><axis xyz="0 1 0"/>
-    <limit lower="-1" upper="0" effort="10" velocity="5"/><dynamics damping="0.1" friction="0"/>
-  </joint>
-  <joint name="tip_joint" type="fixed"><parent link="lower"/><child link="tip"/></joint>
-</robot>
-"""  # noqa: E501
+from tests.robot.checks.urdfs import GOOD
 
 FAULTS = {
     "syntax": ('</link>\n  <link name="tip"/>', '\n  <link name="tip"/>', "is not XML"),
@@ -149,12 +127,6 @@ def test_places_name_element_and_line():
     assert [f.place for f in found] == ["joint shoulder (line 12)"]
 
 
-def test_a_joint_without_a_motor_is_right():
-    passive = GOOD.replace('effort="10" velocity="5"', 'effort="0" velocity="0"')
-    assert passive != GOOD
-    assert check_urdf(passive) == []
-
-
 def test_all_faults_are_told_at_once():
     broken = GOOD
     for case in ("loose link", "negative mass", "no body's inertia", "reversed", "friction"):
@@ -163,21 +135,6 @@ def test_all_faults_are_told_at_once():
     found = check_urdf(broken)
     for case in ("loose link", "negative mass", "reversed", "friction"):
         assert any(FAULTS[case][2] in str(f) for f in found), case
-
-
-def test_a_point_fixed_to_a_link_is_only_a_doubt():
-    point = '<inertial><mass value="0.1"/><inertia ixx="0" iyy="0" izz="0"/></inertial>'
-    assert [
-        f.severity
-        for f in check_urdf(GOOD.replace('<link name="tip"/>', f'<link name="tip">{point}</link>'))
-    ] == ["warning"]
-
-
-def test_weight_on_a_fixed_link_counts_for_the_moving_one():
-    text = GOOD.replace('<child link="lower"/>', '<child link="tip"/>').replace(
-        '<parent link="lower"/><child link="tip"/>', '<parent link="tip"/><child link="lower"/>'
-    )
-    assert check_urdf(text) == []
 
 
 @pytest.mark.parametrize("text", ["<mujoco/>", "<robot name='x'/>", "<robot"])

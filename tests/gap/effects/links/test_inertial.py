@@ -13,7 +13,7 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.gap.effects.links.inertial import AddedInertia, carried_mass
+from hyperleg_design.gap.effects.links.inertial import carried_mass
 from hyperleg_design.gap.effects.links.payload import FAR, NEAR
 from hyperleg_design.gap.model.mechanism import mechanism_of, pinocchio_model
 from hyperleg_design.gap.signals.conditioning import condition
@@ -139,20 +139,6 @@ def test_usual_masses_follow_the_robot(arm):
     )
     assert effect("link_mass").usual("forearm", arm.subject)[0] == pytest.approx(0.23)
     assert effect("payload").example("forearm", arm.subject)[3] == pytest.approx(1.5 * 0.196)
-
-
-def test_a_link_moved_keeps_its_mass_and_shape(arm):
-    added = effect("link_com").alteration("forearm", np.array([0.01, 0.0, -0.02]), arm.subject)
-    assert isinstance(added, AddedInertia)
-    model, changed = arm.subject.model, edited(arm.subject.model, (added,))
-    body = model.body("forearm").id
-    assert changed.body_mass[body] == pytest.approx(model.body_mass[body])
-    np.testing.assert_allclose(
-        changed.body_ipos[body] - model.body_ipos[body], [0.01, 0.0, -0.02], atol=1e-12
-    )
-    np.testing.assert_allclose(
-        np.sort(changed.body_inertia[body]), np.sort(model.body_inertia[body]), rtol=1e-9
-    )
 
 
 def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):

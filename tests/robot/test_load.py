@@ -1,0 +1,49 @@
+"""Reading designs of any family."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot, robot_from_mapping
+from tests.robot.tree_files import leg
+
+
+def test_the_example_of_the_page_loads(tmp_path):
+    page = (Path(__file__).parents[2] / "docs" / "robots.md").read_text()
+    path = tmp_path / "mine.yaml"
+    path.write_text(page.split("```yaml\n")[1].split("```")[0])
+    assert transmission.joint_names(load_robot(path)) == ("hip", "knee")
+
+
+def test_a_file_may_build_on_another(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("base: mini_cheetah\nactuators: {knee: {gear: 8}}\n")
+    design = load_robot(path)
+    assert (design.name, design["actuators.knee.gear"]) == ("mine", 8.0)
+    path.write_text(yaml.safe_dump({"family": "octopus"}))
+    with pytest.raises(InputError, match=r"family.*octopus.*hyperleg, tree"):
+        load_robot(path)
+    with pytest.raises(InputError, match="no variants"):
+        load_robot("mini_cheetah", variant="toe_locked")
+
+
+def test_designs_travel_to_other_processes_and_back_from_mappings():
+    design = leg().with_values({"links.shank.mass": np.array([1.0, 2.0])})
+    again = pickle.loads(pickle.dumps(design))
+    assert np.array_equal(again["links.shank.mass"], [1.0, 2.0])
+    assert again.origins == design.origins
+    one = design.take(1)
+    assert robot_from_mapping(one.to_mapping(), "here").to_mapping() == one.to_mapping()
+
+
+def test_what_needs_hyperleg_refuses_another_family_and_says_so():
+    with pytest.raises(InputError, match=r"mini_cheetah\.yaml.*family.*another family.*load_robot"):
+        load_design("mini_cheetah")
