@@ -1,0 +1,106 @@
+"""Verbs on policies: campaigns, and what is missing."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from hyperleg_design import cli
+from hyperleg_design.evaluation.shipped import find_policy
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    code = cli.main(list(arguments))
+    out, err = capsys.readouterr()
+    return code, out, err
+
+
+def test_campaign_status_needs_no_torch_and_lists_every_training(capsys, tmp_path: Path):
+    code, out, _ = run(capsys, "campaign", "status", "--out", str(tmp_path / "none"))
+    assert code == 0
+    shipped = out.count(" shipped ")
+    assert out.count(" missing ") == 64 - shipped
+    assert f"{shipped} of 64 done" in out
+
+
+def test_training_without_torch_says_what_to_install(capsys, tmp_path: Path, monkeypatch):
+    import importlib.util
+
+    real = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util,
+        "find_spec",
+        lambda name, *rest: None if name == "torch" else real(name, *rest),
+    )
+    code, _, err = run(capsys, "train", "--out", str(tmp_path / "t"))
+    assert code == 2
+    assert "torch" in err
+    assert "learning" in err
+
+
+def test_a_campaign_is_packed_for_shipping(capsys, tmp_path: Path):
+    folder = tmp_path / "campaign" / "walk_upright-toe-0"
+    folder.mkdir(parents=True)
+    (folder / "policy.onnx").write_bytes(find_policy("walk_upright-toe-0").read_bytes())
+    (tmp_path / "campaign" / "walk_upright-toe-1").mkdir()
+    code, out, _ = run(
+        capsys,
+        "campaign",
+        "pack",
+        "--from",
+        str(tmp_path / "campaign"),
+        "--to",
+        str(tmp_path / "policies"),
+    )
+    assert code == 0
+    assert "1 of 2 trainings, 1 policies, 0.1 MB" in out
+    assert (tmp_path / "policies" / "walk_upright-toe-0" / "policy.onnx").exists()
+    code, _, err = run(
+        capsys, "campaign", "pack", "--from", str(tmp_path / "none"), "--to", str(tmp_path / "p")
+    )
+    assert code == 2
+    assert "no such folder" in err
+
+
+def test_campaign_speaks_json(capsys, tmp_path: Path):
+    code, out, _ = run(capsys, "campaign", "status", "--out", str(tmp_path / "none"), "--json")
+    assert code == 0
+    found = json.loads(out)
+    assert len(found) == 64
+    assert {row["state"] for row in found} <= {"missing", "shipped"}
+
+
+def test_missing_trainings_are_named(tmp_path: Path):
+    from hyperleg_design.report.walks.evaluated import coverage, coverage_text
+
+    (tmp_path / "walk_upright-toe-0").mkdir()
+    (tmp_path / "walk_upright-toe-0" / "policy.onnx").write_bytes(b"x")
+    found = coverage(tmp_path)
+    assert found["evaluated"] == ["walk_upright-toe-0"]
+    assert len(found["missing"]) == 31  # of four arms with eight seeds
+    text = coverage_text(found)
+    assert text.startswith("1 trainings are evaluated; 31 of the campaign's are missing: ")
+    assert "walk_upright toe (seed 1, 2, 3, 4, 5, 6, 7)" in text
+
+
+def test_a_training_starts_from_a_shipped_one_by_name(capsys, tmp_path: Path, monkeypatch):
+    """The training gets the path of the policy; a misspelt name is refused before it begins."""
+    from hyperleg_design.learning import launch
+
+    commands = []
+
+    def replace_this_process(arguments, threads):
+        commands.append(arguments)
+        raise SystemExit(0)
+
+    monkeypatch.setattr("hyperleg_design.cli.policies.require", lambda *names: None)
+    monkeypatch.setattr(launch, "run_here", replace_this_process)
+    folder = str(tmp_path / "training")
+    assert run(capsys, "train", "--start", "walk_upright-toe-1", "--out", folder)[0] == 0
+    assert f"--start={find_policy('walk_upright-toe-1')}" in commands[0]
+    code, _, error = run(capsys, "train", "--start", "walk_upright-toe-9", "--out", folder)
+    assert code == 2
+    assert "--start = 'walk_upright-toe-9': no such file; did you mean walk_upright-toe-" in error
+    assert len(commands) == 1
