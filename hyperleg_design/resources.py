@@ -13,6 +13,8 @@ from pathlib import Path
 from hyperleg_design.errors import InputError
 
 CONTENT = ("descriptions", "motors", "sweeps", "sim")
+NOUNS = {"descriptions": "design", "motors": "motor", "sweeps": "sweep", "sim": "sim"}
+"""What a file of each content folder is, for errors."""
 
 
 def home() -> Path:
@@ -86,10 +88,9 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path
         if path.name == str(name) and shipped.is_file():
             return shipped
     except OSError as error:  # a name too long, a folder closed to us
-        raise InputError(kind, "", str(name), f"cannot be read ({error.strerror})") from None
-    raise InputError(
-        kind, "", str(name), f"no such file; shipped: {', '.join(names(kind, suffix)) or 'none'}"
-    )
+        raise InputError(NOUNS[kind], "", str(name), f"cannot be read ({error.strerror})") from None
+    known = ", ".join(names(kind, suffix)) or "none"
+    raise InputError(NOUNS[kind], "", str(name), f"no such file; shipped: {known}")
 
 
 def names(kind: str, suffix: str = ".yaml") -> list[str]:

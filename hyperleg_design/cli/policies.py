@@ -279,6 +279,7 @@ class Robustness(Printing):
     def run(self) -> None:
         """Evaluate the policies under changed conditions, and write the page with its curves."""
         from hyperleg_design.report.walks.robustness_page import run_robustness
+        from hyperleg_design.report.walks.robustness_text import robustness_text
 
         points = run_robustness(
             self.policies,
@@ -291,7 +292,8 @@ class Robustness(Printing):
         if self.json:
             emit(points)
         else:
-            print(f"{len(points)} points of curves in {self.out / 'robustness.png'}")
+            print(robustness_text(points))
+            print(f"curves in {self.out / 'robustness.png'}")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.report.gap.text import chosen
 from hyperleg_design.report.style import figure_style, save
 
 if TYPE_CHECKING:
@@ -97,7 +98,8 @@ def show_text(summary: Mapping[str, Any]) -> str:
         The text.
     """
     values = ", ".join(
-        f"{name} {v['value']:.4g} {v['unit']}".rstrip() for name, v in summary["parameters"].items()
+        words or f"{name} {v['value']:.4g} {v['unit']}".rstrip()
+        for name, v, words in chosen(summary["effect"], summary["parameters"])
     )
     lines = [f"{summary['effect']} at {summary['location']} of {summary['robot']}: {values}"]
     if summary["residual"]:
