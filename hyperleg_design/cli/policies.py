@@ -61,6 +61,9 @@ class Train:
                 process.
         """
         from hyperleg_design.learning import launch
+        from hyperleg_design.simulation.layout import layout_of
+        from hyperleg_design.simulation.model import simulation_spec
+        from hyperleg_design.simulation.tasks import load_task
 
         require("torch", "rsl_rl")
         given = {
@@ -76,13 +79,16 @@ class Train:
         given |= {} if self.iterations is None else {"iterations": self.iterations}
         given |= {"designs": self.designs} if self.designs else {}
         arguments = [f"--{key}={value}" for key, value in given.items()]
+        # What does not fit is an error here, before torch is loaded in a process of its own.
+        robot, task = load_robot(self.design), load_task(self.task)
+        simulation_spec(task.posed(robot), task.physics)
+        task.check_robot(layout_of(robot), robot.name)
         if not self.overlay:
             launch.run_here(arguments, self.threads)
         from hyperleg_design.gap.playback.overlay import read_overlay
 
         overlay = read_overlay(self.overlay)
-        # A wrong place is an error here, before this process is replaced.
-        overlay.alterations(load_robot(self.design))
+        overlay.alterations(robot)
         if not launch.surrounded():
             launch.run_here(
                 ["train", *arguments, f"--overlay={self.overlay}"],

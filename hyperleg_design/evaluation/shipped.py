@@ -198,18 +198,25 @@ def find_policy(name: str | Path, where: str = "policy") -> Path:
     """Find the file of a policy.
 
     Args:
-        name: an ONNX file, or the name of a shipped training, whose last policy is meant.
+        name: an ONNX file, the folder of a training, or the name of a shipped training; of a
+            training, its last policy is meant.
         where: option that names it, for the error.
 
     Returns:
         The path of the ONNX file.
 
     Raises:
-        InputError: neither; lists what is shipped.
+        InputError: none of these, which lists what is shipped, or a training that is not finished.
     """
     path = Path(name)
     if path.is_file():
         return path
+    folder = path.parent if path.name == POLICY else path
+    if (folder / POLICY).is_file():
+        return folder / POLICY
+    if (folder / "run.json").is_file():
+        remedy = "the training is not finished; hyperleg train with the same --out goes on with it"
+        raise InputError(where, "", str(name), remedy)
     named = shipped_folder() / path / POLICY
     if len(path.parts) == 1 and named.is_file():
         return named

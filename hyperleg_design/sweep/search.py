@@ -105,7 +105,12 @@ def search_of(
     protocols = [kind_of(p) for p in plan.protocols]
     names = objectives or (*sweep.trial_objectives, *sweep.objectives)
     chosen = tuple(registry.resolve(n, protocols, "--objective").name for n in names)
-    if not chosen or len(set(chosen)) < len(chosen):
+    if not chosen:
+        remedy = (
+            f"{sweep.source} names no objectives; give --objective, of `hyperleg list measures`"
+        )
+        raise InputError("search", "objectives", None, remedy)
+    if len(set(chosen)) < len(chosen):
         raise InputError("search", "objectives", list(names), "expects different measures")
     bounds = tuple(read_constraint(text, protocols) for text in constraints)
     bounds = bounds or usual_constraints(protocols)

@@ -104,3 +104,21 @@ def test_a_training_starts_from_a_shipped_one_by_name(capsys, tmp_path: Path, mo
     assert code == 2
     assert "--start = 'walk_upright-toe-9': no such file; did you mean walk_upright-toe-" in error
     assert len(commands) == 1
+
+
+def test_a_robot_that_does_not_fit_the_task_is_told_before_the_process_is_replaced(
+    capsys, tmp_path: Path, monkeypatch
+):
+    from hyperleg_design.learning import launch
+
+    monkeypatch.setattr("hyperleg_design.cli.policies.require", lambda *names: None)
+    monkeypatch.setattr(launch, "run_here", lambda *given: pytest.fail("began"))
+    for design, task, words in (
+        ("mini_cheetah", "walk", "mini_cheetah lacks joints"),
+        ("teaching_leg", "walk_any", "trunk.motion = 'fixed'"),
+    ):
+        arguments = ("train", "--design", design, "--task", task, "--out", str(tmp_path / "new"))
+        code, _, error = run(capsys, *arguments)
+        assert code == 2
+        assert words in error
+        assert not (tmp_path / "new").exists()

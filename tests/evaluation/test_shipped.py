@@ -169,3 +169,15 @@ def test_trainings_of_other_robots_say_so(campaign):
     found = json.loads((one.path.parent / "run.json").read_text())
     (one.path.parent / "run.json").write_text(json.dumps({**found, "design": {"family": "tree"}}))
     assert one.family == "tree"
+
+
+def test_a_folder_of_a_training_is_its_policy_or_says_that_it_is_not_finished(tmp_path):
+    folder = tmp_path / "training"
+    folder.mkdir()
+    (folder / "run.json").write_text("{}")
+    for name in (folder, folder / "policy.onnx"):
+        with pytest.raises(InputError, match=r"--policy = .*the training is not finished"):
+            shipped.find_policy(name, "--policy")
+    (folder / "policy.onnx").write_bytes(b"onnx")
+    for name in (folder, folder / "policy.onnx"):
+        assert shipped.find_policy(name) == folder / "policy.onnx"
