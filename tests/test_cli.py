@@ -72,3 +72,53 @@ def test_completion_knows_every_verb(capsys):
     assert code == 0
     for verb in (*cli.VERBS, *cli.gap.VERBS):
         assert verb in out
+<<<<<<< HEAD
+=======
+
+
+def test_campaign_speaks_json(capsys, tmp_path: Path):
+    code, out, _ = run(capsys, "campaign", "status", "--out", str(tmp_path / "none"), "--json")
+    assert code == 0
+    found = json.loads(out)
+    assert len(found) == 64
+    assert {row["state"] for row in found} <= {"missing", "shipped"}
+
+
+def test_missing_trainings_are_named(tmp_path: Path):
+    from hyperleg_design.report.walks.evaluated import coverage, coverage_text
+
+    (tmp_path / "walk_upright-toe-0").mkdir()
+    (tmp_path / "walk_upright-toe-0" / "policy.onnx").write_bytes(b"x")
+    found = coverage(tmp_path)
+    assert found["evaluated"] == ["walk_upright-toe-0"]
+    assert len(found["missing"]) == 31 + 20  # four arms, seeds of walks and T-tests
+    text = coverage_text(found)
+    assert text.startswith("1 trainings are evaluated; of those that the study plans, 51 are miss")
+    assert "walk_upright-toe-1..7" in text
+    assert "t_test_free-toe_locked-0..4" in text
+
+
+def test_gap_alone_shows_its_verbs(capsys):
+    code, out, _ = run(capsys, "gap")
+    assert code == 0
+    assert "effects" in out
+    assert "apply" in out
+    code, _, err = run(capsys, "gap", "shwo")
+    assert code == 2
+    assert len(err.strip().splitlines()) == 1
+
+
+def test_validate_lists_its_cases_and_skips_those_whose_logs_are_absent(capsys, tmp_path: Path):
+    code, out, _ = run(capsys, "validate", "--list-cases", "--suites", "blind", "newcomers")
+    assert code == 0
+    assert "blind-000" in out
+    assert "new-two_link" in out
+    code, out, _ = run(
+        capsys, "validate", "--only", "go2", "--data", str(tmp_path), "--out", str(tmp_path / "o")
+    )
+    assert code == 0
+    assert "Skipped: 4 cases of go2_air" in out
+    code, _, error = run(capsys, "validate", "--only", "nothing_like_it")
+    assert code == 2
+    assert "fits no case" in error
+>>>>>>> adefaa7 (Show every arm of the T-test on the study's pages, and name its missing trainings)

@@ -17,11 +17,12 @@ from __future__ import annotations
 
 import difflib
 import hashlib
+import itertools
 import json
 import math
 import re
 import shutil
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -220,28 +221,37 @@ def find_policy(name: str | Path, where: str = "policy") -> Path:
     named = shipped_folder() / path / POLICY
     if len(path.parts) == 1 and named.is_file():
         return named
-    known = shipped_policies(late=False)
-    near = difflib.get_close_matches(str(name), [policy.training for policy in known], 1)
+    known = [policy.training for policy in shipped_policies(late=False)]
+    near = difflib.get_close_matches(str(name), known, 1)
     meant = f"did you mean {near[0]}? Shipped" if near else "shipped"
     raise InputError(
         where,
         "",
         str(name),
-        f"no such file; {meant}, with their seeds: {_briefly(known) or 'none'}",
+        f"no such file; {meant}, with their seeds: {trainings_text(known) or 'none'}",
     )
 
 
-def _briefly(policies: Sequence[Shipped]) -> str:
-    """Names of trainings, seeds together: `walk_upright-toe-1..4`."""
+def trainings_text(names: Iterable[str]) -> str:
+    """Write names of trainings briefly, consecutive seeds together.
+
+    Args:
+        names: such as `walk_upright-toe-1`.
+
+    Returns:
+        Such as `walk_upright-toe-1..4, walk_upright-toe-6`.
+    """
     seeds: dict[str, list[int]] = {}
-    for policy in policies:
-        seeds.setdefault(f"{policy.group}-{policy.design}", []).append(policy.seed)
-    return ", ".join(
-        f"{name}-{min(own)}..{max(own)}"
-        if len(own) == max(own) - min(own) + 1 > 1
-        else ", ".join(f"{name}-{s}" for s in own)
-        for name, own in seeds.items()
-    )
+    for name in names:
+        training, seed = name.rsplit("-", 1)
+        seeds.setdefault(training, []).append(int(seed))
+    texts = []
+    for training, own in seeds.items():
+        for first in sorted(own):
+            if first - 1 not in own:  # the first of consecutive ones
+                last = next(s for s in itertools.count(first) if s + 1 not in own)
+                texts.append(f"{training}-{first}" + (f"..{last}" if last > first else ""))
+    return ", ".join(texts)
 
 
 def learning_curve(training: str | Path, rows: int = CURVE_ROWS) -> list[dict[str, float]]:

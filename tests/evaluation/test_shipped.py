@@ -5,7 +5,6 @@ else.
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -134,11 +133,9 @@ def test_a_training_of_a_name_is_found(campaign, tmp_path, monkeypatch):
 
 
 def test_seeds_of_a_name_are_told_together():
-    names = [
-        shipped.Shipped("walk", design, seed, 0, Path())
-        for design, seed in (("a", 0), ("a", 1), ("a", 2), ("b", 0), ("b", 2), ("c", 4))
-    ]
-    assert shipped._briefly(names) == "walk-a-0..2, walk-b-0, walk-b-2, walk-c-4"
+    names = ["walk-a-1", "walk-a-0", "walk-a-2", "walk-b-0", "walk-b-2", "walk-b-3", "walk-c-4"]
+    assert shipped.trainings_text(names) == "walk-a-0..2, walk-b-0, walk-b-2..3, walk-c-4"
+    assert shipped.trainings_text([]) == ""
 
 
 def test_no_shipped_policy_is_no_error_but_a_wrong_folder_is(tmp_path, monkeypatch):

@@ -180,6 +180,22 @@ def found(walks, course_run, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def courses(course_run, tmp_path_factory):
+    """T-tests of three arms, two seeds of two policies each; arms and policies differ in time."""
+    place = tmp_path_factory.mktemp("courses")
+    policies, evaluations = [], []
+    for arm, design in enumerate(("toe", "toe_locked", "toe_removed_matched")):
+        for seed in range(2):
+            for late in range(2):
+                path = place / f"t_test_free-{design}-{seed}" / f"{late}.onnx"
+                policies.append(Shipped("t_test_free", design, seed, late, path))
+                change = 0.025 * arm + 0.01 * seed + 0.002 * late
+                one = evaluation(course_run, TTestProtocol(), policies[-1].name, seed, change)
+                evaluations.append(one if seed == late == 0 else one.light(0))
+    return Evaluated(policies, evaluations)
+
+
+@pytest.fixture(scope="session")
 def trainings(tmp_path_factory):
     """A folder of three trainings whose policies hold the default posture."""
     onnx = pytest.importorskip("onnx")

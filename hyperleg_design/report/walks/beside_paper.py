@@ -289,7 +289,8 @@ def differences(evaluated: Evaluated, group: str, kind: str) -> Details:
 
 
 def short(estimate: Estimate) -> str:
-    """Write mean, interval and how many trials gave no value.
+    """Write mean, interval over trainings where there are several, and how many trials gave no
+    value.
 
     Args:
         estimate: the estimate.
@@ -299,7 +300,8 @@ def short(estimate: Estimate) -> str:
     """
     if not math.isfinite(estimate.mean):
         return "–"
-    return interval(estimate.mean, estimate.low, estimate.high, "") + (
+    low = estimate.low if estimate.speaks_of_seeds else math.nan
+    return interval(estimate.mean, low, estimate.high, "") + (
         f" ({estimate.missing} missing)" if estimate.missing else ""
     )
 

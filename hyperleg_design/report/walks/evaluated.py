@@ -16,7 +16,12 @@ from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_pr
 from hyperleg_design.evaluation.result import Evaluation
 from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.robustness import CONDITIONS, robustness
-from hyperleg_design.evaluation.shipped import Shipped, check_different, shipped_policies
+from hyperleg_design.evaluation.shipped import (
+    Shipped,
+    check_different,
+    shipped_policies,
+    trainings_text,
+)
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.learning.campaign import load_campaign, shipped_starts
 
@@ -27,6 +32,8 @@ if TYPE_CHECKING:
 
 WALK, T_TEST = "walk", "t_test"
 """Kinds of protocol."""
+CAMPAIGNS = ("campaign", "campaign_t_test")
+"""Campaigns whose arms the analysis plan compares; `campaign_rewards` asks another question."""
 TIME_CONSTANTS = (0.01, 0.014, 0.02, 0.028, 0.04)
 """Time constants of the contact over which impacts are shown [s]; the first is the stiffest that
 steps of 5 ms allow."""
@@ -44,7 +51,7 @@ class Evaluated:
     evaluations: list[Evaluation]
     """Evaluations of all policies."""
     missing: list[str] = field(default_factory=list)
-    """Trainings of the shipped campaign that are not there."""
+    """Trainings of the study's campaigns that are not there."""
     band: Mapping[str, Mapping[float, list[Evaluation]]] = field(default_factory=dict)
     """Walks over a band of contact time constants [s], by design."""
     speeds: Mapping[str, pd.DataFrame] = field(default_factory=dict)
@@ -155,7 +162,7 @@ def evaluate_shipped(
 ) -> Evaluated:
     """Evaluate all policies of a folder of trainings, each under the protocol that suits its task.
 
-    Policies that the shipped campaign lists as mere starts of others are left out.
+    Policies that a shipped campaign lists as mere starts of others are left out.
 
     Args:
         folder: of trainings; the shipped policies by default.
@@ -243,36 +250,21 @@ def evaluate_shipped(
 
 
 def missing_trainings(policies: Sequence[Shipped]) -> list[str]:
-    """List the trainings of the shipped campaign that none of the policies comes from.
+    """List the trainings of the study's campaigns that none of the policies comes from.
 
     Args:
         policies: that are there.
 
     Returns:
-        Names of the trainings.
+        Names of the trainings, campaign by campaign, by group and design.
     """
     there = {p.training for p in policies}
-    return [run.name for run in load_campaign().runs if run.compared and run.name not in there]
-
-
-def missing_text(names: Sequence[str]) -> str:
-    """Write names of trainings by group and design, such as `walk toe (seed 0, 1)`.
-
-    Args:
-        names: of the trainings.
-
-    Returns:
-        The text.
-    """
-    seeds: dict[str, list[str]] = {}
-    for name in names:
-        training, seed = name.rsplit("-", 1)
-        seeds.setdefault(training.replace("-", " "), []).append(seed)
-    return "; ".join(f"{training} (seed {', '.join(some)})" for training, some in seeds.items())
+    runs = [run for campaign in CAMPAIGNS for run in load_campaign(campaign).runs if run.compared]
+    return [run.name for run in runs if run.name not in there]
 
 
 def coverage(folder: str | Path | None = None) -> dict[str, list[str]]:
-    """Trainings of a folder that will be evaluated, and those of the campaign that it lacks.
+    """Trainings of a folder that will be evaluated, and those of the study that it lacks.
 
     Args:
         folder: of trainings; the shipped policies by default.
@@ -303,8 +295,8 @@ def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:
     if not missing:
         return ""
     return (
-        f"{len(evaluated)} trainings are evaluated; {len(missing)} of the campaign's are missing: "
-        f"{missing_text(missing)}"
+        f"{len(evaluated)} trainings are evaluated; of those that the study plans, {len(missing)} "
+        f"are missing: {trainings_text(missing)}"
     )
 
 

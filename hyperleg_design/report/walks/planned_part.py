@@ -28,10 +28,10 @@ HEAD = [
     "toe",
     "compared",
     "change",
+    "verdict",
     "p",
     "p, corrected",
     "smallest detectable change",
-    "verdict",
     "trainings",
     "trials without a value",
 ]
@@ -149,10 +149,10 @@ def _cells(row: PlannedRow) -> list[Any]:
         row.active,
         row.compared,
         percent(row.change, row.low, row.high),
+        Cell(words, _MARK.get(row.verdict, "note")),
         row.p_value,
         row.corrected,
         percent(row.detectable, math.nan, math.nan).lstrip("+"),
-        Cell(words, _MARK.get(row.verdict, "note")),
         f"{row.trainings[0]}, {row.trainings[1]}",
         f"{row.missing[0]}, {row.missing[1]}",
     ]

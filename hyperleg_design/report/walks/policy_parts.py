@@ -8,26 +8,19 @@ from typing import Any
 
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.result import by_checkpoint
-from hyperleg_design.evaluation.shipped import learning_curve
+from hyperleg_design.evaluation.shipped import learning_curve, trainings_text
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.page import Cell, Details, Table
-from hyperleg_design.report.pictures import gif, motion
 from hyperleg_design.report.sizing.envelope_figures import torque_speed_figure
 from hyperleg_design.report.style import later, save
 from hyperleg_design.report.walks import walk_parts as walks
-from hyperleg_design.report.walks.beside_paper import (
-    beside,
-    differences,
-    rows_beside_paper,
-    toe_sentence,
-)
-from hyperleg_design.report.walks.evaluated import T_TEST, WALK, Evaluated, missing_text
+from hyperleg_design.report.walks.arms_part import arms
+from hyperleg_design.report.walks.confound_part import confound
+from hyperleg_design.report.walks.evaluated import CAMPAIGNS, T_TEST, WALK, Evaluated
 from hyperleg_design.report.walks.learning_figures import learning_figure
 from hyperleg_design.report.walks.planned_part import planned, planned_rows
-from hyperleg_design.report.walks.t_test_figures import t_test_figure
-from hyperleg_design.report.walks.time_table import time_table
-from hyperleg_design.report.walks.versus_figures import change_figure
+from hyperleg_design.report.walks.t_test_part import table_four
 from hyperleg_design.report.walks.walk_figures import operating_points_figure
 
 
@@ -49,13 +42,13 @@ def parts(evaluated: Evaluated, draw: Drawer) -> list[Part]:
         list_of_parts += [
             walks.walks(evaluated, draw),
             walks.table_three(evaluated, draw),
-            walks.confound(evaluated, draw),
             walks.cycle(evaluated, draw),
         ]
     if evaluated.speeds:
         list_of_parts.append(walks.speeds(evaluated, draw))
     if evaluated.groups(T_TEST):
-        list_of_parts.append(_table_four(evaluated, draw))
+        list_of_parts.append(table_four(evaluated, draw))
+    list_of_parts += [arms(evaluated), confound(evaluated, draw)]
     if evaluated.band:
         list_of_parts.append(walks.impacts(evaluated, draw))
     return [*list_of_parts, _motors(evaluated, draw), _learning(evaluated, draw)]
@@ -113,9 +106,9 @@ def _what(evaluated: Evaluated) -> Part:
         ),
     ]
     content.append(
-        f"Of the campaign's trainings {len(evaluated.missing)} are not there: {missing_text(evaluated.missing)}."
+        f"Of the trainings that the study plans ({', '.join(f'{name}.yaml' for name in CAMPAIGNS)}), {len(evaluated.missing)} are not there: {trainings_text(evaluated.missing)}."
         if evaluated.missing
-        else "All trainings of the campaign are there."
+        else "All trainings that the study plans are there."
     )
     content.append(_deviations(evaluated))
     return Part("What was evaluated", content)
@@ -139,70 +132,6 @@ def _deviations(evaluated: Evaluated) -> Any:
         "What is not the paper's: reward terms and observations",
         [Table(["group", "term", "what it is"], rows)],
     )
-
-
-def _table_four(evaluated: Evaluated, draw: Drawer) -> Part:
-    content: list[Any] = [
-        "The Robot T-test, A B C D B A with the human test's lengths and free torso yaw. Deviation is from the nearest point of the course; from the leg being run it stands in the table of differences."
-    ]
-    tables = {
-        name: rows
-        for name, rows in rows_beside_paper(evaluated).items()
-        if name.startswith("Table IV")
-    }
-    if not tables:
-        content.append(
-            "Table IV cannot be reproduced yet: no group has both of the paper's robots."
-        )
-    for name, rows in tables.items():
-        content += [*beside(rows, name), toe_sentence(rows)]
-    if tables:
-        content.append(
-            draw(
-                "table_4",
-                "Change that the toe makes: ours beside the paper's.",
-                lambda p: save(change_figure(tables), p),
-            )
-        )
-    for group in evaluated.groups(T_TEST):
-        runs = {d: evaluated.of(group, d) for d in evaluated.designs(group)}
-        shown = next(
-            (
-                evaluation.trials[0]
-                for some in runs.values()
-                for evaluation in some
-                if evaluation.trials
-            ),
-            None,
-        )
-        step = shown.time_step * shown.substeps if shown is not None else 0.02
-        content.append(
-            draw(
-                f"ways_{group}",
-                "Fig. 7: the course and the ways of all trials, coloured by speed; below, speed along the way.",
-                lambda p, runs=runs, step=step: save(t_test_figure(runs, step), p),  # type: ignore[misc]
-            )
-        )
-        jobs: list[Any] = []
-        for d, some in runs.items():
-            if (t := evaluated.shown(group, d)) is not None:
-                caption = f"A T-test, {d.replace('_', ' ')}; longer runs faster than true."
-                jobs.append(
-                    (
-                        f"{group}_{d}",
-                        caption,
-                        lambda p, t=t, evaluation=some[0]: gif.render_gif(
-                            motion.t_test_motion(t, evaluation.protocol), p
-                        ),
-                        ".gif",
-                        False,
-                    )
-                )
-        content.append(draw.together(jobs))
-        content.append(time_table(runs, group, step))
-        if set(VARIANTS) <= set(runs):
-            content.append(differences(evaluated, group, T_TEST))
-    return Part("Table IV: the T-test, beside the paper", content)
 
 
 def _motors(evaluated: Evaluated, draw: Drawer) -> Part:

@@ -52,28 +52,29 @@ def time_table(runs: Mapping[str, Sequence[Evaluation]], group: str, step: float
     Returns:
         The table; a sentence where no trial arrived.
     """
-    means = {design: stretch_means(some, step) for design, some in runs.items()}
+    means = {design.replace("_", " "): stretch_means(some, step) for design, some in runs.items()}
     means = {design: some for design, some in means.items() if some}
     if not means:
         return f"No T-test of {group.replace('_', ' ')} arrived, so its time is not broken down."
     names = list(next(iter(means.values())))
     head, rows = ["stretch"], [[name] for name in names]
     for design, some in means.items():
-        head += [f"{design}: time [s]", "mean speed [m/s]", "slowest", "fastest"]
+        head += [f"{design}: time [s]", "speed [m/s]"]
         for row in rows:
-            row += [f"{value:.2f}" for value in some[row[0]]]
+            time, mean, slowest, fastest = some[row[0]]
+            row += [f"{time:.2f}", f"{mean:.2f} ({slowest:.2f} to {fastest:.2f})"]
     turning = [
         f"{design}: {sum(v[0] for n, v in some.items() if n.startswith('turn')):.1f} s of "
         f"{sum(v[0] for v in some.values()):.1f} s"
         for design, some in means.items()
     ]
-    printed = {item.measure: item for item in paper.TABLE_FOUR}
-    time, speed = printed["time"], printed["mean_speed"]
+    printed = {item.measure: item.toe for item in paper.TABLE_FOUR}
     return Table(
         head,
         rows,
         f"Where the time goes, {group.replace('_', ' ')}: means over runs that arrived; a turn is "
-        f"the time within {NEAR:g} m of its waypoint; speeds are means over 0.2 s. Turning takes, "
-        f"{'; '.join(turning)}. The paper prints no times of legs: its runs took {time.toe:g} s "
-        f"with the toe at {speed.toe:g} m/s on average.",
+        f"the time within {NEAR:g} m of its waypoint. Of the speed, the mean, and the least and "
+        f"largest mean over 0.2 s. Turning takes, {'; '.join(turning)}. The paper prints no times "
+        f"of legs: its runs took {printed['time']:g} s with the toe at {printed['mean_speed']:g} "
+        "m/s on average.",
     )

@@ -1,5 +1,5 @@
-"""What evaluated walks say, as parts of a page: whether they are believable, Table III, the
-confound, Fig. 6, impacts.
+"""What evaluated walks say, as parts of a page: whether they are believable, Table III, Fig. 6,
+impacts.
 """
 
 from __future__ import annotations
@@ -9,13 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.evaluation import attribution, statistics
+from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.believable import walk_findings
 from hyperleg_design.evaluation.foot_pad import heel_mass, pad_of_contact
-from hyperleg_design.evaluation.measures import measure_of
 from hyperleg_design.evaluation.motion.steps import measured_steps
-from hyperleg_design.evaluation.plans.analysis_plan import counted
-from hyperleg_design.evaluation.result import by_checkpoint
 from hyperleg_design.evaluation.robustness import curves
 from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report.drawer import Drawer, Part
@@ -26,19 +23,15 @@ from hyperleg_design.report.walks.beside_paper import (
     beside,
     differences,
     interval,
-    percent,
     rows_beside_paper,
     toe_sentence,
     verdict,
 )
 from hyperleg_design.report.walks.evaluated import WALK, Evaluated
 from hyperleg_design.report.walks.robustness_figure import robustness_figure
-from hyperleg_design.report.walks.versus_figures import attribution_figure, change_figure
+from hyperleg_design.report.walks.versus_figures import change_figure
 from hyperleg_design.report.walks.walk_figures import cycle_power_figure, impact_band_figure
 from hyperleg_design.robot.load import walker
-
-ATTRIBUTED = ("power", "joule_power", "steady_cost_of_transport", "grf_peak", "grf_loading_rate")
-"""Measures whose difference is split into toe, torque and mass."""
 
 
 def walks(evaluated: Evaluated, draw: Drawer) -> Part:
@@ -165,71 +158,6 @@ def table_three(evaluated: Evaluated, draw: Drawer) -> Part:
         if set(VARIANTS) <= set(evaluated.designs(group))
     ]
     return Part("Table III: walking, beside the paper", content)
-
-
-def confound(evaluated: Evaluated, draw: Drawer) -> Part:
-    """Split the difference that the toe makes into toe, torque and mass.
-
-    Args:
-        evaluated: the policies with their trials.
-        draw: draws figures into the page's folder.
-
-    Returns:
-        The part.
-    """
-    ladder: list[Any] = [
-        "Taking the toe's motor away also weakens knee and ankle, which it helps, and lightens the leg. The ablations change one thing at a time: toe locked with its motor kept, toe and motor gone at equal mass, gone with their mass. "
-        "Each line is the one without less the one with."
-    ]
-    figures = {}
-    for group in evaluated.groups(WALK):
-        if len(set(attribution.LADDER) & set(evaluated.designs(group))) < 2:
-            continue
-        table = evaluated.table(group)
-        rows = []
-        shares = {}
-        for name in ATTRIBUTED:
-            some = counted(table, name)
-            groups = {
-                d: list(by_checkpoint(some[some["variant"] == d], name).values())
-                for d in evaluated.designs(group)
-            }
-            shares[name.replace("_", " ")] = found_shares = attribution.attribute(groups)
-            for share in found_shares:
-                change = share.change
-                rows.append(
-                    [
-                        name.replace("_", " "),
-                        share.cause,
-                        interval(change.mean, change.low, change.high, measure_of(name).unit),
-                        percent(change.relative, change.relative_low, change.relative_high),
-                        verdict(change.verdict),
-                    ]
-                )
-        ladder.append(
-            Table(
-                ["measure", "what is taken away", "change", "relative", "verdict"],
-                rows,
-                f"Group {group}: {' → '.join(d for d in attribution.LADDER if d in evaluated.designs(group))}.",
-            )
-        )
-        figures[group] = shares
-        absent = [d for d in attribution.LADDER if d not in evaluated.designs(group)]
-        if absent:
-            ladder.append(
-                f"Steps that need {', '.join(absent)} cannot be told in the group {group}: no such training is there."
-            )
-    for group, shares in figures.items():
-        ladder.append(
-            draw(
-                f"confound_{group}",
-                f"What each step takes away adds to the measures, group {group}.",
-                later(attribution_figure, shares),
-            )
-        )
-    if not figures:
-        ladder.append("Cannot be told yet: no group has two of the ablations.")
-    return Part("How much is the toe, how much the lost torque, how much the mass", ladder)
 
 
 def cycle(evaluated: Evaluated, draw: Drawer) -> Part:

@@ -74,15 +74,18 @@ def test_rows_carry_design_and_seed_of_the_folder(evaluated):
     }
 
 
-def test_missing_trainings_are_those_of_the_campaign(evaluated):
+def test_missing_trainings_are_those_of_the_study(evaluated):
     missing = evaluated[0].missing
     assert "walk_upright-toe-0" not in missing
     assert {
         "walk_upright-toe-2",
         "walk_upright-toe_locked-0",
         "walk_upright-toe_removed_matched-7",
+        "t_test_free-toe-0",
+        "t_test_free-toe_locked-4",
     } <= set(missing)
-    assert not any(name.startswith("walk_guided") for name in missing)  # others start from them
+    groups = {name.split("-")[0] for name in missing}
+    assert groups == {"walk_upright", "t_test_free"}  # others only start from the guided ones
 
 
 def test_an_empty_folder_gives_nothing_and_a_wrong_one_is_told(tmp_path):

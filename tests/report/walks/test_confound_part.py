@@ -9,7 +9,9 @@ import pytest
 from hyperleg_design.evaluation.attribution import WHOLE
 from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Table
-from hyperleg_design.report.walks import walk_parts as study_walks
+from hyperleg_design.report.walks import walk_parts
+from hyperleg_design.report.walks.confound_part import ATTRIBUTED, confound
+from hyperleg_design.report.walks.evaluated import T_TEST
 
 
 @pytest.fixture
@@ -19,7 +21,7 @@ def draw(tmp_path):
 
 
 def test_steps_that_need_missing_ablations_are_named(found, draw):
-    content = study_walks.confound(found, draw).content
+    content = confound(found, draw).content
     (table,) = (item for item in content if isinstance(item, Table))
     assert {row[1] for row in table.rows} == {WHOLE}
     assert any(
@@ -43,7 +45,7 @@ def test_the_whole_ladder_is_split(found, draw):
             policies.append(dataclasses.replace(first, design=design, seed=seed, path=path))
             evaluations.append(dataclasses.replace(one, policy=f"walk-{design}-{seed}/policy"))
     whole = dataclasses.replace(found, policies=policies, evaluations=evaluations)
-    content = study_walks.confound(whole, draw).content
+    content = confound(whole, draw).content
     (table,) = (item for item in content if isinstance(item, Table))
     power = [row for row in table.rows if row[0] == "power"]
     assert len(power) == 4
@@ -58,5 +60,29 @@ def test_without_two_ablations_nothing_is_split(found, draw):
     alone = dataclasses.replace(
         found, policies=[p for p, _ in toe], evaluations=[e for _, e in toe]
     )
-    assert study_walks.confound(alone, draw).content[-1].startswith("Cannot be told yet")
-    assert study_walks.table_three(alone, draw).content[-1].startswith("Cannot be reproduced yet")
+    assert confound(alone, draw).content[-1].startswith("Cannot be told yet")
+    assert walk_parts.table_three(alone, draw).content[-1].startswith("Cannot be reproduced yet")
+
+
+def test_t_tests_are_split_as_walks_are(courses, draw):
+    content = confound(courses, draw).content
+    (table,) = (item for item in content if isinstance(item, Table))
+    assert table.caption == "Group t_test_free: toe → toe_locked → toe_removed_matched."
+    assert len(table.rows) == 3 * len(ATTRIBUTED[T_TEST])
+    whole = next(row for row in table.rows if row[:2] == ["time", WHOLE])
+    assert whole[3].startswith("+5.")  # the fixture's arms take 0 and 5 % longer than planned
+
+
+def test_an_arm_of_one_training_is_left_out(courses, draw):
+    pairs = [
+        (p, e)
+        for p, e in zip(courses.policies, courses.evaluations, strict=True)
+        if p.seed == 0 or p.design != "toe_locked"
+    ]
+    fewer = dataclasses.replace(
+        courses, policies=[p for p, _ in pairs], evaluations=[e for _, e in pairs]
+    )
+    content = confound(fewer, draw).content
+    (table,) = (item for item in content if isinstance(item, Table))
+    assert {row[1] for row in table.rows} == {WHOLE}
+    assert any("toe_locked" in item and "not two" in item for item in content if type(item) is str)

@@ -1,0 +1,98 @@
+"""Evaluated T-tests beside Table IV of the paper, with their ways and where their time goes, as a
+part of a page.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hyperleg_design.evaluation.versus_paper import VARIANTS
+from hyperleg_design.report.drawer import Drawer, Part
+from hyperleg_design.report.pictures import gif, motion
+from hyperleg_design.report.style import save
+from hyperleg_design.report.walks.beside_paper import (
+    beside,
+    differences,
+    rows_beside_paper,
+    toe_sentence,
+)
+from hyperleg_design.report.walks.evaluated import T_TEST, Evaluated
+from hyperleg_design.report.walks.t_test_figures import t_test_figure
+from hyperleg_design.report.walks.time_table import time_table
+from hyperleg_design.report.walks.versus_figures import change_figure
+
+
+def table_four(evaluated: Evaluated, draw: Drawer) -> Part:
+    """Compare T-tests with Table IV of the paper, and draw the ways of all arms.
+
+    Args:
+        evaluated: the policies with their trials.
+        draw: draws figures into the page's folder.
+
+    Returns:
+        The part.
+    """
+    content: list[Any] = [
+        "The Robot T-test, A B C D B A with the human test's lengths and free torso yaw. Deviation "
+        "is from the nearest point of the course; from the leg being run it stands in the table of "
+        "all arms."
+    ]
+    tables = {
+        name: rows
+        for name, rows in rows_beside_paper(evaluated).items()
+        if name.startswith("Table IV")
+    }
+    if not tables:
+        content.append(
+            "Table IV cannot be reproduced yet: no group has both of the paper's robots."
+        )
+    for name, rows in tables.items():
+        content += [*beside(rows, name), toe_sentence(rows)]
+    if tables:
+        content.append(
+            draw(
+                "table_4",
+                "Change that the toe makes: ours beside the paper's.",
+                lambda p: save(change_figure(tables), p),
+            )
+        )
+    for group in evaluated.groups(T_TEST):
+        runs = {d: evaluated.of(group, d) for d in evaluated.designs(group)}
+        shown = next(
+            (
+                evaluation.trials[0]
+                for some in runs.values()
+                for evaluation in some
+                if evaluation.trials
+            ),
+            None,
+        )
+        step = shown.time_step * shown.substeps if shown is not None else 0.02
+        content.append(
+            draw(
+                f"ways_{group}",
+                "Fig. 7: the course and the ways of all trials, coloured by speed; below, speed "
+                "along the way.",
+                lambda p, runs=runs, step=step: save(t_test_figure(runs, step), p),  # type: ignore[misc]
+            )
+        )
+        jobs: list[Any] = []
+        for d, some in runs.items():
+            if (t := evaluated.shown(group, d)) is not None:
+                caption = f"A T-test, {d.replace('_', ' ')}; longer runs faster than true."
+                jobs.append(
+                    (
+                        f"{group}_{d}",
+                        caption,
+                        lambda p, t=t, evaluation=some[0]: gif.render_gif(
+                            motion.t_test_motion(t, evaluation.protocol), p
+                        ),
+                        ".gif",
+                        False,
+                    )
+                )
+        content.append(draw.together(jobs))
+        content.append(time_table(runs, group, step))
+        if set(VARIANTS) <= set(runs):
+            content.append(differences(evaluated, group, T_TEST))
+    return Part("Table IV: the T-test, beside the paper", content)
