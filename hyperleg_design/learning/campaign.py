@@ -4,9 +4,9 @@ and resumed at will.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
-import signal
 import subprocess
 import time
 from collections.abc import Callable, Mapping
@@ -20,6 +20,7 @@ from hyperleg_design.learning import launch
 from hyperleg_design.learning.preset_file import load_preset
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.learning.status import CHECKPOINT, POLICY, RUN, read_status
+from hyperleg_design.processes import run_side_by_side
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.parameters.entries import checked_mapping, checked_whole_number
@@ -35,8 +36,6 @@ FINISHED = ("done", "shipped")
 training's name."""
 POLICIES = "policies"
 """Folder of the shipped policies in `sim/`."""
-POLL = 2.0
-"""Seconds between looks at the processes."""
 
 
 @dataclass(frozen=True)
@@ -252,40 +251,43 @@ def run_campaign(
     waiting = [
         s.run for s in campaign_status(campaign, folder) if s.state in ("missing", "stopped")
     ]
-    working: dict[str, subprocess.Popen[bytes]] = {}
-    failed, shown = [], 0.0
-    try:
-        while waiting or working:
-            for name in [name for name, process in working.items() if process.poll() is not None]:
-                if working.pop(name).returncode:
-                    failed.append(name)
-            ready = [run for run in waiting if _can_start(run, folder)]
-            if not ready and not working:
-                break
-            while ready and len(working) < (processes or campaign.processes):
-                run = ready.pop(0)
-                waiting.remove(run)
-                place = folder / run.name
-                place.mkdir(parents=True, exist_ok=True)
-                write_text(place / MARKER, "made by hyperleg\n")
-                arguments: dict[str, object] = {
-                    "task": run.task,
-                    "design": run.design,
-                    "seed": run.seed,
-                    "preset": run.preset,
-                    "out": place,
-                }
-                if run.start:
-                    arguments["start"] = _start_file(run, folder)
-                working[run.name] = launch.start(arguments, place / LOG)
-            if show is not None and time.monotonic() - shown > show_every:
-                shown = time.monotonic()
-                show(status_table(campaign_status(campaign, folder)))
-            time.sleep(POLL)
-    except KeyboardInterrupt:
-        pass
-    finally:
-        _stop(list(working.values()))
+    failed: list[str] = []
+    shown = 0.0
+
+    def started(run: Run) -> subprocess.Popen[bytes]:
+        place = folder / run.name
+        place.mkdir(parents=True, exist_ok=True)
+        write_text(place / MARKER, "made by hyperleg\n")
+        arguments: dict[str, object] = {
+            "task": run.task,
+            "design": run.design,
+            "seed": run.seed,
+            "preset": run.preset,
+            "out": place,
+        }
+        if run.start:
+            arguments["start"] = _start_file(run, folder)
+        return launch.start(arguments, place / LOG)
+
+    def ended(run: Run, code: int) -> None:
+        if code:
+            failed.append(run.name)
+
+    def watch() -> None:
+        nonlocal shown
+        if show is not None and time.monotonic() - shown > show_every:
+            shown = time.monotonic()
+            show(status_table(campaign_status(campaign, folder)))
+
+    with contextlib.suppress(KeyboardInterrupt):
+        run_side_by_side(
+            waiting,
+            started,
+            workers=processes or campaign.processes,
+            ready=lambda run: _can_start(run, folder),
+            ended=ended,
+            watch=watch,
+        )
     statuses = campaign_status(campaign, folder)
     if show is not None:
         show(status_table(statuses))
@@ -334,15 +336,6 @@ def _is_shipped(run: Run) -> bool:
     return (place / POLICY).exists() and all(
         content.get(key) == json.loads(json.dumps(value)) for key, value in today.items()
     )
-
-
-def _stop(processes: list[subprocess.Popen[bytes]]) -> None:
-    """Ask trainings to stop, and wait until they have written their checkpoints."""
-    for process in processes:
-        if process.poll() is None:
-            process.send_signal(signal.SIGTERM)
-    for process in processes:
-        process.wait()
 
 
 def _status(run: Run, folder: Path) -> RunStatus:

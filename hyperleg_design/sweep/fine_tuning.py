@@ -12,14 +12,11 @@ rewards and commands of its end, on the one design.
 
 from __future__ import annotations
 
-import contextlib
 import importlib.util
 import json
-import signal
 import subprocess
 import sys
-import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,6 +25,7 @@ from hyperleg_design.errors import InputError, OutputError, in_short
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.shipped import POLICY
 from hyperleg_design.evaluation.training_fit import RANGES
+from hyperleg_design.processes import run_side_by_side
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
@@ -44,8 +42,6 @@ Before it can judge the new design, it would teach the policy noise."""
 DEVIATION = 0.3
 """Largest standard deviation of the actions at the start; that of `sim/preset_designs.yaml`, which
 starts from walking policies, too."""
-_POLL = 0.5
-"""Time between looks at the processes [s]."""
 _STATUS = "status.json"
 
 
@@ -199,26 +195,17 @@ def fine_tune(trainings: Sequence[FineTuning], *, workers: int, progress: bool =
     for training in trainings:
         _write_inputs(training)
     waiting = [training for training in trainings if not training.result.is_file()]
-    failed: list[FineTuning] = []
-    running: dict[subprocess.Popen[bytes], FineTuning] = {}
     total = sum(training.steps for training in trainings)
-    with (
-        _stopped_at_the_end(running),
-        tqdm(
-            total=total, disable=not progress, unit="step", unit_scale=True, desc="fine-tuning"
-        ) as bar,
-    ):
-        while waiting or running:
-            while waiting and len(running) < workers:
-                training = waiting.pop(0)
-                running[_started(training)] = training
-            for process in [p for p in running if p.poll() is not None]:
-                training = running.pop(process)
-                if process.returncode or not training.result.is_file():
-                    failed.append(training)
-            bar.update(sum(t.steps_done() for t in trainings) - bar.n)
-            if running:
-                time.sleep(_POLL)
+    with tqdm(
+        total=total, disable=not progress, unit="step", unit_scale=True, desc="fine-tuning"
+    ) as bar:
+        run_side_by_side(
+            waiting,
+            _started,
+            workers=workers,
+            watch=lambda: bar.update(sum(t.steps_done() for t in trainings) - bar.n),
+        )
+    failed = [training for training in waiting if not training.result.is_file()]
     if failed:
         first = failed[0]
         raise InputError(
@@ -266,19 +253,6 @@ def _started(training: FineTuning) -> subprocess.Popen[bytes]:
         command += [f"--{name}", str(value)]
     with training.log.open("ab") as stream:
         return subprocess.Popen(command, stdout=stream, stderr=stream, stdin=subprocess.DEVNULL)
-
-
-@contextlib.contextmanager
-def _stopped_at_the_end(running: Mapping[subprocess.Popen[bytes], FineTuning]) -> Iterator[None]:
-    """Ask the trainings that still run to stop, and wait until their checkpoints are written."""
-    try:
-        yield
-    finally:
-        for process in running:
-            if process.poll() is None:
-                process.send_signal(signal.SIGTERM)
-        for process in running:
-            process.wait()
 
 
 def _last_line(log: Path) -> str:

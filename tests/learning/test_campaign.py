@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
+from hyperleg_design import processes
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.plans.analysis_plan import load_plan
 from hyperleg_design.evaluation.protocol import load_protocol
@@ -143,7 +144,7 @@ def test_trains_what_is_missing_with_processes_of_its_own(
     pytest.importorskip("torch")
     pytest.importorskip("rsl_rl")
     pytest.importorskip("tensorboard")
-    monkeypatch.setattr(module, "POLL", 0.1)
+    monkeypatch.setattr(processes, "POLL", 0.1)
     tiny = tiny_mapping()
     tiny["tasks"]["walk"] = [{"name": "all", "steps": 64}]
     preset = write("tiny.yaml", yaml.safe_dump(tiny))
@@ -165,7 +166,7 @@ def test_trains_what_is_missing_with_processes_of_its_own(
 def test_a_failed_training_is_reported(
     write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(module, "POLL", 0.05)
+    monkeypatch.setattr(processes, "POLL", 0.05)
     monkeypatch.setattr(
         module.launch,
         "command",
@@ -189,7 +190,7 @@ def test_an_interrupt_stops_the_trainings(
 
     monkeypatch.setattr(module.launch, "start", start)
     monkeypatch.setattr(
-        module.time, "sleep", lambda seconds: (_ for _ in ()).throw(KeyboardInterrupt)
+        processes.time, "sleep", lambda seconds: (_ for _ in ()).throw(KeyboardInterrupt)
     )
     assert not run_campaign(load_campaign(write("c.yaml", yaml.safe_dump(DATA))), tmp_path / "out")
     assert [p.poll() for p in started] == [-signal.SIGTERM] * 2

@@ -9,6 +9,7 @@ import time
 import pytest
 import yaml
 
+from hyperleg_design import processes
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.training_fit import training_fit
@@ -171,7 +172,7 @@ time.sleep(60)
 
     waited = time.sleep
     monkeypatch.setattr(fine_tuning, "_started", started)
-    monkeypatch.setattr(fine_tuning.time, "sleep", sleep)
+    monkeypatch.setattr(processes.time, "sleep", sleep)
     with pytest.raises(KeyboardInterrupt):
         fine_tune([job(tmp_path)], workers=1, progress=False)
     assert (tmp_path / "7" / "run.stopped").exists()
