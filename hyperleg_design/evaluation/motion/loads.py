@@ -10,17 +10,6 @@ if TYPE_CHECKING:
     from hyperleg_design.evaluation.motion.motor_use import MotorUse
     from hyperleg_design.evaluation.rollout import Trial
 
-LOADS = (
-    "stop_share",
-    "stop_overshoot",
-    "stop_absorbed_power",
-    "stop_returned_power",
-    "vibration",
-    "limit_share",
-    "continuous_use",
-    "thermal_peak",
-)
-"""Names of `load_measures`."""
 WHOLE = slice(None)
 
 
@@ -33,7 +22,7 @@ def load_measures(trial: Trial, use: MotorUse, part: slice = WHOLE) -> dict[str,
         part: samples of the stretch; all of them by default.
 
     Returns:
-        The measures by name, in the order of `LOADS`.
+        The measures by name, those of `measures.BEARING` but for `largest_tilt`.
     """
     layout, position, velocity = (
         trial.layout,

@@ -96,16 +96,6 @@ def measured_steps(trial: Trial, events: Events) -> gait.Steps:
     return _contacts_and_steps(trial, events)[1]
 
 
-IMPACTS = (
-    "grf_peak",
-    "grf_peak_body_weights",
-    "grf_raw_peak",
-    "grf_loading_rate",
-    "grf_impulse",
-)
-"""Names of `impact_measures`."""
-
-
 def impact_measures(trial: Trial, steps: gait.Steps, settings: Impact) -> dict[str, float]:
     """Compute the means of the impacts over the touchdowns of all feet.
 

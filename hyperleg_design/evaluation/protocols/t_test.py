@@ -9,12 +9,12 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import rollout
+from hyperleg_design.evaluation.measures import T_TEST
 from hyperleg_design.evaluation.motion import bearing
-from hyperleg_design.evaluation.motion.loads import LOADS, load_measures
+from hyperleg_design.evaluation.motion.loads import load_measures
 from hyperleg_design.evaluation.motion.motor_use import MotorUse, motor_use
 from hyperleg_design.evaluation.motion.power import flows, ledger
 from hyperleg_design.evaluation.motion.steps import (
-    IMPACTS,
     impact_measures,
     measured_steps,
     step_measures,
@@ -100,11 +100,12 @@ def measure_t_test(
         trial cannot give is NaN. A diverged trial gives NaN for all of them, and None for the use.
     """
     waypoints = tuple(f"waypoint_{i}" for i in range(1, len(protocol.order)))
-    measures = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(
-        trial
-    )
+    measures = dict.fromkeys((*T_TEST, *waypoints), np.nan) | {
+        "arrived": float(trial.outcome == rollout.ARRIVED),
+        **rollout.outcome_measures(trial),
+    }
     if trial.outcome == rollout.DIVERGED or trial.samples < 2:
-        return measures | dict.fromkeys((*_MEASURES, *waypoints), np.nan), None
+        return measures, None
     heading = bearing.headings(trial.base_orientation)
     place = course.in_start_frame(
         trial.base_position[:, :2], trial.base_position[0, :2], heading[0]
@@ -150,7 +151,7 @@ def measure_t_test(
         if way > 1.0
         else np.nan,
         **impact_measures(trial, steps, protocol.impact),
-        **{name: stepped[name] for name in _OF_STEPS},
+        **{name: value for name, value in stepped.items() if name in T_TEST},
         "largest_tilt": float(bearing.tilt(trial.base_orientation).max()),
         **load_measures(trial, use),
         **dict(zip(waypoints, times, strict=True)),
@@ -175,39 +176,3 @@ def reached_samples(trial: Trial, place: np.ndarray, protocol: TTestProtocol) ->
     if trial.outcome == rollout.ARRIVED:
         reached[-1] = trial.samples
     return reached
-
-
-_OF_STEPS = (
-    "cadence",
-    "step_length",
-    "duty_factor",
-    "double_support",
-    "flight",
-    "slip_per_step",
-    "foot_drift",
-    "largest_slip",
-)
-_MEASURES = (
-    "time",
-    "waypoints_reached",
-    "distance",
-    "mean_speed",
-    "peak_speed",
-    "mean_deviation",
-    "peak_deviation",
-    "mean_leg_deviation",
-    "peak_leg_deviation",
-    "turned",
-    "power",
-    "joule_power",
-    "mechanical_power",
-    "positive_power",
-    "negative_power",
-    "battery_power",
-    "energy",
-    "cost_of_transport",
-    *IMPACTS,
-    *_OF_STEPS,
-    "largest_tilt",
-    *LOADS,
-)

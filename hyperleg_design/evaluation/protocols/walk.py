@@ -9,13 +9,13 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import rollout
+from hyperleg_design.evaluation.measures import WALK
 from hyperleg_design.evaluation.motion import bearing, gait
-from hyperleg_design.evaluation.motion.landmarks import LANDMARKS, landmark_measures
-from hyperleg_design.evaluation.motion.loads import LOADS, load_measures
+from hyperleg_design.evaluation.motion.landmarks import landmark_measures
+from hyperleg_design.evaluation.motion.loads import load_measures
 from hyperleg_design.evaluation.motion.motor_use import MotorUse, motor_use
-from hyperleg_design.evaluation.motion.power import LEG_MEANS, cycle_power, flows, ledger
+from hyperleg_design.evaluation.motion.power import cycle_power, flows, ledger
 from hyperleg_design.evaluation.motion.steps import (
-    IMPACTS,
     impact_measures,
     measured_steps,
     step_measures,
@@ -117,24 +117,25 @@ def measure_walk(trial: Trial, protocol: WalkProtocol) -> Measured:
         Measures by name, see `measures.WALK`; use of the motors and right-leg power, None without a
         steady state, the power also without a left and a right leg.
     """
-    measures = {"arrived": float(trial.outcome == rollout.ARRIVED)} | rollout.outcome_measures(
-        trial
-    )
+    measures = dict.fromkeys(WALK, np.nan) | {
+        "arrived": float(trial.outcome == rollout.ARRIVED),
+        **rollout.outcome_measures(trial),
+    }
     if trial.outcome == rollout.DIVERGED or not trial.samples:
-        return measures | dict.fromkeys((*_RUN, *_STEADY), np.nan), None, None
+        return measures, None, None
     away = np.linalg.norm(trial.base_position[:, :2] - trial.base_position[0, :2], axis=-1)
     measures |= _run_measures(trial, away, protocol)
     window = steady_window(trial, away, protocol)
     if window is None:
-        return measures | dict.fromkeys(_STEADY, np.nan), None, None
+        return measures, None, None
     use = motor_use(trial, *window)
     steady, steps = _steady_measures(trial, window, use, protocol)
+    measures |= steady
     if trial.layout.limbs != SIDES:
-        nothing = {f"right_{name}_power": np.nan for name in LEG_MEANS}
-        return measures | steady | nothing, use, None
+        return measures, use, None
     cycle = cycle_power(trial, steps)
-    leg = {f"right_{name}_power": value for name, value in cycle.means.items()}
-    return measures | steady | leg, use, cycle
+    measures |= {f"right_{name}_power": value for name, value in cycle.means.items()}
+    return measures, use, cycle
 
 
 def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tuple[int, int] | None:
@@ -157,58 +158,6 @@ def steady_window(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> tup
     if window is None or len(steps.within(*window).foot) < 2 * STRIDES:
         return None
     return window
-
-
-_RUN = (
-    "time",
-    "distance",
-    "path",
-    "mean_speed",
-    "sideways",
-    "turned",
-    "power",
-    "joule_power",
-    "mechanical_power",
-    "positive_power",
-    "negative_power",
-    "driver_loss",
-    "battery_power",
-    "energy",
-    "battery_energy",
-    "cost_of_transport",
-    "battery_cost_of_transport",
-    "largest_tilt",
-)
-_STEADY = (
-    "steady_speed",
-    "steady_power",
-    "steady_joule_power",
-    "steady_mechanical_power",
-    "steady_positive_power",
-    "steady_negative_power",
-    "steady_battery_power",
-    "steady_cost_of_transport",
-    "steady_battery_cost_of_transport",
-    *IMPACTS,
-    "cadence",
-    "step_length",
-    "step_width",
-    "duty_factor",
-    "heel_off",
-    "double_support",
-    "single_support",
-    "flight",
-    "alternation",
-    "heel_lead",
-    "heel_or_flat",
-    "slip_per_step",
-    "foot_drift",
-    "largest_slip",
-    *LANDMARKS,
-    "mean_tilt",
-    *LOADS,
-    *(f"right_{name}_power" for name in LEG_MEANS),
-)
 
 
 def _run_measures(trial: Trial, away: np.ndarray, protocol: WalkProtocol) -> dict[str, float]:
