@@ -23,8 +23,11 @@ from hyperleg_design.learning.status import CHECKPOINT, POLICY, RUN, read_status
 from hyperleg_design.processes import run_side_by_side
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.robot.parameters.entries import checked_mapping, checked_whole_number
-from hyperleg_design.robot.parameters.values import unknown
+from hyperleg_design.robot.parameters.entries import (
+    check_keys,
+    checked_mapping,
+    checked_whole_number,
+)
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.writing import MARKER, check_output_folder, write_text
 
@@ -118,7 +121,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
     """
     path = resources.find("sim", name)
     data, where = read_yaml(path), short_name(path)
-    _check_keys(data, ("name", "preset", "processes", "groups"), where, "", ("processes",))
+    check_keys(data, where, "", ("name", "preset", "groups"), ("processes",))
     processes = checked_whole_number(data.get("processes", 2), where, "processes", 1, 1000)
     groups = data["groups"]
     if not isinstance(groups, list) or not groups:
@@ -126,11 +129,11 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
     runs: list[tuple[int, int, int, Run]] = []
     names = set()
     for g, group in enumerate(groups):
-        _check_keys(
+        check_keys(
             checked_mapping(group, where, f"groups.{g}"),
-            ("name", "task", "designs", "seeds", "start", "preset", "compared"),
             where,
-            f"groups.{g}.",
+            f"groups.{g}",
+            ("name", "task", "designs", "seeds"),
             ("start", "preset", "compared"),
         )
         compared = group.get("compared", True)
@@ -371,18 +374,3 @@ def _alive(pid: int | None) -> bool:
 
 def _shown(value: Any, width: int) -> str:
     return f"{value:>{width}.2f}" if isinstance(value, int | float) else " " * width
-
-
-def _check_keys(
-    data: Mapping[str, Any],
-    known: tuple[str, ...],
-    where: str,
-    path: str,
-    optional: tuple[str, ...],
-) -> None:
-    for key in data:
-        if key not in known:
-            raise InputError(where, f"{path}{key}", data[key], unknown(str(key), list(known)))
-    for key in known:
-        if key not in data and key not in optional:
-            raise InputError(where, f"{path}{key}", None, "is missing")

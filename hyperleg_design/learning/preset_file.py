@@ -22,6 +22,7 @@ from hyperleg_design.learning.preset import (
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import (
+    check_keys,
     checked_mapping,
     checked_number,
     checked_whole_number,
@@ -174,16 +175,9 @@ def _stages(data: Any, where: str, path: str) -> tuple[Stage, ...]:
 
 
 def _stage(data: Any, where: str, path: str) -> Stage:
-    known = ("name", "steps", "assist", "assist_gone_by", "rewards", "commands", "ramps")
     data = checked_mapping(data, where, path)
-    for key in data:
-        if key not in known:
-            raise InputError(
-                where, f"{path}.{key}", data[key], parameters.unknown(str(key), list(known))
-            )
-    for key in ("name", "steps"):
-        if key not in data:
-            raise InputError(where, f"{path}.{key}", None, "is missing")
+    optional = ("assist", "assist_gone_by", "rewards", "commands", "ramps")
+    check_keys(data, where, path, ("name", "steps"), optional)
     rewards: dict[str, Mapping[str, float]] = {}
     for term, entry in checked_mapping(data.get("rewards", {}), where, f"{path}.rewards").items():
         values = entry if isinstance(entry, Mapping) else {"weight": entry}
@@ -216,17 +210,7 @@ def _stage(data: Any, where: str, path: str) -> Stage:
 
 def _ramp(data: Any, where: str, path: str) -> Ramp:
     data = checked_mapping(data, where, path)
-    for key in data:
-        if key not in ("set", "from", "to", "steps", "begins"):
-            raise InputError(
-                where,
-                f"{path}.{key}",
-                data[key],
-                parameters.unknown(str(key), ["set", "from", "to", "steps", "begins"]),
-            )
-    for key in ("set", "from", "to", "steps"):
-        if key not in data:
-            raise InputError(where, f"{path}.{key}", None, "is missing")
+    check_keys(data, where, path, ("set", "from", "to", "steps"), ("begins",))
     kind, _, rest = str(data["set"]).partition(".")
     name, _, parameter = rest.partition(".")
     if kind == "rewards" and name:

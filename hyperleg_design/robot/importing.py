@@ -29,6 +29,7 @@ from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robo
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motor_paths import with_motor_paths
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.entries import check_keys
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
 
@@ -93,9 +94,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     Raises:
         InputError: an unknown field, or a pattern that matches no joint.
     """
-    for key in data:
-        if key not in KEYS:
-            raise InputError(where, str(key), data[key], parameters.unknown(str(key), list(KEYS)))
+    check_keys(data, where, "", (), tuple(KEYS))
     moving = [n for n, j in robot.joints.items() if j.kind != "fixed"]
     locked = {
         name

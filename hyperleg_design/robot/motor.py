@@ -10,7 +10,7 @@ Cp`, because `V = R i + Ke omega` and `Ke = Kt` give `R V / (R Ke) = omega_0 Kt^
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from typing import Any
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.entries import check_keys
 from hyperleg_design.robot.parameters.fields import Rule
 
 CONFIDENCES = ("high", "medium", "low")
@@ -250,14 +251,8 @@ def load_motor(path: Path) -> Motor:
     """
     data = read_yaml(path)
     where = short_name(path)
-    _known(
-        data,
-        ("name", "vendor", "product", "kind", "description", "constants", "convention", "presets"),
-        where,
-    )
-    for key in ("name", "kind", "constants", "convention"):
-        if key not in data:
-            raise InputError(where, key, None, "is missing")
+    needed = ("name", "kind", "constants", "convention")
+    check_keys(data, where, "", needed, ("vendor", "product", "description", "presets"))
     if data["name"] != path.stem:
         raise InputError(where, "name", data["name"], f"must equal the file's name, {path.stem}")
     convention = data["convention"]
@@ -265,7 +260,9 @@ def load_motor(path: Path) -> Motor:
         raise InputError(
             where, "convention", convention, "expects a mapping with resistance and current"
         )
-    _known(convention, ("resistance", "current", "source", "confidence"), where, "convention.")
+    check_keys(
+        convention, where, "convention", (), ("resistance", "current", "source", "confidence")
+    )
     _one_of(convention.get("resistance"), ("line_line", "phase"), where, "convention.resistance")
     _one_of(convention.get("current"), tuple(_HEAT_FACTOR), where, "convention.current")
     _one_of(data["kind"], ("inrunner", "outrunner", "flat"), where, "kind")
@@ -293,13 +290,6 @@ def load_motor(path: Path) -> Motor:
     return motor
 
 
-def _known(data: Mapping[Any, Any], names: Iterable[str], where: str, path: str = "") -> None:
-    known = sorted(names)
-    for key in data:
-        if key not in known:
-            raise InputError(where, f"{path}{key}", data[key], parameters.unknown(str(key), known))
-
-
 def _one_of(value: Any, choices: tuple[str, ...], where: str, field: str) -> None:
     if value not in choices:
         raise InputError(where, field, value, f"expects one of {', '.join(choices)}")
@@ -311,7 +301,7 @@ def _constants(
     if not isinstance(data, Mapping):
         raise InputError(where, path, data, f"expects a mapping with {', '.join(required)}")
     rules = {**required, **optional}
-    _known(data, rules, where, f"{path}.")
+    check_keys(data, where, path, (), tuple(rules))
     missing = [f"{k} [{rule.unit or '-'}]" for k, rule in required.items() if k not in data]
     if missing:
         raise InputError(where, path, None, f"lacks {', '.join(missing)}")

@@ -17,7 +17,7 @@ from hyperleg_design.robot.mjcf import TIME_STEP
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
-from hyperleg_design.robot.parameters.entries import checked_mapping
+from hyperleg_design.robot.parameters.entries import check_keys, checked_mapping
 from hyperleg_design.simulation import human_gait
 from hyperleg_design.simulation.commands import VelocityCommands
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
@@ -260,24 +260,13 @@ def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
     Raises:
         InputError: unknown or missing field, or a value that makes no sense.
     """
-    known = {
-        "name",
-        "description",
-        "commands",
-        "observations",
-        "rewards",
-        "posture_deg",
-        "designs",
-        *_SECTIONS,
-    }
-    for key in data:
-        if key not in known:
-            raise InputError(
-                where, str(key), data[key], parameters.unknown(str(key), sorted(known))
-            )
-    for key in ("name", "commands", "observations", "rewards"):
-        if key not in data:
-            raise InputError(where, key, None, "is missing")
+    check_keys(
+        data,
+        where,
+        "",
+        ("name", "commands", "observations", "rewards"),
+        ("description", "posture_deg", "designs", *_SECTIONS),
+    )
     sections: dict[str, Any] = {
         key: parameters.from_mapping(cls, data[key], where, key)
         for key, cls in _SECTIONS.items()

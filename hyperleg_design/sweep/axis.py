@@ -14,7 +14,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.motors import catalogue, find_motor
 from hyperleg_design.robot.parameters import values as parameters
-from hyperleg_design.robot.parameters.entries import checked_number
+from hyperleg_design.robot.parameters.entries import check_keys, checked_number
 
 _KEYS = ("paths", "values", "low", "high", "steps", "log", "scale")
 _RANGE_KEYS = ("low", "high", "steps", "log")
@@ -126,7 +126,7 @@ def read_axis(name: str, data: Any, base: RobotDesign, where: str, *, grid: bool
         raise InputError(
             where, place, data, "expects a mapping with values, or with low, high and steps"
         )
-    _refuse_unknown(data, _KEYS, where, place)
+    check_keys(data, where, place, (), _KEYS)
     paths = _paths(name, data, base, where, place)
     scaled = "scale" in data
     inner, inner_place = (data["scale"], f"{place}.scale") if scaled else (data, place)
@@ -141,22 +141,12 @@ def read_axis(name: str, data: Any, base: RobotDesign, where: str, *, grid: bool
             raise InputError(
                 where, inner_place, inner, "expects values, or low, high and steps, of the factor"
             )
-        _refuse_unknown(inner, ("values", *_RANGE_KEYS), where, inner_place)
+        check_keys(inner, where, inner_place, (), ("values", *_RANGE_KEYS))
     axis = (
         _listed(name, paths, inner, scaled, base, where, inner_place) if "values" in inner else None
     )
     axis = axis or _range(name, paths, inner, scaled, where, inner_place, grid)
     return _checked(axis, base, where, inner_place)
-
-
-def _refuse_unknown(
-    data: Mapping[Any, Any], known: tuple[str, ...], where: str, place: str
-) -> None:
-    for key in data:
-        if key not in known:
-            raise InputError(
-                where, f"{place}.{key}", data[key], parameters.unknown(str(key), sorted(known))
-            )
 
 
 def _paths(

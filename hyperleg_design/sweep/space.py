@@ -32,6 +32,7 @@ from hyperleg_design.robot.load import load_robot, walker
 from hyperleg_design.robot.motor_paths import path_from_here
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.entries import check_keys
 from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.axis import Axis, read_axis
 from hyperleg_design.sweep.definition import AS_DESCRIBED, Map, Sweep
@@ -42,16 +43,14 @@ MAX_DESIGNS = 10_000_000
 """Above this a definition is taken for a mistake."""
 
 _NOT_AMONG = "is not among the sweep's measures; add it there"
-_KEYS = (
+_OPTIONAL = (
     "name",
     "description",
-    "design",
     "set",
     "variants",
     "sampling",
     "count",
     "seed",
-    "axes",
     "measures",
     "objectives",
     "maps",
@@ -114,14 +113,7 @@ def sweep_from_mapping(
     Raises:
         InputError: names `where`, field, value and remedy.
     """
-    for key in data:
-        if key not in _KEYS:
-            raise InputError(
-                where, str(key), data[key], parameters.unknown(str(key), sorted(_KEYS))
-            )
-    for key in ("design", "axes"):
-        if key not in data:
-            raise InputError(where, key, None, "is missing")
+    check_keys(data, where, "", ("design", "axes"), _OPTIONAL)
     base = _base(data, where, overrides or {})
     sampling = data.get("sampling", "grid")
     if sampling not in SAMPLINGS:

@@ -16,6 +16,7 @@ from hyperleg_design.evaluation.result import arrivals_only
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import (
+    check_keys,
     checked_mapping,
     checked_number,
     checked_whole_number,
@@ -150,15 +151,8 @@ def plan_from_mapping(data: Mapping[str, Any], where: str) -> AnalysisPlan:
         InputError: unknown or missing field, a measure that the protocol does not have, an outcome
             named twice, or one that needs arrivals and asks for all trials.
     """
-    known = ["name", "arms", "attribution", "seeds", "level", "power", "primary", "secondary"]
-    for key in data:
-        if key not in (*known, "plateau"):
-            raise InputError(
-                where, str(key), data[key], parameters.unknown(str(key), [*known, "plateau"])
-            )
-    for key in known:
-        if key not in data:
-            raise InputError(where, key, None, "is missing")
+    needed = ("name", "arms", "attribution", "seeds", "level", "power", "primary", "secondary")
+    check_keys(data, where, "", needed, ("plateau",))
     arms, seeds = data["arms"], data["seeds"]
     if not isinstance(arms, Mapping) or set(arms) != {"active", "compared"}:
         raise InputError(where, "arms", arms, "expects active and compared, a design each")

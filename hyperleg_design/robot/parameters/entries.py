@@ -1,14 +1,14 @@
-"""Single entries of a user's file: numbers and mappings that are no fields of a section."""
+"""Entries of a user's file that are no fields of a section: numbers, mappings and their keys."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters.fields import Rule
-from hyperleg_design.robot.parameters.values import checked
+from hyperleg_design.robot.parameters.values import checked, unknown
 
 
 def checked_number(
@@ -74,3 +74,32 @@ def checked_mapping(data: Any, where: str, path: str, of: str = "") -> Mapping[s
     if not isinstance(data, Mapping):
         raise InputError(where, path, data, f"expects a mapping {of}".rstrip())
     return data
+
+
+def check_keys(
+    data: Mapping[str, Any],
+    where: str,
+    path: str,
+    needed: Sequence[str],
+    optional: Sequence[str] = (),
+) -> None:
+    """Check that a mapping has the keys that it needs, and no unknown ones.
+
+    Args:
+        data: the mapping.
+        where: file, for error messages.
+        path: dotted path of the mapping; empty for that of the whole file.
+        needed: keys that must be there.
+        optional: further keys that may be there.
+
+    Raises:
+        InputError: an unknown key, with the nearest known one, or a missing key.
+    """
+    dot = f"{path}." if path else ""
+    for key in data:
+        if key not in (*needed, *optional):
+            remedy = unknown(str(key), sorted((*needed, *optional)))
+            raise InputError(where, f"{dot}{key}", data[key], remedy)
+    for key in needed:
+        if key not in data:
+            raise InputError(where, f"{dot}{key}", None, "is missing")

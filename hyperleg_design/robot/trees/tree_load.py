@@ -13,7 +13,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
-from hyperleg_design.robot.parameters.entries import checked_mapping
+from hyperleg_design.robot.parameters.entries import check_keys, checked_mapping
 from hyperleg_design.robot.parameters.values import Origin
 from hyperleg_design.robot.trees.tree_check import check_tree_design, ordered
 from hyperleg_design.robot.trees.tree_design import NAMED, TreeDesign, named_class, ratios_class
@@ -127,12 +127,7 @@ def tree_design_from_mapping(data: Mapping[str, Any], name: str, where: str) -> 
     name, variant = str(data.get("name", name)), str(data.get("variant", ""))
     rest = {k: v for k, v in data.items() if k not in ("name", "variant", "family", "description")}
     known = ("trunk", *NAMED, *(key for key in OPTIONAL if key not in NAMED))
-    for key in rest:
-        if key not in known:
-            raise InputError(where, str(key), rest[key], parameters.unknown(str(key), list(known)))
-    for key in known:
-        if key not in rest and key not in OPTIONAL:
-            raise InputError(where, key, None, "is missing")
+    check_keys(rest, where, "", [key for key in known if key not in OPTIONAL], tuple(OPTIONAL))
     sections = {
         key: dict(checked_mapping(rest.get(key, {}), where, key, SECTIONS)) for key in NAMED
     }

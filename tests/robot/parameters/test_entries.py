@@ -2,6 +2,7 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters.entries import (
+    check_keys,
     checked_mapping,
     checked_number,
     checked_whole_number,
@@ -46,3 +47,12 @@ def test_a_mapping_stays_the_same_and_anything_else_is_refused(given):
         checked_mapping(given, "file", "x")
     with pytest.raises(InputError, match="expects a mapping of names to sections"):
         checked_mapping(given, "file", "x", "of names to sections")
+
+
+def test_keys_are_known_and_complete():
+    check_keys({"name": 1, "steps": 2}, "file.yaml", "stage", ("name",), ("steps",))
+    check_keys({}, "file.yaml", "", ())
+    with pytest.raises(InputError, match=r"file\.yaml.*stage\.step.*did you mean steps"):
+        check_keys({"name": 1, "step": 2}, "file.yaml", "stage", ("name",), ("steps",))
+    with pytest.raises(InputError, match=r"file\.yaml: name.*is missing"):
+        check_keys({"steps": 2}, "file.yaml", "", ("name",), ("steps",))
