@@ -25,13 +25,13 @@ import torch
 from torch import nn
 from torch.nn import functional as F
 
-from hyperleg_design.learning.meter import Meter
+from hyperleg_design.learning.learner.symmetry import Mirrors
 from hyperleg_design.learning.preset_file import load_preset
-from hyperleg_design.learning.progress import finite
+from hyperleg_design.learning.records.meter import Meter
+from hyperleg_design.learning.records.progress import finite
+from hyperleg_design.learning.records.trial import trial
 from hyperleg_design.learning.schedule import Schedule
-from hyperleg_design.learning.symmetry import Mirrors
 from hyperleg_design.learning.training import TRIAL_SEED
-from hyperleg_design.learning.trial import trial
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task

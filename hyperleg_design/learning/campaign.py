@@ -18,8 +18,8 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning import launch
 from hyperleg_design.learning.preset_file import load_preset
+from hyperleg_design.learning.records.status import CHECKPOINT, POLICY, RUN, read_status
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
-from hyperleg_design.learning.status import CHECKPOINT, POLICY, RUN, read_status
 from hyperleg_design.processes import run_side_by_side
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.load import load_robot

@@ -68,12 +68,14 @@ class Network(Checked):
     """Whether observations are normalised by their running mean and deviation."""
     modulated: Any = flag(default=True)
     """Whether the design, where it is observed, scales and shifts the hidden features of actor and
-    critic (`learning/modulation.py`); otherwise it is an input like others."""
+    critic (`learning/learner/modulation.py`); otherwise it is an input like others."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class WarmStart(Checked):
-    """How a training begins that starts from another task's policy; `learning/warm_start.py`."""
+    """How a training begins that starts from another task's policy; see
+    `learning/policies/warm_start.py`.
+    """
 
     forward: Any = number("m/s", -5, 5, default=1.33)
     """Velocity command that the policy follows at first, straight ahead [m/s]."""

@@ -25,18 +25,18 @@ import torch
 
 from hyperleg_design import provenance
 from hyperleg_design.errors import InputError
-from hyperleg_design.learning.algorithm import IterationPPO
-from hyperleg_design.learning.device import HOST, check_device
-from hyperleg_design.learning.preset import Preset
-from hyperleg_design.learning.preset_file import load_preset
-from hyperleg_design.learning.resolved import preset_mapping, task_mapping
-from hyperleg_design.learning.status import (
-    RUN,
-)
-from hyperleg_design.learning.training import Training
-from hyperleg_design.learning.warm_start import (
+from hyperleg_design.learning.learner.algorithm import IterationPPO
+from hyperleg_design.learning.learner.device import HOST, check_device
+from hyperleg_design.learning.policies.warm_start import (
     read_start,
 )
+from hyperleg_design.learning.preset import Preset
+from hyperleg_design.learning.preset_file import load_preset
+from hyperleg_design.learning.records.status import (
+    RUN,
+)
+from hyperleg_design.learning.resolved import preset_mapping, task_mapping
+from hyperleg_design.learning.training import Training
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.alteration import Alterations

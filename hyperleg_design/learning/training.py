@@ -13,26 +13,31 @@ import torch
 from tensordict import TensorDict
 
 from hyperleg_design.errors import InputError, in_short
-from hyperleg_design.learning.algorithm import IterationPPO, as_tensors, make_algorithm
-from hyperleg_design.learning.checkpoint import load_checkpoint, save_checkpoint
 from hyperleg_design.learning.design_sampler import DesignSampler
-from hyperleg_design.learning.export import CRITIC_FORMAT, export_policy
-from hyperleg_design.learning.meter import Meter
-from hyperleg_design.learning.policy_metadata import policy_metadata
-from hyperleg_design.learning.preset import Preset
-from hyperleg_design.learning.progress import finite, log_measures, open_writer, progress_line
-from hyperleg_design.learning.resolved import task_mapping
-from hyperleg_design.learning.schedule import Schedule
-from hyperleg_design.learning.status import CHECKPOINT, CRITIC, POLICY, STATUS
-from hyperleg_design.learning.stop_requests import stop_requests
-from hyperleg_design.learning.trial import trial
-from hyperleg_design.learning.warm_start import (
+from hyperleg_design.learning.learner.algorithm import IterationPPO, as_tensors, make_algorithm
+from hyperleg_design.learning.policies.export import CRITIC_FORMAT, export_policy
+from hyperleg_design.learning.policies.policy_metadata import policy_metadata
+from hyperleg_design.learning.policies.warm_start import (
     StartPolicy,
     check_posture,
     fits_critic,
     start_actor,
     start_critic,
 )
+from hyperleg_design.learning.preset import Preset
+from hyperleg_design.learning.records.checkpoint import load_checkpoint, save_checkpoint
+from hyperleg_design.learning.records.meter import Meter
+from hyperleg_design.learning.records.progress import (
+    finite,
+    log_measures,
+    open_writer,
+    progress_line,
+)
+from hyperleg_design.learning.records.status import CHECKPOINT, CRITIC, POLICY, STATUS
+from hyperleg_design.learning.records.trial import trial
+from hyperleg_design.learning.resolved import task_mapping
+from hyperleg_design.learning.schedule import Schedule
+from hyperleg_design.learning.stop_requests import stop_requests
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.design_spread import DesignSpread

@@ -12,7 +12,14 @@ import pytest
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.learning.preset import Preset
 from hyperleg_design.learning.preset_file import preset_from_mapping
-from hyperleg_design.learning.status import CHECKPOINT, POLICY, PROGRESS, RUN, policies, read_status
+from hyperleg_design.learning.records.status import (
+    CHECKPOINT,
+    POLICY,
+    PROGRESS,
+    RUN,
+    policies,
+    read_status,
+)
 from hyperleg_design.simulation.design_observation import DesignRanges, Range
 from hyperleg_design.simulation.design_spread import DesignSpread
 
@@ -23,7 +30,7 @@ pytest.importorskip("tensorboard")
 
 from hyperleg_design.learning import train as module  # noqa: E402
 from hyperleg_design.learning import training  # noqa: E402
-from hyperleg_design.learning.checkpoint import load_checkpoint  # noqa: E402
+from hyperleg_design.learning.records.checkpoint import load_checkpoint  # noqa: E402
 from hyperleg_design.learning.train import train  # noqa: E402
 
 from .conftest import tiny_mapping  # noqa: E402
@@ -31,7 +38,7 @@ from .conftest import tiny_mapping  # noqa: E402
 
 @pytest.fixture(autouse=True)
 def short_trials(monkeypatch: pytest.MonkeyPatch) -> None:
-    from hyperleg_design.learning import trial
+    from hyperleg_design.learning.records import trial
 
     monkeypatch.setattr(trial, "WALK", 0.2)
     monkeypatch.setattr(trial, "COURSE", 0.2)

@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.learning import trial as module
-from hyperleg_design.learning.trial import trial
+from hyperleg_design.learning.records import trial as module
+from hyperleg_design.learning.records.trial import trial
 from hyperleg_design.robot.design import Design
 from hyperleg_design.simulation.tasks import load_task
 

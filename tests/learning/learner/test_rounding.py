@@ -6,7 +6,7 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from hyperleg_design.learning.rounding import RoundedLinear, round_layers  # noqa: E402
+from hyperleg_design.learning.learner.rounding import RoundedLinear, round_layers  # noqa: E402
 
 nn = torch.nn
 

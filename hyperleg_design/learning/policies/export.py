@@ -26,7 +26,7 @@ import numpy as np
 import torch
 
 from hyperleg_design.errors import OutputError
-from hyperleg_design.learning.modulation import ModulatedLayers, plain_layers
+from hyperleg_design.learning.learner.modulation import ModulatedLayers, plain_layers
 from hyperleg_design.writing import write_bytes
 
 if TYPE_CHECKING:

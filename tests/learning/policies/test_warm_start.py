@@ -17,11 +17,11 @@ ort = pytest.importorskip("onnxruntime")
 pytest.importorskip("rsl_rl")
 pytest.importorskip("tensorboard")
 
-from hyperleg_design.learning.algorithm import as_tensors  # noqa: E402
+from hyperleg_design.learning.learner.algorithm import as_tensors  # noqa: E402
+from hyperleg_design.learning.policies.warm_start import read_start  # noqa: E402
 from hyperleg_design.learning.preset import WarmStart  # noqa: E402
 from hyperleg_design.learning.train import describe, train  # noqa: E402
 from hyperleg_design.learning.training import Training  # noqa: E402
-from hyperleg_design.learning.warm_start import read_start  # noqa: E402
 from hyperleg_design.robot.design import load_design  # noqa: E402
 from hyperleg_design.simulation.tasks import Task, load_task  # noqa: E402
 

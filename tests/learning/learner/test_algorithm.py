@@ -12,7 +12,7 @@ from hyperleg_design.simulation.tasks import load_task
 torch = pytest.importorskip("torch")
 pytest.importorskip("rsl_rl")
 
-from hyperleg_design.learning.algorithm import IterationPPO, as_tensors, make_algorithm  # noqa: E402
+from hyperleg_design.learning.learner.algorithm import IterationPPO, as_tensors, make_algorithm  # noqa: E402
 from hyperleg_design.learning.preset import Preset  # noqa: E402
 
 

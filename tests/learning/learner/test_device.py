@@ -5,7 +5,7 @@ import json
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.learning.device import check_device
+from hyperleg_design.learning.learner.device import check_device
 from hyperleg_design.learning.train import train
 
 

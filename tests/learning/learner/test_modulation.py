@@ -5,7 +5,7 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from hyperleg_design.learning.modulation import ModulatedLayers, plain_layers  # noqa: E402
+from hyperleg_design.learning.learner.modulation import ModulatedLayers, plain_layers  # noqa: E402
 
 
 def network() -> ModulatedLayers:

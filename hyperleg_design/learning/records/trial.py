@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.learning.meter import mean_speed
+from hyperleg_design.learning.records.meter import mean_speed
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.model import pad_loads
 from hyperleg_design.simulation.tasks import Reward, Task

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.learning.meter import Meter
+from hyperleg_design.learning.records.meter import Meter
 from hyperleg_design.robot.design import Design
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.tasks import load_task

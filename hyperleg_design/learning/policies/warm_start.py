@@ -26,9 +26,9 @@ import numpy as np
 import torch
 
 from hyperleg_design.errors import InputError, in_short
-from hyperleg_design.learning.export import CRITIC_FORMAT, FORMAT
-from hyperleg_design.learning.modulation import plain_layers
-from hyperleg_design.learning.status import CRITIC, POLICY
+from hyperleg_design.learning.learner.modulation import plain_layers
+from hyperleg_design.learning.policies.export import CRITIC_FORMAT, FORMAT
+from hyperleg_design.learning.records.status import CRITIC, POLICY
 
 if TYPE_CHECKING:
     from rsl_rl.models import MLPModel

@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("tensorboard")
 pytest.importorskip("torch")
 
-from hyperleg_design.learning.progress import (
+from hyperleg_design.learning.records.progress import (
     finite,
     log_measures,
     open_writer,

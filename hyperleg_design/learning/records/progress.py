@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.learning.status import PROGRESS
+from hyperleg_design.learning.records.status import PROGRESS
 from hyperleg_design.writing import write_text
 
 

@@ -12,10 +12,10 @@ from rsl_rl.models import MLPModel
 from rsl_rl.storage import RolloutStorage
 from tensordict import TensorDict
 
-from hyperleg_design.learning.device import HOST, learning_on
-from hyperleg_design.learning.modulation import ModulatedLayers
-from hyperleg_design.learning.rounding import multiplies_bfloat16, round_layers
-from hyperleg_design.learning.symmetry import HalfMirrored, Mirrors
+from hyperleg_design.learning.learner.device import HOST, learning_on
+from hyperleg_design.learning.learner.modulation import ModulatedLayers
+from hyperleg_design.learning.learner.rounding import multiplies_bfloat16, round_layers
+from hyperleg_design.learning.learner.symmetry import HalfMirrored, Mirrors
 
 if TYPE_CHECKING:
     from hyperleg_design.learning.preset import Network, Preset

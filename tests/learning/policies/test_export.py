@@ -13,8 +13,8 @@ onnxruntime = pytest.importorskip("onnxruntime")
 pytest.importorskip("onnx")
 pytest.importorskip("rsl_rl")
 
-from hyperleg_design.learning import export  # noqa: E402
-from hyperleg_design.learning.algorithm import as_tensors, make_network  # noqa: E402
+from hyperleg_design.learning.learner.algorithm import as_tensors, make_network  # noqa: E402
+from hyperleg_design.learning.policies import export  # noqa: E402
 from hyperleg_design.learning.preset import Network  # noqa: E402
 
 

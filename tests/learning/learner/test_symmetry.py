@@ -11,9 +11,9 @@ torch = pytest.importorskip("torch")
 pytest.importorskip("rsl_rl")
 from rsl_rl.storage import RolloutStorage  # noqa: E402
 
-from hyperleg_design.learning.algorithm import as_tensors, make_network  # noqa: E402
+from hyperleg_design.learning.learner.algorithm import as_tensors, make_network  # noqa: E402
+from hyperleg_design.learning.learner.symmetry import HalfMirrored, Mirrors  # noqa: E402
 from hyperleg_design.learning.preset import Network  # noqa: E402
-from hyperleg_design.learning.symmetry import HalfMirrored, Mirrors  # noqa: E402
 
 
 @pytest.fixture(params=["toe", "toe_removed"])

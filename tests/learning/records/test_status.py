@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hyperleg_design.learning.status import POLICY, STATUS, policies, read_status
+from hyperleg_design.learning.records.status import POLICY, STATUS, policies, read_status
 
 
 def test_policies_come_earliest_first_the_final_one_last(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hyperleg_design.learning.policy_metadata import KEYS, policy_metadata
+from hyperleg_design.learning.policies.policy_metadata import KEYS, policy_metadata
 
 DESCRIPTION = {key: f"the {key}" for key in KEYS} | {"seed": 7, "overlay": None, "machine": "mine"}
 

@@ -9,7 +9,7 @@ from hyperleg_design.errors import InputError, OutputError
 
 torch = pytest.importorskip("torch")
 
-from hyperleg_design.learning.checkpoint import load_checkpoint, save_checkpoint  # noqa: E402
+from hyperleg_design.learning.records.checkpoint import load_checkpoint, save_checkpoint  # noqa: E402
 
 
 def test_everything_comes_back_bit_for_bit(tmp_path: Path) -> None:
