@@ -47,7 +47,7 @@ class Drawer:
             In the order of the jobs.
         """
         with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-            return list(pool.map(lambda job: self(*job[:4], wide=job[4]), jobs))
+            return list(pool.map(lambda job: self(*job[:4], wide=job[4], chart=False), jobs))
 
     def __call__(
         self,
@@ -57,13 +57,25 @@ class Drawer:
         suffix: str = ".png",
         *,
         wide: bool = True,
+        chart: bool = True,
     ) -> Picture | Missing:
-        """A figure made by `make(path)`; a machine that cannot draw it, or trials that do not
-        suffice, cost this figure only.
+        """Draw a figure; if this machine cannot draw it, or trials do not suffice for it, only this
+        figure is missing.
+
+        Args:
+            name: of the file, without its ending.
+            caption: of the figure.
+            make: draws the figure into a file.
+            suffix: ending of the file.
+            wide: whether it takes the width of the page.
+            chart: whether it is lines on white, which a dark scheme may show inverted.
+
+        Returns:
+            The picture, or why it is missing.
         """
         file = f"{FIGURES}/{self.prefix}{name}{suffix}"
         try:
             make(self.folder / file)
         except HyperlegError as error:
             return Missing(caption, str(error))
-        return Picture(file, caption, wide)
+        return Picture(file, caption, wide, chart)

@@ -19,7 +19,7 @@ def test_a_figure_that_cannot_be_drawn_costs_only_itself(tmp_path):
         ".gif",
         wide=False,
     )
-    assert made == Picture("figures/policy_walk.gif", "A walk.", False)
+    assert made == Picture("figures/policy_walk.gif", "A walk.", False, True)
     assert (tmp_path / "figures" / "policy_walk.gif").exists()
     both = draw.together(
         [
@@ -35,3 +35,4 @@ def test_a_figure_that_cannot_be_drawn_costs_only_itself(tmp_path):
     )
     assert [type(one) for one in both] == [Picture, Missing, Picture]
     assert [one.caption for one in both] == ["a.", "b.", "c."]
+    assert not any(one.chart for one in both if isinstance(one, Picture))  # only lines are inverted

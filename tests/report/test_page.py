@@ -42,7 +42,7 @@ def test_page_holds_its_content_and_escapes_texts():
     assert "a &lt; b &amp; c" in html
     assert "Title &lt;1&gt;" in html
     assert 'src="f/a.png"' in html
-    assert '<td class="bad">bad &amp; worse</td>' in html
+    assert '<td class="bad short">bad &amp; worse</td>' in html
     assert "no screen" in html
     assert html.count("<table>") == 2
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from hyperleg_design.errors import HyperlegError
-from hyperleg_design.report.page import Missing, Picture, Section
+from hyperleg_design.report.drawer import Drawer
+from hyperleg_design.report.page import Section
 from hyperleg_design.robot.design import Design
-
-FIGURES = "figures"
-"""Folder of the figures beside the page."""
 
 
 @dataclass(frozen=True)
@@ -27,26 +23,10 @@ class Context:
     progress: bool = False
     """Show a bar in parts that take long."""
 
-    def picture(
-        self, name: str, caption: str, make: Callable[[Path], object], *, wide: bool = True
-    ) -> Picture | Missing:
-        """Make a figure; if this machine cannot draw it, only this figure is missing.
-
-        Args:
-            name: of the file, without its ending.
-            caption: of the figure.
-            make: draws the figure into a file.
-            wide: whether it takes the width of the page.
-
-        Returns:
-            The picture, or why it is missing.
-        """
-        file = f"{FIGURES}/{name}.png"
-        try:
-            make(self.folder / file)
-        except HyperlegError as error:
-            return Missing(caption, str(error))
-        return Picture(file, caption, wide)
+    @property
+    def picture(self) -> Drawer:
+        """Draws figures into the folder of the page."""
+        return Drawer(self.folder)
 
 
 @dataclass(frozen=True)

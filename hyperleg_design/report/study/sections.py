@@ -47,22 +47,26 @@ def robot(context: Context) -> Made:
             "dimensions",
             "Dimensions [mm]; leg length and height are the paper's, the rest is assumed.",
             lambda p: picture.render(scenes.dimensions_scene(design), p),
+            chart=False,
         ),
         context.picture(
             "frames",
             "Joint axes: an arrow points along the axis about which the angle is positive.",
             lambda p: picture.render(scenes.frames_scene(design), p),
+            chart=False,
         ),
         context.picture(
             "masses",
             "Segment masses at their centres of mass; balls have the volume of that mass at 6.5 kg/dm³.",
             lambda p: picture.render(scenes.masses_scene(design), p),
+            chart=False,
         ),
     ]
     side_by_side = context.picture(
         "variants",
         "The four variants; orange: active toe and its motor.",
         lambda p: picture.render(scenes.variants_scene(context.variants), p),
+        chart=False,
     )
     confound = ablation.confound(design)
     rows = []

@@ -9,11 +9,12 @@ from typing import Any
 from hyperleg_design import provenance
 from hyperleg_design.evaluation.shipped import shipped_policies
 from hyperleg_design.report import page as pages
+from hyperleg_design.report.drawer import FIGURES
 from hyperleg_design.report.page import Page, Section
 from hyperleg_design.report.study import actuation, sections
 from hyperleg_design.report.study import experiment as study_experiment
 from hyperleg_design.report.study import motions as motion
-from hyperleg_design.report.study.context import FIGURES, Context, Made
+from hyperleg_design.report.study.context import Context, Made
 from hyperleg_design.report.study.walked import walked
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.design import Design, load_design

@@ -23,6 +23,17 @@ if TYPE_CHECKING:
 
 COLOURS = ("#c8602a", "#2f6db3")
 """Of the first and the second design, told apart by colour-blind readers too."""
+BUTTONS = (
+    "toimage",
+    "senddatatocloud",
+    "zoom",
+    "pan",
+    "zoomin",
+    "zoomout",
+    "autoscale",
+    "resetscale",
+)
+"""Plotly's buttons, which would cover a chart of this size; a drag zooms in, two clicks out."""
 _MOST_POINTS = 600
 """Operating points drawn of each motor; more would only thicken the cloud."""
 _SIDE_MARKS = ("circle", "diamond", "square", "cross")
@@ -173,6 +184,7 @@ def _layout(dark: bool, x: str, y: str) -> dict[str, Any]:
         "xaxis": {"title": {"text": x}},
         "yaxis": {"title": {"text": y}},
         "margin": {"l": 55, "r": 8, "t": 8, "b": 40},
+        "modebar": {"remove": BUTTONS},
         "legend": {"orientation": "h", "y": -0.28, "font": {"size": 10}},
         "paper_bgcolor": "rgba(0,0,0,0)",
         "font": {"size": 11},

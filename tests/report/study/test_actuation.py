@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from hyperleg_design.report.drawer import FIGURES
 from hyperleg_design.report.page import Table
 from hyperleg_design.report.study import actuation
-from hyperleg_design.report.study.context import FIGURES, Context
+from hyperleg_design.report.study.context import Context
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.design import load_design
 

@@ -8,9 +8,10 @@ import json
 
 import pytest
 
+from hyperleg_design.report.drawer import FIGURES
 from hyperleg_design.report.page import Table
 from hyperleg_design.report.study import motions as study_motion
-from hyperleg_design.report.study.context import FIGURES, Context
+from hyperleg_design.report.study.context import Context
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.sizing import capability

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from hyperleg_design.report.drawer import FIGURES
 from hyperleg_design.report.page import Details, Table
 from hyperleg_design.report.study import sections as study_sections
-from hyperleg_design.report.study.context import FIGURES, Context
+from hyperleg_design.report.study.context import Context
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.design import Design, load_design
 from hyperleg_design.robot.parameters import values as parameters
