@@ -18,6 +18,7 @@ from hyperleg_design.evaluation.policy import (
     checked_action,
     policy_name,
 )
+from hyperleg_design.evaluation.signal_blocks import SignalBlocks
 from hyperleg_design.simulation.drives.told import TOLD
 from hyperleg_design.simulation.layout import GRAVITY
 from hyperleg_design.simulation.terms import terminations
@@ -191,7 +192,7 @@ def record(
     length, ended_at = np.zeros(count, int), np.zeros(count)
     outcomes = [TIMED_OUT] * count
     divergences: dict[int, Divergence] = {}
-    store: dict[str, np.ndarray] = {}
+    first, blocks = np.empty(0), SignalBlocks({}, substeps)
     step_index = 0
     for step_index in range(limit):
         action = checked_action(
@@ -201,16 +202,13 @@ def record(
             before_step(environment)
         step = environment.step(action)
         observation = step.observations["policy"]
-        if not store:
-            signals = environment.signals()
-            # pages of the part that is never reached are never claimed
-            sensed_names = [n for n in signals if n.startswith(TOLD)]
-            store = {
-                n: np.empty((count, limit * substeps, *signals[n].shape[2:]))
-                for n in (*SIGNALS, *sensed_names)
-            }
+        if not step_index:
+            begin = environment.signals()
+            first = begin["base_position"][:, 0].copy()
+            names = (*SIGNALS, *(name for name in begin if name.startswith(TOLD)))
+            blocks = SignalBlocks({name: begin[name].shape[2:] for name in names}, substeps)
         now = slice(step_index * substeps, (step_index + 1) * substeps)
-        environment.keep_signals(store, now)
+        blocks.keep(environment, running)
         divergences.update({d.simulation: d for d in step.divergences if running[d.simulation]})
         ended = step.ended[running[step.ended]]
         for trial in ended:
@@ -219,10 +217,8 @@ def record(
         over = [ended]
         running[ended] = False
         if arrived is not None:
-            done = np.flatnonzero(
-                running
-                & arrived(store["base_position"][:, 0], store["base_position"][:, now.stop - 1])
-            )
+            rows, place = blocks.latest("base_position")
+            done = rows[running[rows] & arrived(first[rows], place)]
             for trial in done:
                 outcomes[trial] = ARRIVED
             length[done], ended_at[done] = now.stop, (step_index + 1) * duration
@@ -233,6 +229,7 @@ def record(
         if freezing and any(map(len, over)):
             environment.freeze(np.concatenate(over))
     length[running], ended_at[running] = limit * substeps, limit * duration
+    signals = {name: blocks.taken(name, length) for name in blocks.names}
     return [
         Trial(
             design=environment.designs[environment.design_index[i]],
@@ -244,12 +241,8 @@ def record(
             end_time=float(ended_at[i]),
             divergence=divergences.get(i),
             power_constant=_power_constant(environment, i),
-            told={
-                name: values[i, : length[i]]
-                for name, values in store.items()
-                if name.startswith(TOLD)
-            },
-            **{name: store[name][i, : length[i]] for name in SIGNALS},
+            told={name: values[i] for name, values in signals.items() if name.startswith(TOLD)},
+            **{name: signals[name][i] for name in SIGNALS},
         )
         for i in range(count)
     ]

@@ -341,20 +341,26 @@ class Environment:
         """
         return self.task.draws_later(duration) or bool(self.alterations)
 
-    def keep_signals(self, store: Mapping[str, np.ndarray], samples: slice) -> None:
-        """Write `signals` into arrays, without `joint_friction`.
+    def keep_signals(
+        self, store: Mapping[str, np.ndarray], samples: slice, simulations: np.ndarray
+    ) -> None:
+        """Write `signals` of some simulations into arrays, without `joint_friction`.
 
         Args:
-            store: arrays by the names of the signals that are wanted, `(n, t, ...)`.
+            store: arrays by the names of the signals that are wanted, `(t, k, ...)`.
             samples: where the last policy step belongs in time.
+            simulations: whose signals are written, ascending, `(k,)`.
         """
         for chunk in self.chunks:
-            rows, signals = (
-                slice(chunk.first, chunk.first + chunk.count),
-                chunk.signals(friction=False),
-            )
+            begin, end = np.searchsorted(simulations, (chunk.first, chunk.first + chunk.count))
+            if begin == end:
+                continue
+            signals = chunk.signals(friction=False)
             for name, values in store.items():
-                values[rows, samples] = signals[name]
+                own = np.moveaxis(signals[name], 0, 1)
+                if end - begin < chunk.count:
+                    own = own[:, simulations[begin:end] - chunk.first]
+                values[samples, begin:end] = own
 
     def signals(self) -> dict[str, np.ndarray]:
         """What happened within the last policy step, at the start of each substep; needs
