@@ -182,6 +182,8 @@ class Evaluate(Printing):
     """Folder to write a log of every trial to, as `hyperleg gap` reads them; none by default."""
     lerobot: Path | None = None
     """Folder to write all trials to as a LeRobot dataset (v3.0); none by default."""
+    all: bool = False
+    """Print every measure, not only those that are read first."""
 
     def run(self) -> None:
         """Evaluate the policies, write the tables, and print the means.
@@ -241,7 +243,7 @@ class Evaluate(Printing):
             trained = {evaluation.policy: evaluation.trained.text() for evaluation in evaluations}
             emit({"folder": folder, "results": rows, "trained": trained, "logs": written})
         else:
-            print(evaluation_text(rows))
+            print(evaluation_text(rows, everything=self.all))
             for evaluation in evaluations:
                 print(f"{evaluation.policy} on {evaluation.design}: {evaluation.trained.text()}")
             print(

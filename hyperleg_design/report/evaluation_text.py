@@ -15,6 +15,27 @@ from hyperleg_design.report.text import table
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
 
+FIRST_READ = (
+    "arrived",
+    "fell",
+    "time",
+    "steady_speed",
+    "mean_speed",
+    "peak_speed",
+    "mean_deviation",
+    "peak_deviation",
+    "steady_cost_of_transport",
+    "cost_of_transport",
+    "power",
+    "joule_power",
+    "grf_peak_body_weights",
+    "cadence",
+    "flight",
+    "continuous_use",
+)
+"""Measures that a terminal shows at first, of walks and T-tests, in this order."""
+HEAD = ("measure", "unit", "mean", "low", "high", "seeds", "missing")
+
 
 def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
     """Summarise evaluations: the mean of every measure, with its interval over seeds and trials.
@@ -22,7 +43,7 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
     Means are over the trials that did not fall, but for how trials ended; see `counted`.
 
     Args:
-        evaluations: trials of one or more policies, with the same measures.
+        evaluations: trials of one or more policies.
 
     Returns:
         One row for each protocol, variant, design and measure, with `variant`, `design`,
@@ -34,9 +55,8 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
     rows = []
     keys = ["protocol", "variant", "design", "trained"]
     for (protocol, variant, design, trained), part in trials.groupby(keys, sort=False):
-        for measure in evaluations[0].measures[0]:
-            if measure not in part:
-                continue
+        first = next(e for e in evaluations if e.protocol.name == protocol)
+        for measure in first.measures[0]:
             interval = (share if measure in OUTCOMES else estimate)(
                 list(
                     by_checkpoint(
@@ -68,42 +88,45 @@ def _plain(value: Estimate) -> dict[str, Any]:
     }
 
 
-def evaluation_text(rows: Sequence[dict[str, Any]]) -> str:
-    """Write the rows of `evaluation_rows` as a table for a terminal, with units.
+def evaluation_text(rows: Sequence[dict[str, Any]], *, everything: bool = False) -> str:
+    """Write the rows of `evaluation_rows` for a terminal: how trials ended, and a table for each
+    protocol, variant and design.
 
     Measures that no trial has, such as those of a knee that a robot lacks, are only named below it.
 
     Args:
-        rows: one for each policy and measure.
+        rows: one for each of these and each measure.
+        everything: show every measure, not only those of `FIRST_READ`.
 
     Returns:
         The text.
     """
-    cells = []
-    lacking = list(dict.fromkeys(row["measure"] for row in rows if row["mean"] is None))
+    groups: dict[tuple[str, ...], dict[str, dict[str, Any]]] = {}
     for row in rows:
-        if row["mean"] is None:
-            continue
-        numbers = ["" if row[k] is None else row[k] for k in ("mean", "low", "high")]
-        cells.append(
-            [
-                row["variant"],
-                row["trained"],
-                row["measure"],
-                row["unit"] or "-",
-                *numbers,
-                row["seeds"],
-                row["trials"],
-                row["missing"],
-            ]
+        key = tuple(row[name] for name in ("variant", "trained", "protocol", "design"))
+        groups.setdefault(key, {})[row["measure"]] = row
+    texts = []
+    for (variant, trained, protocol, _), own in groups.items():
+        trials = next(iter(own.values()))
+        ends = [
+            f"{round(own[name]['mean'] * own[name]['trials'])} {name.replace('_', ' ')}"
+            for name in OUTCOMES
+            if name in own and (own[name]["mean"] or name in ("arrived", "fell"))
+        ]
+        count = f"{trials['trials'] + trials['missing']} trials"
+        shown = list(own) if everything else [name for name in FIRST_READ if name in own]
+        lacking = [name for name in shown if own[name]["mean"] is None]
+        texts.append(
+            f"{variant}, {trained}, {protocol}: {', '.join([count, *ends])}\n"
+            + table(HEAD, [_cells(own[name]) for name in shown if name not in lacking])
         )
-    text = table(
-        [
-            "variant",
-            "policy is",
-            *("measure", "unit", "mean", "low", "high"),
-            *("seeds", "trials", "missing"),
-        ],
-        cells,
-    )
-    return f"{text}\nwithout a value in any trial: {', '.join(lacking)}" if lacking else text
+        if lacking:
+            texts[-1] += f"\nwithout a value in any trial: {', '.join(lacking)}"
+        if len(shown) < len(own):
+            texts[-1] += f"\n{len(own) - len(shown)} more measures with --all"
+    return "\n\n".join(texts)
+
+
+def _cells(row: dict[str, Any]) -> list[Any]:
+    numbers = ["" if row[k] is None else row[k] for k in ("mean", "low", "high")]
+    return [row["measure"], row["unit"] or "-", *numbers, row["seeds"], row["missing"]]
