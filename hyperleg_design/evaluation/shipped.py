@@ -39,6 +39,8 @@ RUN, PROGRESS = "run.json", "progress.jsonl"
 PREFERRED = {"walk": ("walk_upright", "walk"), "t_test": ("t_test_free", "t_test")}
 """Groups whose policies stand for a kind of protocol, the best first; other groups of that name's
 beginning come after them."""
+GUIDED = "_guided"
+"""Ending of groups whose policies others only start from; they stand for no protocol."""
 CURVE_ROWS = 200
 """Rows of a packed learning curve."""
 CURVE = ("steps", "stage", "assist", "reward", "speed", "falls", "cost_of_transport")
@@ -181,7 +183,12 @@ def policies_for(
         InputError: there is none.
     """
     known = shipped_policies(folder, late=False)
-    groups = [p.group for p in known if p.design == variant and p.group.startswith(kind)]
+    groups = [
+        p.group
+        for p in known
+        if p.design == variant
+        and (p.group == kind or (p.group.startswith(kind) and not p.group.endswith(GUIDED)))
+    ]
     best = PREFERRED.get(kind, (kind,))
     if not groups:
         have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"

@@ -13,6 +13,7 @@ from hyperleg_design import processes
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.plans.analysis_plan import load_plan
 from hyperleg_design.evaluation.protocol import load_protocol
+from hyperleg_design.evaluation.shipped import GUIDED
 from hyperleg_design.learning import campaign as module
 from hyperleg_design.learning.campaign import (
     campaign_status,
@@ -128,7 +129,9 @@ def test_the_t_tests_of_the_fair_study_are_those_of_the_plan() -> None:
 
 
 def test_a_start_is_compared_in_no_shipped_campaign() -> None:
-    assert module.shipped_starts() == {"walk_guided", "t_test_guided"}
+    starts = module.shipped_starts()
+    assert starts == {"walk_guided", "t_test_guided"}
+    assert all(group.endswith(GUIDED) for group in starts)  # by which evaluation knows them
 
 
 def test_foreign_folders_stay(write, tmp_path: Path) -> None:

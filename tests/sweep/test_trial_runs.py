@@ -11,6 +11,7 @@ import pytest
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
+from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.sweep import trial_runs
 from hyperleg_design.sweep.run import run_sweep
 from hyperleg_design.sweep.space import sweep_from_mapping
@@ -133,8 +134,10 @@ def test_trials_of_another_plan_are_not_mixed(finished, tmp_path, monkeypatch):
 
 def test_a_toe_layout_without_policies_is_one_clear_error(tmp_path):
     sweep = sweep_from_mapping(SWEEP | {"variants": ["toe", "toe_locked"]})
+    name = "t_test_free-toe-0"
+    shutil.copytree(find_policy(name).parent, tmp_path / "toe" / name)
     with pytest.raises(InputError, match="toe layout"):
-        plan(sweep, ["t_test"])
+        plan(sweep, ["t_test"], policies=tmp_path / "toe")
     with pytest.raises(InputError, match="no such folder"):
         plan(sweep, ["walk"], policies=tmp_path / "none")
     with pytest.raises(InputError, match="one of each kind"):
