@@ -79,10 +79,11 @@ def test_missing_trainings_are_named(tmp_path: Path):
     (tmp_path / "walk_upright-toe-0" / "policy.onnx").write_bytes(b"x")
     found = coverage(tmp_path)
     assert found["evaluated"] == ["walk_upright-toe-0"]
-    assert len(found["missing"]) == 31  # of four arms with eight seeds
+    assert len(found["missing"]) == 31 + 20  # four arms, seeds of walks and T-tests
     text = coverage_text(found)
-    assert text.startswith("1 trainings are evaluated; 31 of the campaign's are missing: ")
-    assert "walk_upright toe (seed 1, 2, 3, 4, 5, 6, 7)" in text
+    assert text.startswith("1 trainings are evaluated; of those that the study plans, 51 are miss")
+    assert "walk_upright-toe-1..7" in text
+    assert "t_test_free-toe_locked-0..4" in text
 
 
 def test_a_training_starts_from_a_shipped_one_by_name(capsys, tmp_path: Path, monkeypatch):
