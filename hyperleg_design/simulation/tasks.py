@@ -5,6 +5,7 @@ user's file.
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -115,12 +116,17 @@ class Task:
 
     @property
     def deviations(self) -> dict[str, str]:
-        """What is not the paper's: reward terms, the gait clock where it is observed, and the
-        simulation step, with descriptions.
+        """What is not the paper's: reward terms and weights, the gait clock where it is observed,
+        and the simulation step, with descriptions.
         """
         deviations = {
             name: TERMS[name].description for name in self.rewards if not TERMS[name].paper
         }
+        for name, weight in _paper_weights().items():
+            if name in self.rewards and self.rewards[name].weight != weight:
+                deviations[name] = (
+                    f"weight {self.rewards[name].weight:g}, the paper's is {weight:g}"
+                )
         if any("clock" in parts for parts in self.observations.values()):
             deviations["clock"] = (
                 "gait clock in the observation"
@@ -236,6 +242,13 @@ def load_task(name: str | Path) -> Task:
     """
     path = resources.find_sim("task", name)
     return task_from_mapping(read_yaml(path), short_name(path))
+
+
+@functools.cache
+def _paper_weights() -> dict[str, float]:
+    """Weights of the paper's Table II by reward term."""
+    tasks = (load_task("walk_paper"), load_task("goal_paper"))
+    return {n: r.weight for task in tasks for n, r in task.rewards.items() if TERMS[n].paper}
 
 
 def task_names() -> list[str]:

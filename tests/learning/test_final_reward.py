@@ -144,18 +144,20 @@ def test_every_step_of_the_t_test_has_the_papers_reward_and_marked_terms():
     preset, task = load_preset("t_test"), load_task("t_test_free")
     assert final_share(preset.stages("t_test_free")) == 1.0
     final, paper = final_rewards(preset, task), load_task("goal_paper").rewards
-    own = {"termination", "power", "goal_arrival", "position_progress"}
+    own = {"power", "goal_arrival", "position_progress"}
     assert {n: final[n] for n in own} == {n: paper[n] for n in own}
     assert set(final) - own <= set(task.deviations)
+    assert task.deviations["termination"] == "weight -2000, the paper's is -200"
     assert not HELPERS & set(final)
 
 
-def test_the_guided_t_test_ends_with_the_rewards_of_the_t_test_but_for_the_path():
+def test_the_guided_t_test_ends_with_the_rewards_of_the_t_test_but_for_path_and_falls():
     preset, task = load_preset("t_test_guided"), load_task("t_test_guided")
     final = final_rewards(preset, task)
     own = final_rewards(load_preset("t_test"), load_task("t_test_free"))
-    assert {n for n in final if final[n] != own[n]} == {"path_deviation"}
-    assert own["path_deviation"].weight < final["path_deviation"].weight < 0
+    assert {n for n in final if final[n] != own[n]} == {"path_deviation", "termination"}
+    for name in ("path_deviation", "termination"):
+        assert own[name].weight < final[name].weight < 0
     assert set(own) == set(final)
     assert set(task.rewards) - set(final) == HELPERS
     assert preset.stages("t_test_guided")[-1].commands["course_share"] > 0
