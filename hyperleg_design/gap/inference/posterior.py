@@ -17,14 +17,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.inference.channels.scales import ABSENT
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Name
+from hyperleg_design.gap.inference.unlisted import unlisted
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.channels.channel import Channel
-    from hyperleg_design.gap.inference.channels.scales import Scales
-    from hyperleg_design.gap.inference.crossed import Prediction
+    from hyperleg_design.gap.inference.gap_size import GapSize
     from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
     from hyperleg_design.gap.inference.rules import InferenceRules
     from hyperleg_design.gap.inference.search import Result
@@ -54,14 +52,14 @@ class Posterior:
 
 
 def posterior_of(
-    result: Result, evidence: Evidence, held: Prediction, rules: InferenceRules
+    result: Result, evidence: Evidence, size: GapSize, rules: InferenceRules
 ) -> Posterior:
     """The answer.
 
     Args:
         result: of the search.
         evidence: what it was made on.
-        held: prediction of the most probable hypothesis on held-out blocks.
+        size: of the gap with and without the most probable hypothesis.
         rules: of the inference.
     """
     own = rules.posterior
@@ -75,15 +73,13 @@ def posterior_of(
         for name in sorted(names):
             probability[name] = probability.get(name, 0.0) + weight
     probability = {name: min(p, own.most_certain) for name, p in probability.items()}
-    before, after = (
-        float(np.mean(mean_squares(evidence, values))) for values in (held.before, held.after)
-    )
-    lowest = min(float(np.mean(lowest_squares(evidence, best, held, rules))), after)
-    closed = float((before - after) / (before - lowest)) if before > lowest * (1 + 1e-9) else 0.0
     acting = any(
         unlisted(channel, scales, rules)
         for channel, scales in zip(evidence.channels, best.scales, strict=True)
     )
+    before, after = float(np.mean(size.before)), float(np.mean(size.after))
+    lowest = min(float(np.mean(size.noise)), after)
+    closed = float((before - after) / (before - lowest)) if before > lowest * (1 + 1e-9) else 0.0
     remainder = 0.0
     if acting:
         remainder = float(np.clip((after - lowest) / max(before - lowest, 1e-300), 0.0, 1.0))
@@ -104,57 +100,6 @@ def posterior_of(
         for name, p in probability.items()
     }
     return Posterior(verdict, best, order, standing, probability, rivals, sets, closed, remainder)
-
-
-def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
-    """Whether a channel's discrepancy or noise is rather an unlisted effect's than a healthy
-    robot's.
-    """
-    if makes_noise(channel, scales, rules):
-        return True
-    prior = rules.discrepancy
-    if channel.referenced:
-        return scales.new > ABSENT
-    healthy = ((scales.standing - np.log(prior.standing)) / prior.standing_spread) ** 2
-    other = ((scales.standing - np.log(prior.unlisted)) / prior.unlisted_spread) ** 2
-    odds = np.log(prior.unlisted_probability / (1 - prior.unlisted_probability))
-    odds += 0.5 * (healthy - other) + np.log(prior.standing_spread / prior.unlisted_spread)
-    return bool(odds > 0 and scales.standing > np.log(prior.standing))
-
-
-def makes_noise(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
-    """Whether a channel's noise is rather an unlisted effect's than a healthy robot's."""
-    healthy, other = channel.noisy(scales.noise, rules)
-    return other > healthy
-
-
-def mean_squares(evidence: Evidence, values: np.ndarray) -> np.ndarray:
-    """Mean square of values `(S,)` under test over the expected noise, by channel `(channels,)`."""
-    square = (values * evidence.weight) ** 2
-    return np.array(
-        [
-            float(square[one.under_test].sum())
-            / max(float(evidence.samples.share[one.under_test].sum()), 1e-300)
-            for one in evidence.channels
-        ]
-    )
-
-
-def lowest_squares(
-    evidence: Evidence, hypothesis: Hypothesis, held: Prediction, rules: InferenceRules
-) -> np.ndarray:
-    """Mean square that no cause can go below, as of `mean_squares`: what is left, or where that is
-    an unlisted effect's noise, a healthy robot's.
-    """
-    found = mean_squares(evidence, held.noise)
-    for place, (channel, scales) in enumerate(
-        zip(evidence.channels, hypothesis.scales, strict=True)
-    ):
-        if makes_noise(channel, scales, rules):
-            numbers = channel.numbers[channel.bands_tested]
-            usual = channel.usual_noise(scales.noise, rules)
-            found[place] = min(found[place], float(numbers @ usual / numbers.sum()))
-    return found
 
 
 def _stated(candidate: Candidate) -> list[Name]:

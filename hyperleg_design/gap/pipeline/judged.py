@@ -11,16 +11,11 @@ import numpy as np
 from hyperleg_design import provenance
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence, evidence_of
-from hyperleg_design.gap.inference.crossed import Prediction, predicted
+from hyperleg_design.gap.inference.crossed import predicted
 from hyperleg_design.gap.inference.detectable import detectable
+from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.parameters import intervals
-from hyperleg_design.gap.inference.posterior import (
-    Posterior,
-    expanded,
-    lowest_squares,
-    mean_squares,
-    posterior_of,
-)
+from hyperleg_design.gap.inference.posterior import Posterior, expanded, posterior_of
 from hyperleg_design.gap.inference.search import Result, Search
 from hyperleg_design.gap.results.diagnosis import (
     LEAST_SHARE,
@@ -40,12 +35,8 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.inference.rules import InferenceRules
     from hyperleg_design.gap.signals.signals import Signals
 
-DRAWS = 400
-"""Of the block bootstrap."""
 CLEAR = 2.0
 """Standard deviations from its null from which a place of an effect at all places is named."""
-COUNTS = 0.25
-"""Channels count for the gap from this share of the largest excess of any (assumed)."""
 
 
 def judge_signals(
@@ -78,8 +69,10 @@ def judge_signals(
     search = Search(evidence, rules, places, threads)
     result = search.result()
     held = predicted(evidence, result.best, rules)
-    posterior = posterior_of(result, evidence, held, rules)
-    answer = _Answer(evidence, result, posterior, held, rules, seed)
+    size = GapSize.of(evidence, result.best, held, rules)
+    answer = _Answer(
+        evidence, result, posterior_of(result, evidence, size, rules), size, rules, seed
+    )
     return answer.diagnosis(
         checks, tuple(one.mapping() for one in detectable(search)) if sensitivity else ()
     )
@@ -93,18 +86,12 @@ class _Answer:
         evidence: Evidence,
         result: Result,
         posterior: Posterior,
-        held: Prediction,
+        size: GapSize,
         rules: InferenceRules,
         seed: int,
     ) -> None:
-        self.evidence, self.result, self.posterior, self.held = evidence, result, posterior, held
+        self.evidence, self.result, self.posterior, self.size = evidence, result, posterior, size
         self.rules, self.seed = rules, seed
-        self.squares = {
-            "before": mean_squares(evidence, held.before),
-            "after": mean_squares(evidence, held.after),
-            "noise": lowest_squares(evidence, posterior.hypothesis, held, rules),
-        }
-        self.counts = self._counts()
 
     def diagnosis(self, checks: Sequence[Check], sensitivity: Any) -> Diagnosis:
         """Collect the whole answer from the parts that were computed.
@@ -201,18 +188,11 @@ class _Answer:
         """
         if hypothesis is not self.posterior.hypothesis or not self.posterior.hypothesis.causes:
             return 0.0
-        part = hypothesis.parts[place]
-        own = hypothesis.causes[place].trace(hypothesis.theta[part])
-        others = self.held.before - (self.held.trace - own)
-        before = self._total(self._squares(others))
-        after = self._total(self.squares["after"])
-        standing = hypothesis.causes[place].standing
-        first = before if standing else self._total(self.squares["before"])
-        lowest = self.lowest()
-        total = np.sqrt(first) - np.sqrt(lowest)
-        if total <= 1e-12:
-            return 0.0
-        return float(np.clip((np.sqrt(before) - np.sqrt(after)) / total, -9.99, 1.0))
+        size, cause = self.size, hypothesis.causes[place]
+        own = cause.trace(hypothesis.theta[hypothesis.parts[place]])
+        alone = size.total(size.squares(size.held.before - (size.held.trace - own)))
+        whole = alone if cause.standing else size.total(size.before)
+        return max(size.share_closed(alone, whole), -9.99)
 
     def rivals(self) -> tuple[Named, ...]:
         """Other candidates, most probable first."""
@@ -232,80 +212,27 @@ class _Answer:
 
     def gap(self, naming: bool) -> Shrinkage:
         """Before, after and floor over the channels that count, in their unit."""
-        # the root mean square of the expected noise, in the unit of the channels
-        scale = float(np.sqrt(self._total(self._squares(self.evidence.samples.floor**2))))
-        before, after = (float(np.sqrt(self._total(self.squares[n]))) for n in ("before", "after"))
-        lowest = float(np.sqrt(self.lowest()))
+        size = self.size
+        before, after = (float(np.sqrt(size.total(one))) for one in (size.before, size.after))
         closed, low, high = 0.0, 0.0, 0.0
-        if naming and before > lowest * (1 + 1e-9):
-            closed = min((before - after) / (before - lowest), 1.0)
-            drawn = self.drawn()
-            low, high = (float(v) for v in np.percentile(drawn, [2.5, 97.5]))
+        if naming and size.closed:
+            closed = size.closed
+            low, high = (float(v) for v in np.percentile(size.drawn(self.seed), [2.5, 97.5]))
         else:
             after = before
         return Shrinkage(
-            before * scale,
-            after * scale,
-            min(lowest, after) * scale,
+            before * size.expected,
+            after * size.expected,
+            min(size.lowest, after) * size.expected,
             max(closed, -9.99),
             (max(min(low, closed), -9.99), max(high, closed)),
-            self.unit(),
+            size.unit,
         )
-
-    def drawn(self) -> np.ndarray:
-        """Share closed in bootstrap draws of blocks `(DRAWS,)`."""
-        samples = self.evidence.tests
-        number = len(samples.value)
-        count = int(samples.block.max(initial=0)) + 1
-        rng = np.random.default_rng([self.seed, 20])
-        draws = rng.multinomial(count, np.full(count, 1 / count), size=DRAWS).astype(float)
-        chosen = np.zeros(number, bool)
-        for place in np.flatnonzero(self.counts).tolist():
-            chosen[self.evidence.channels[place].under_test] = True
-        sums = {
-            name: draws
-            @ np.bincount(
-                samples.block[chosen],
-                ((getattr(self.held, name) * self.evidence.weight)[:number] ** 2)[chosen],
-                count,
-            )
-            for name in ("before", "after", "noise")
-        }
-        before, after = np.sqrt(sums["before"]), np.sqrt(sums["after"])
-        share = self.lowest() / max(self._total(self._squares(self.held.noise)), 1e-300)
-        lowest = np.minimum(np.sqrt(share * sums["noise"]), after)
-        return np.minimum((before - after) / np.maximum(before - lowest, 1e-12), 1.0)
-
-    def lowest(self) -> float:
-        """Mean square that no cause can go below."""
-        return min(self._total(self.squares["noise"]), self._total(self.squares["after"]))
-
-    def _squares(self, values: np.ndarray) -> np.ndarray:
-        """Mean square over the noise of each channel `(channels,)`."""
-        return mean_squares(self.evidence, values)
-
-    def _total(self, squares: np.ndarray) -> float:
-        """Mean over the channels that count."""
-        return float(np.mean(squares[self.counts]))
-
-    def _counts(self) -> np.ndarray:
-        """Channels that count for the gap, all in the unit of the largest `(channels,)` of bool."""
-        excess = np.maximum(self.squares["before"] - self.squares["noise"], 0.0)
-        kinds = [RESIDUALS[one.residual][1] for one in self.evidence.channels]
-        largest = int(np.argmax(excess))
-        same = np.array([kind == kinds[largest] for kind in kinds])
-        return same & (excess >= COUNTS * excess[largest])
-
-    def unit(self) -> str:
-        """Of the channels that count."""
-        place = int(np.flatnonzero(self.counts)[0])
-        return RESIDUALS[self.evidence.channels[place].residual][1]
 
     def where(self) -> tuple[Place, ...]:
         """Shares of the excess by place."""
-        excess = np.maximum(self.squares["before"] - self.squares["noise"], 0.0)
         shares: dict[tuple[str, str], float] = {}
-        for one, value in zip(self.evidence.channels, excess.tolist(), strict=True):
+        for one, value in zip(self.evidence.channels, self.size.excess.tolist(), strict=True):
             kind = RESIDUALS[one.residual][0]
             name = one.name
             if one.residual == "ground":
@@ -334,7 +261,7 @@ class _Answer:
 
     def shape(self) -> tuple[dict[str, Any], ...]:
         """Channels in which something unlisted acts."""
-        left = np.maximum(self.squares["after"] - self.squares["noise"], 0.0)
+        left = np.maximum(self.size.after - self.size.noise, 0.0)
         found = [
             {
                 "shape": "limit cycle",

@@ -5,7 +5,7 @@ import pytest
 
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
-from hyperleg_design.gap.inference.posterior import posterior_of, unlisted
+from hyperleg_design.gap.inference.posterior import posterior_of
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.search import Result
 
@@ -38,20 +38,11 @@ def quiet(noise, rules):
     return 0.0, -9.0
 
 
-def evidence(count=100):
-    channel = SimpleNamespace(referenced=False, under_test=np.arange(count), noisy=quiet)
-    samples = SimpleNamespace(share=np.ones(count))
-    return SimpleNamespace(channels=(channel,), samples=samples, weight=np.ones(count))
-
-
-def held(before, after, noise, count=100):
-    ones = np.ones(count)
-    return SimpleNamespace(before=before * ones, after=after * ones, noise=noise * ones)
-
-
-def answer(*hypotheses, prediction=None):
+def answer(*hypotheses, closed=1.0):
+    size = SimpleNamespace(before=np.ones(1), after=np.full(1, 1 - closed), noise=np.zeros(1))
     ranked = tuple(sorted(hypotheses, key=lambda one: -one.score))
-    return posterior_of(Result(ranked, ()), evidence(), prediction or held(2.0, 1.0, 1.0), RULES)
+    evidence = SimpleNamespace(channels=(SimpleNamespace(referenced=False, noisy=quiet),))
+    return posterior_of(Result(ranked, ()), evidence, size, RULES)
 
 
 def test_nothing_is_none():
@@ -105,27 +96,20 @@ def test_a_change_beside_what_stands_is_explained():
 
 
 def test_something_unlisted_alone_is_unknown():
-    found = answer(hypothesis(0.0, scales=BENT), prediction=held(2.0, 2.0, 1.0))
+    found = answer(hypothesis(0.0, scales=BENT), closed=0.0)
     assert found.verdict == "unknown"
     assert found.remainder == pytest.approx(1.0)
 
 
-def test_the_main_part_is_explained_with_a_remainder_that_discounts_it():
+@pytest.mark.parametrize(("closed", "verdict"), [(0.3, "unknown"), (0.75, "explained")])
+def test_what_is_beside_something_unlisted_must_close_the_main_part(closed, verdict):
     best = hypothesis(30.0, ("a", "x"), scales=BENT)
-    found = answer(hypothesis(0.0), best, prediction=held(3.0, 1.5, 1.0))
-    assert found.verdict == "explained"
-    assert 0.1 < found.remainder < 0.5
+    found = answer(hypothesis(0.0), best, closed=closed)
+    assert found.verdict == verdict
+    assert found.remainder == pytest.approx(1 - closed)
     assert found.probability["a", "x", False] <= 1 - found.remainder
 
 
-def test_a_small_part_of_something_unlisted_is_unknown():
-    best = hypothesis(30.0, ("a", "x"), scales=BENT)
-    found = answer(hypothesis(0.0), best, prediction=held(3.0, 2.9, 1.0))
-    assert found.verdict == "unknown"
-
-
-def test_a_scale_is_unlisted_where_that_prior_is_likelier():
-    channel = SimpleNamespace(referenced=False, noisy=quiet)
-    assert not unlisted(channel, HEALTHY, RULES)
-    assert not unlisted(channel, Scales(np.ones(1), -3.0, 0.0), RULES)
-    assert unlisted(channel, BENT, RULES)
+def test_without_anything_unlisted_any_part_is_explained():
+    found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), closed=0.3)
+    assert (found.verdict, found.remainder) == ("explained", 0.0)

@@ -1,0 +1,176 @@
+"""How large the gap is with the nominal model, with the causes, and without anything but noise.
+
+All three are root mean squares of what cross-validation leaves of the residuals under test, over
+their expected noise, of the channels that count: those in the unit of the one with the largest
+excess over the noise, as far as their own is not much smaller.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hyperleg_design.gap.inference.unlisted import makes_noise
+from hyperleg_design.gap.signals.signals import RESIDUALS
+
+if TYPE_CHECKING:
+    from hyperleg_design.gap.inference.assembly import Evidence
+    from hyperleg_design.gap.inference.crossed import Prediction
+    from hyperleg_design.gap.inference.hypothesis import Hypothesis
+    from hyperleg_design.gap.inference.rules import InferenceRules
+
+COUNTS = 0.25
+"""Channels count for the gap from this share of the largest excess of any (assumed)."""
+DRAWS = 400
+"""Of the block bootstrap."""
+
+
+@dataclass(frozen=True, eq=False)
+class GapSize:
+    """Size of the gap by the most probable hypothesis."""
+
+    evidence: Evidence
+    held: Prediction
+    before: np.ndarray
+    """Mean square of each channel without the causes, over its noise `(channels,)`."""
+    after: np.ndarray
+    """The same with the causes."""
+    noise: np.ndarray
+    """The same that no cause can go below."""
+
+    @classmethod
+    def of(
+        cls, evidence: Evidence, hypothesis: Hypothesis, held: Prediction, rules: InferenceRules
+    ) -> GapSize:
+        """Measure it.
+
+        Args:
+            evidence: channels.
+            hypothesis: the most probable one.
+            held: its prediction of held-out blocks.
+            rules: of the inference.
+        """
+        return cls(
+            evidence,
+            held,
+            mean_squares(evidence, held.before),
+            mean_squares(evidence, held.after),
+            _lowest_squares(evidence, hypothesis, held, rules),
+        )
+
+    @cached_property
+    def excess(self) -> np.ndarray:
+        """Mean square of each channel beyond noise `(channels,)`."""
+        return np.maximum(self.before - self.noise, 0.0)
+
+    @cached_property
+    def counts(self) -> np.ndarray:
+        """Channels that count, all in the unit of the largest `(channels,)` of bool."""
+        units = [RESIDUALS[one.residual][1] for one in self.evidence.channels]
+        largest = int(np.argmax(self.excess))
+        same = np.array([unit == units[largest] for unit in units])
+        return same & (self.excess >= COUNTS * self.excess[largest])
+
+    @property
+    def unit(self) -> str:
+        """Of the channels that count."""
+        place = int(np.flatnonzero(self.counts)[0])
+        return RESIDUALS[self.evidence.channels[place].residual][1]
+
+    @property
+    def expected(self) -> float:
+        """Root mean square of the expected noise, in the unit of the channels that count."""
+        return float(np.sqrt(self.total(self.squares(self.evidence.samples.floor**2))))
+
+    @property
+    def lowest(self) -> float:
+        """Size that no cause can go below, over the expected noise."""
+        return float(np.sqrt(min(self.total(self.noise), self.total(self.after))))
+
+    @property
+    def closed(self) -> float:
+        """Share of the gap beyond `lowest` that the causes close; 0 where there is none."""
+        return self.share_closed(self.total(self.before), self.total(self.before))
+
+    def share_closed(self, before: float, whole: float) -> float:
+        """Share of a gap that goes where a mean square shrinks to that with the causes.
+
+        Args:
+            before: mean square that shrinks.
+            whole: mean square of the gap.
+
+        Returns:
+            The share; 0 where there is no gap beyond `lowest`.
+        """
+        gap = np.sqrt(whole) - self.lowest
+        if gap <= 1e-9 * np.sqrt(whole):
+            return 0.0
+        return float(min((np.sqrt(before) - np.sqrt(self.total(self.after))) / gap, 1.0))
+
+    def drawn(self, seed: int) -> np.ndarray:
+        """Share closed in bootstrap draws of blocks `(DRAWS,)`.
+
+        Args:
+            seed: of the draws.
+        """
+        samples = self.evidence.tests
+        number = len(samples.value)
+        count = int(samples.block.max(initial=0)) + 1
+        rng = np.random.default_rng([seed, 20])
+        draws = rng.multinomial(count, np.full(count, 1 / count), size=DRAWS).astype(float)
+        chosen = np.zeros(number, bool)
+        for place in np.flatnonzero(self.counts).tolist():
+            chosen[self.evidence.channels[place].under_test] = True
+        sums = {
+            name: draws
+            @ np.bincount(
+                samples.block[chosen],
+                ((getattr(self.held, name) * self.evidence.weight)[:number] ** 2)[chosen],
+                count,
+            )
+            for name in ("before", "after", "noise")
+        }
+        before, after = np.sqrt(sums["before"]), np.sqrt(sums["after"])
+        share = self.lowest**2 / max(self.total(self.squares(self.held.noise)), 1e-300)
+        lowest = np.minimum(np.sqrt(share * sums["noise"]), after)
+        return np.minimum((before - after) / np.maximum(before - lowest, 1e-12), 1.0)
+
+    def squares(self, values: np.ndarray) -> np.ndarray:
+        """Mean square of values `(S,)` of each channel, over its noise `(channels,)`."""
+        return mean_squares(self.evidence, values)
+
+    def total(self, squares: np.ndarray) -> float:
+        """Mean over the channels that count."""
+        return float(np.mean(squares[self.counts]))
+
+
+def mean_squares(evidence: Evidence, values: np.ndarray) -> np.ndarray:
+    """Mean square of values `(S,)` under test over the expected noise, by channel `(channels,)`."""
+    square = (values * evidence.weight) ** 2
+    return np.array(
+        [
+            float(square[one.under_test].sum())
+            / max(float(evidence.samples.share[one.under_test].sum()), 1e-300)
+            for one in evidence.channels
+        ]
+    )
+
+
+def _lowest_squares(
+    evidence: Evidence, hypothesis: Hypothesis, held: Prediction, rules: InferenceRules
+) -> np.ndarray:
+    """Mean square that no cause can go below, as of `mean_squares`: what is left, or where that is
+    an unlisted effect's noise, a healthy robot's.
+    """
+    found = mean_squares(evidence, held.noise)
+    for place, (channel, scales) in enumerate(
+        zip(evidence.channels, hypothesis.scales, strict=True)
+    ):
+        if makes_noise(channel, scales, rules):
+            numbers = channel.numbers[channel.bands_tested]
+            usual = channel.usual_noise(scales.noise, rules)
+            found[place] = min(found[place], float(numbers @ usual / numbers.sum()))
+    return found

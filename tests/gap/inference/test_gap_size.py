@@ -1,0 +1,59 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.inference.gap_size import GapSize
+
+COUNT = 40
+
+
+def size(before, after, noise, residuals=("motion", "motion")):
+    """Of channels of the same number of samples, whose squares are given."""
+    number = len(residuals) * COUNT
+    channels = tuple(
+        SimpleNamespace(residual=kind, under_test=np.arange(i * COUNT, (i + 1) * COUNT))
+        for i, kind in enumerate(residuals)
+    )
+    samples = SimpleNamespace(share=np.ones(number), floor=np.full(number, 0.25))
+    tests = SimpleNamespace(value=np.zeros(number), block=np.arange(number) % 8)
+    evidence = SimpleNamespace(
+        channels=channels, samples=samples, tests=tests, weight=np.full(number, 4.0)
+    )
+    spread = lambda squares: np.repeat(np.sqrt(squares), COUNT) / 4.0  # noqa: E731
+    held = SimpleNamespace(before=spread(before), after=spread(after), noise=spread(noise))
+    return GapSize(evidence, held, *(np.array(one, float) for one in (before, after, noise)))
+
+
+def test_the_share_closed_is_that_of_the_root_mean_squares_beyond_noise():
+    found = size([25.0, 1.0], [9.0, 1.0], [1.0, 1.0])
+    assert found.counts.tolist() == [True, False]
+    assert found.closed == pytest.approx((5 - 3) / (5 - 1))
+    assert found.expected == pytest.approx(0.25)  # floors of 0.25
+    assert found.unit == "Nm"
+
+
+def test_no_gap_is_closed_where_there_is_none_and_never_more_than_all():
+    assert size([1.0, 1.0], [1.0, 1.0], [1.0, 1.0]).closed == 0.0
+    assert size([25.0, 25.0], [0.5, 0.5], [1.0, 1.0]).closed == 1.0
+
+
+def test_causes_that_make_it_worse_close_less_than_nothing():
+    assert size([4.0, 4.0], [9.0, 9.0], [1.0, 1.0]).closed == pytest.approx(-1.0)
+
+
+def test_only_channels_in_the_unit_of_the_largest_excess_count():
+    found = size([9.0, 25.0, 16.0], [1.0, 1.0, 1.0], [1.0] * 3, ("motion", "transmission", "drive"))
+    assert found.counts.tolist() == [False, True, False]
+    assert found.unit == "rad/s"
+
+
+def test_a_part_of_the_causes_closes_its_own_share():
+    found = size([25.0, 25.0], [1.0, 1.0], [1.0, 1.0])
+    assert found.share_closed(9.0, 25.0) == pytest.approx((3 - 1) / (5 - 1))
+
+
+def test_draws_of_equal_blocks_all_close_what_the_logs_close():
+    found = size([25.0, 25.0], [9.0, 9.0], [1.0, 1.0])
+    assert found.drawn(0) == pytest.approx(np.full(400, found.closed))
+    np.testing.assert_array_equal(found.drawn(1), found.drawn(1))
