@@ -77,12 +77,8 @@ def posterior_of(
         unlisted(channel, scales, rules)
         for channel, scales in zip(evidence.channels, best.scales, strict=True)
     )
-    before, after = float(np.mean(size.before)), float(np.mean(size.after))
-    lowest = min(float(np.mean(size.noise)), after)
-    closed = float((before - after) / (before - lowest)) if before > lowest * (1 + 1e-9) else 0.0
-    remainder = 0.0
-    if acting:
-        remainder = float(np.clip((after - lowest) / max(before - lowest, 1e-300), 0.0, 1.0))
+    closed = size.closed
+    remainder = float(np.clip(1 - closed, 0.0, 1.0)) if acting else 0.0
     ranked = np.argsort(-np.array(_effects(best)), kind="stable").tolist()
     order = tuple(place for place in ranked if not best.candidates[place].standing)
     standing = tuple(place for place in ranked if best.candidates[place].standing)

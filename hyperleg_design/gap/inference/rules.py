@@ -132,7 +132,7 @@ class PosteriorRules:
     """Posterior probability of any cause at all from which causes are named [-]."""
     alike: float = 2.5
     """Difference of log posterior within which rivals count as one set [nat] (developed)."""
-    main_part: float = 0.4
+    main_part: float = 0.5
     """Share of the gap that causes must close, else the answer is `unknown` [-] (assumed)."""
     remainder: float = 0.1
     """Share of the gap that is left, from which a remainder is reported [-] (assumed)."""

@@ -39,10 +39,9 @@ def quiet(noise, rules):
 
 
 def answer(*hypotheses, closed=1.0):
-    size = SimpleNamespace(before=np.ones(1), after=np.full(1, 1 - closed), noise=np.zeros(1))
     ranked = tuple(sorted(hypotheses, key=lambda one: -one.score))
     evidence = SimpleNamespace(channels=(SimpleNamespace(referenced=False, noisy=quiet),))
-    return posterior_of(Result(ranked, ()), evidence, size, RULES)
+    return posterior_of(Result(ranked, ()), evidence, SimpleNamespace(closed=closed), RULES)
 
 
 def test_nothing_is_none():
